@@ -1,5 +1,5 @@
 //! Turns `shaders-glsl/` into what Rust embeds: the SPIR-V words of every module that
-//! `src/shader/list.rs` lists, and the numbers that `include/core/variant.glsl` names.
+//! `src/shader/catalogue.rs` lists, and the numbers that `include/core/variant.glsl` names.
 //!
 //! The feature `shaderc` compiles the GLSL here; without it the build uses the SPIR-V stored in
 //! `shaders-spirv/`. `REVMAP_KEEP_SPIRV=1 cargo build` renews the stored SPIR-V.
@@ -10,12 +10,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 #[allow(dead_code)]
-#[path = "src/shader/list.rs"]
-mod list;
+#[path = "src/shader/catalogue.rs"]
+mod catalogue;
 
 const SOURCES: &str = "shaders-glsl";
 const INCLUDES: [&str; 3] = ["include/core", "include/search", "include/stage"];
-const LIST: &str = "src/shader/list.rs";
+const CATALOGUE: &str = "src/shader/catalogue.rs";
 const KEPT: &str = "shaders-spirv";
 
 fn main() {
@@ -36,8 +36,8 @@ fn generate() -> Fallible<()> {
             &["glsl"],
         )?);
     }
-    sources.push(LIST.into());
-    let module = |module: list::Module| modules::Module {
+    sources.push(CATALOGUE.into());
+    let module = |module: catalogue::Module| modules::Module {
         name: module.name(),
         entry: module.entry.file(),
         macros: module.macros(),
@@ -45,7 +45,7 @@ fn generate() -> Fallible<()> {
         optimized: true,
         for_tests: false,
     };
-    let mut all: Vec<_> = list::modules().into_iter().map(module).collect();
+    let mut all: Vec<_> = catalogue::modules().into_iter().map(module).collect();
     // Tests read the layouts of blocks from this module.
     all.push(modules::Module {
         name: "layouts".to_owned(),

@@ -10,7 +10,7 @@ void main()
 {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     Hit hit;
-    bool found = trace_hull(pixel, hit);
+    bool found = trace_cell(pixel, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;

@@ -12,7 +12,7 @@ const uint BOX_VERTICES = 14u;
 vec4 box_corner(Instance i, uint vertex)
 {
     vec3 scale = scale_of(i);
-    vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
+    vec3 half_size = vec3(object.bounds.x, object.bounds.x, 0.5);
     vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale;
     float depth = i.scale_depth.z;
     float reach = dot(abs(forward), half_size);
@@ -33,12 +33,12 @@ vec4 strip_corner(Instance i, uint vertex)
     uint strip = vertex >> 2;
     uint corner = vertex & 3u;
     uint side = strip & 3u;
-    vec4 row = uintBitsToFloat(patch_tables[solid.hull.w + (strip >> 2)]); // lowest and highest z, largest radius
+    vec4 row = uintBitsToFloat(patch_tables[object.parts.w + (strip >> 2)]); // lowest and highest z, largest radius
     // Component 0 is along the side's normal, component 1 is the horizontal one across it.
     bool along_x = side < 2u;
     float sense = (side & 1u) == 0u ? 1.0 : -1.0;
-    float R = solid.bounds.x;
-    vec2 axis = along_x ? solid.axis.xy : solid.axis.yx;
+    float R = object.bounds.x;
+    vec2 axis = along_x ? object.axis.xy : object.axis.yx;
     float away = R - sense * axis.x;
     float reach = sqrt(max(row.z * row.z - away * away, 0.0));
     // The strip is widened so that the raster never clips first. A row that does not reach the side has zero width.

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Vertices of a proxy of cells: two rings of HULL_SIDES corners for each frustum, with the patches of its cell.
+// Vertices of a proxy of cells: two rings of RING_CORNERS corners for each frustum, with the patches of its cell.
 // CLIPPED: triangles end at the box's sides; proxy_boxes.vert draws the strips there.
 #include "stage/vertex.glsl"
 #include "stage/cell_varyings.glsl"
@@ -15,22 +15,25 @@ out float gl_ClipDistance[4];
 void main()
 {
     Instance i = begin(uint(gl_InstanceIndex));
-    uint at = solid.hull.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * HULL_SIDES));
-    uint vertex = uint(gl_VertexIndex) % (2u * HULL_SIDES);
+    uint at = object.parts.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * RING_CORNERS));
+    uint vertex = uint(gl_VertexIndex) % (2u * RING_CORNERS);
     vec4 rings = uintBitsToFloat(patch_tables[at]);
-    vec2 rz = vertex < HULL_SIDES ? rings.xy : rings.zw;
-    float angle = float(vertex % HULL_SIDES) * (6.28318530717958648 / float(HULL_SIDES));
-    vec3 corner = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(solid.axis.xy, 0.0);
+    vec2 rz = vertex < RING_CORNERS ? rings.xy : rings.zw;
+    float angle = float(vertex % RING_CORNERS) * (6.28318530717958648 / float(RING_CORNERS));
+    vec3 corner = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(object.axis.xy, 0.0);
     gl_Position = clip_of(i, corner);
     hand_over(i, frame.forward.w);
-    hull_sides = sides_of_box();
-    [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-        hull_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
-        hull_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+    cell_sides = sides_of_box();
+    cell_record = at;
+    if (FETCHED_CELLS == 0u) {
+        [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+            cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
+            cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+        }
     }
 #if CLIPPED
     // The clip planes are outside the sides by a margin, so that no triangle that begins within the sides is lost.
-    vec2 side = solid.bounds.x + max(fraction_of_pixel(i).xy, 1e-3);
+    vec2 side = object.bounds.x + max(fraction_of_pixel(i).xy, 1e-3);
     gl_ClipDistance[0] = side.x - corner.x;
     gl_ClipDistance[1] = side.x + corner.x;
     gl_ClipDistance[2] = side.y - corner.y;

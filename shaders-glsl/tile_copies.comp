@@ -6,7 +6,7 @@
 void main()
 {
     take_frame();
-    take_solid(pushed.solid);
+    take_object(pushed.object);
     take_lights();
     uint first, count;
     uvec2 pixel = this_pixel(first, count);
@@ -18,8 +18,8 @@ void main()
         count_steps(pixel, hit);
         if (found) {
             Instance i = instances[index];
-            if (ONE_SOLID == 0u) {
-                take_solid(i.solid.x);
+            if (ONE_OBJECT == 0u) {
+                take_object(i.object.x);
             }
             store(pixel, depth, shade(look_of(i), pixel_rays(i), pixel, hit));
         }

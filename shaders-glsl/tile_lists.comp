@@ -11,7 +11,7 @@ const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
 const uint RECORDS = GROUP_PIXELS * GROUP_PIXELS;
 shared uint met[MET_WORDS]; // one bit per patch
 shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles, pixels
-shared uint copies; // 1 if the group has several instances, else 0
+shared uint mixed; // 1 if the group has several instances, else 0
 
 void main()
 {
@@ -20,25 +20,25 @@ void main()
     uint group_first = pushed.first + gl_WorkGroupID.x * RECORDS;
     bool present = gl_WorkGroupID.x * RECORDS + self < pushed.count;
     uint record = present ? group_first + self : group_first;
-    uint place = tile_words[4u * record];
-    uvec2 corner = uvec2(place & 0xffffu, place >> 16);
+    uint corner_word = tile_words[4u * record];
+    uvec2 corner = uvec2(corner_word & 0xffffu, corner_word >> 16);
     uint number = tile_words[4u * record + 1u];
     Instance instance;
     if (ONE_INSTANCE != 0u) {
         instance = instances[pushed.instance];
-        take_solid(pushed.solid);
+        take_object(pushed.object);
     } else {
         instance = instances[number];
-        take_solid(instance.solid.x);
+        take_object(instance.object.x);
     }
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
-    uvec2 header = patch_tables[solid.hull.z].xy;
+    uvec2 header = patch_tables[object.parts.z].xy;
     float unit = uintBitsToFloat(header.y);
 
     if (self == 0u) {
         low_x = low_y = 0xffffffffu;
-        high_x = high_y = copies = 0u;
+        high_x = high_y = mixed = 0u;
     }
     barrier();
     atomicMin(low_x, corner.x);
@@ -46,10 +46,10 @@ void main()
     atomicMax(high_x, corner.x);
     atomicMax(high_y, corner.y);
     if (ONE_INSTANCE == 0u && number != tile_words[4u * group_first + 1u]) {
-        atomicOr(copies, 1u);
+        atomicOr(mixed, 1u);
     }
     barrier();
-    bool shares = copies == 0u;
+    bool shares = mixed == 0u;
     if (self < MET_WORDS) {
         met[self] = shares ? 0u : 0xffffffffu;
     }
@@ -93,7 +93,7 @@ void main()
         }
     }
     bool shows = present && runs.any && outer.x <= outer.y;
-    if (shows && (cut || !append_runs(uvec2(place, number), runs))) {
-        append(LIST_LENGTHS, uvec4(place, number, floatBitsToUint(all)));
+    if (shows && (cut || !append_runs(uvec2(corner_word, number), runs))) {
+        append(TREE_BIN, uvec4(corner_word, number, floatBitsToUint(all)));
     }
 }

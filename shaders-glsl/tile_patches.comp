@@ -6,8 +6,8 @@
 void main()
 {
     begin_frame();
-    if (ONE_SOLID != 0u) {
-        take_solid(pushed.solid); // before any barrier: see take_frame()
+    if (ONE_OBJECT != 0u) {
+        take_object(pushed.object); // before any barrier: see take_frame()
     }
     share_record();
     barrier();
@@ -15,8 +15,8 @@ void main()
     share_patches();
     barrier();
     take_shared_instance();
-    if (ONE_SOLID == 0u) {
-        take_solid(tile_instance.solid.x);
+    if (ONE_OBJECT == 0u) {
+        take_object(tile_instance.object.x);
     }
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;

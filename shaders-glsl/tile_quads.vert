@@ -13,7 +13,7 @@ void main()
     Quad quad = this_quad();
     // A draw that only warms up pipelines may read any record.
     Instance i = begin(min(quad.instance, uint(instances.length()) - 1u));
-    place_quad(quad);
+    position_quad(quad);
     hand_over(i, frame.dir_00.w);
     vec2 span = EVERYWHERE;
 #if SEARCH == SEARCH_QUADRIC

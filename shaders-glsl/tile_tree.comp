@@ -7,9 +7,9 @@ void main()
 {
     begin_frame();
     take_record();
-    take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
+    take_object(ONE_OBJECT != 0u ? pushed.object : tile_instance.object.x);
     begin_tile();
-    // Records of the last list contain the span. Records in tile order do not.
+    // Records of the last bin contain the span. Records in tile order do not.
     vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;

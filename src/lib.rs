@@ -108,21 +108,22 @@
 //!
 //! # A tour
 //!
-//! Data flows one way:
+//! Data flows one way, and a module imports from those above it:
 //!
 //! | module | what it makes of what comes before |
 //! |---|---|
+//! | [`frame`] | the planes of a picture |
 //! | [`profile`] | a polygon or an outline: a region of the half-plane |
-//! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of heights; colours; lengths along the profile |
-//! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values |
-//! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
-//! | [`search`] | searches that other crates bring, for comparison |
 //! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of heights; colours; lengths along the profile |
+//! | [`search`] | searches that other crates bring, for comparison |
+//! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
+//! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values |
+//! | `shader` | modules of SPIR-V, the blocks that they read, and the variants of pipelines |
 //! | `solid` | all that is made from one outline under an offset, without Vulkan |
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
-//! | [`frame`] | the planes of a picture |
 //!
 //! # Features
 //!
@@ -142,6 +143,7 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod maps;
+mod names;
 mod plan;
 pub mod profile;
 pub mod scene;

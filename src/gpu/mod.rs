@@ -3,38 +3,37 @@
 //! A [`Device`] is opened, or borrowed from a host. A [`Renderer`] on a device holds objects and
 //! records them into any command buffer. [`Offscreen`] does so for a whole scene, submits, waits
 //! and reads the frame back.
+//!
+//! Modules import from those before them: `vk` (raw handles), `device`, `memory`, `resources`,
+//! `content` (objects and the plan of a view), `renderer`, `offscreen`.
 #![allow(unsafe_code)]
 
-mod content;
-mod device;
-mod frame;
-mod memory;
-mod offscreen;
-mod prewarm;
-mod renderer;
-pub(crate) mod resources;
-mod scene_view;
 #[cfg(feature = "other-shaders")]
 #[doc(hidden)]
-pub use vk::compiler;
+pub mod compiler;
+mod content;
+mod device;
+mod memory;
+mod offscreen;
+mod open;
+mod renderer;
+mod resources;
 pub(crate) mod vk;
 
 pub use crate::plan::{DepthOrder, DrawPath, View, Viewport};
-pub use content::costs::{INSTANCE_BYTES, ObjectCost};
-pub use content::object_id::ObjectId;
+pub use content::objects::ObjectId;
+pub use device::budget::MemoryUse;
 pub use device::instance::VALIDATION_VARIABLE;
 pub use device::report::{DEVICE_VARIABLE, DeviceReport, devices};
-pub use device::requirements::Requirements;
-pub use device::{Device, HostDevice};
-pub use frame::output::{Output, PassFormats, PassKind};
-pub use frame::prepare::PreparedFrame;
-pub use frame::target::ComputeTarget;
 pub use memory::Buffer;
-pub use memory::budget::MemoryUse;
 pub use offscreen::{Guest, Offscreen, OffscreenOptions, Times};
-pub use prewarm::Prewarm;
+pub use open::{Device, HostDevice, Requirements};
 pub use renderer::Renderer;
+pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
+pub use renderer::prepare::PreparedFrame;
+pub use renderer::prewarm::Prewarm;
 pub use vk::call::{allocation_error, vulkan_error};
+pub use vk::output::{ComputeTarget, Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;
 

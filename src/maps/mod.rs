@@ -3,7 +3,6 @@
 mod arc;
 mod color;
 mod displacement;
-mod exact;
 mod half;
 mod halving;
 mod nearest;
@@ -13,6 +12,7 @@ mod shape_map;
 mod source;
 mod store;
 
+pub use crate::profile::Bounds;
 pub use arc::{ArcLength, ArcTable};
 pub use color::ColorMap;
 pub use displacement::{DisplacementMap, Level, SlopeFilter};
@@ -21,7 +21,7 @@ pub use rounding::round_down;
 pub use source::{MapSource, Measured};
 pub use store::EncodedMap;
 
-use crate::settings::name_of;
+use crate::names::name_of;
 
 /// Largest number of texels on a side of a map.
 pub const MAX_SIDE: u32 = 16_384;
@@ -85,17 +85,4 @@ pub struct ShapeMap {
     pub form: Vec<bool>,
     /// The part of the half-plane that the solid occupies.
     pub bounds: Bounds,
-}
-
-/// The rectangle of the half-plane that the solid occupies, object units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Smallest `r`.
-    pub r_min: f64,
-    /// Largest `r`.
-    pub r_max: f64,
-    /// Lowest `z`.
-    pub z_min: f64,
-    /// Highest `z`.
-    pub z_max: f64,
 }

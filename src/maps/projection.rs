@@ -1,6 +1,6 @@
 //! The ways to lay a texture onto a solid.
 
-use crate::settings::name_of;
+use crate::names::name_of;
 
 /// The projection that lays a texture onto a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,6 +1,6 @@
 //! Bakes a shape map, and samples it as the shaders do.
 
-use super::{BakeOptions, Bounds, MAX_SIDE, MapSource, ShapeMap};
+use super::{BakeOptions, MAX_SIDE, MapSource, ShapeMap};
 use crate::error::{Error, ErrorKind, Result};
 use crate::profile::Profile;
 use glam::DVec2;
@@ -130,18 +130,5 @@ impl ShapeMap {
         };
         let row = |j: f64| [texel(x, j), texel(x + 1.0, j)];
         ([row(y), row(y + 1.0)], u - x, v - y)
-    }
-}
-
-impl Bounds {
-    /// The smallest rectangle that contains both.
-    #[must_use]
-    pub fn union(self, other: Self) -> Self {
-        Self {
-            r_min: self.r_min.min(other.r_min),
-            r_max: self.r_max.max(other.r_max),
-            z_min: self.z_min.min(other.z_min),
-            z_max: self.z_max.max(other.z_max),
-        }
     }
 }

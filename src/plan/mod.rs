@@ -8,18 +8,17 @@
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;
-mod rectangle;
 pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, LIST_LENGTHS_OF, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, LIST_LENGTHS, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 use crate::shader::generated::{
-    BOX_INDICES, GROUP_PIXELS, HULL_SIDES, LIST_LENGTHS, STRIP_INDICES, TILE_LISTS,
+    BOX_INDICES, GROUP_PIXELS, RING_CORNERS, STRIP_INDICES, TILE_BINS, TREE_BIN,
 };
-use crate::shader::{Kind, Variant};
+use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -39,11 +38,12 @@ pub(crate) struct FramePlan {
     /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
-    /// Records and lists of tiles.
+    /// Records of tiles, and the copies of tiles that have several.
     pub words: Vec<u32>,
-    /// Words that the device fills with lists. The first of them are zeroed before that.
-    pub list_words: u32,
-    pub list_heads: u32,
+    /// Words of the bins, to which the device sorts tiles by the length of their lists of patches.
+    pub bin_words: u32,
+    /// Words of the bins' heads, which come first and are zeroed before that.
+    pub bin_head_words: u32,
     /// One path per object.
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
@@ -87,28 +87,8 @@ pub(crate) enum Call {
     Quads(Range<u32>),
     /// Work groups.
     Dispatch(u32, Pushed),
-    /// Work groups; the head at this word of the lists holds their number.
+    /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
-}
-
-/// `Pushed` of `compute.glsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Pushed {
-    /// Number of the first record.
-    pub first: u32,
-    /// Number of records.
-    pub count: u32,
-    /// Word of the heads of their lists.
-    pub heads: u32,
-    /// Word at which the tiles of their lists begin.
-    pub tiles: u32,
-    /// Number of the list that is read.
-    pub list: u32,
-    /// Number of the only solid.
-    pub solid: u32,
-    /// Number of the only instance.
-    pub instance: u32,
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
@@ -158,7 +138,7 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
-            one_solid: u32::from(alone),
+            one_object: u32::from(alone),
             one_instance: u32::from(alone && of.copies().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant
@@ -238,7 +218,7 @@ impl FramePlan {
                     self.parts[n].tables = true;
                 }
                 Path::Cells { frusta, cut } => {
-                    let corners = |frusta: u32| 6 * HULL_SIDES * frusta;
+                    let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
                     let all = BOX_INDICES + STRIP_INDICES;
                     let of_run = |run: &Range<u32>| {
                         draw(corners(run.end - run.start), all + corners(run.start))
@@ -324,7 +304,7 @@ impl FramePlan {
             let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
             dealt.layers.iter().map(counted).sum()
         };
-        if sum(list_words) > with.room() || !with.pays_to_list(sum(|tiles| tiles)) {
+        if sum(bin_words) > with.room() || !with.pays_to_list(sum(|tiles| tiles)) {
             dealt.layers.iter_mut().for_each(LayerTiles::unlist);
         }
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
@@ -334,7 +314,7 @@ impl FramePlan {
             let shows = !copies.is_empty();
             let lists = || !dealt.layers[layer_of[batch] as usize].listed.is_empty();
             self.parts[n].tables = shows;
-            self.parts[n].patches = shows && visible.takes_lists(batch) && lists();
+            self.parts[n].patches = shows && visible.lists_patches(batch) && lists();
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
@@ -365,11 +345,11 @@ impl FramePlan {
         let several = tiles.iter().any(|t| !t.several.is_empty());
         self.compares_depths = several || with.host_depths;
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.list_heads = 4 * TILE_LISTS * tiles.iter().map(heads).sum::<u32>();
+        self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
         let mut later = Vec::new();
         let mut head = 0;
-        self.list_words = self.list_heads;
+        self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = Variant {
                 depth_test: u32::from(self.compares_depths),
@@ -384,27 +364,27 @@ impl FramePlan {
                 call,
             };
             let first = &objects[layer.objects[0] as usize];
-            let (solid, instance) = (first.number, first.first_instance);
+            let (object, instance) = (first.number, first.first_instance);
             for records in chunks(&tiles.listed) {
                 let count = records.end - records.start;
-                let (first, tiles) = (records.start, self.list_words);
-                let pushed = |list| Pushed {
+                let (first, begin) = (records.start, self.bin_words);
+                let pushed = |bin| Pushed {
                     first,
                     count,
                     heads: head,
-                    tiles,
-                    list,
-                    solid,
+                    records: begin,
+                    bin,
+                    object,
                     instance,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Dispatch(groups, pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
-                // The last list holds tiles that walk the tree.
-                let lengths = LIST_LENGTHS_OF.into_iter().chain([1]);
-                for (list, list_length) in (0..).zip(lengths) {
-                    let call = Call::Indirect(head + 4 * list, pushed(list));
-                    let kind = match list < LIST_LENGTHS {
+                // The last bin holds tiles that walk the tree.
+                let lengths = LIST_LENGTHS.into_iter().chain([1]);
+                for (bin, list_length) in (0..).zip(lengths) {
+                    let call = Call::Indirect(head + 4 * bin, pushed(bin));
+                    let kind = match bin < TREE_BIN {
                         true => Kind::TilePatches,
                         false => Kind::TileTree,
                     };
@@ -414,15 +394,15 @@ impl FramePlan {
                     };
                     later.push(step(1, kind, variant, call));
                 }
-                head += 4 * TILE_LISTS;
-                self.list_words += 4 * TILE_LISTS * count;
+                head += 4 * TILE_BINS;
+                self.bin_words += 4 * TILE_BINS * count;
             }
             let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
             let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
             for (phase, kind, records) in alone.chain(shared) {
                 let pushed = Pushed {
                     first: records.start,
-                    solid,
+                    object,
                     instance,
                     ..Pushed::default()
                 };
@@ -455,13 +435,13 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
             .or(of_outline),
         surface,
         half_side: of.object.profile.radius,
-        lists: with.takes_lists(of),
+        permits_lists: with.permits_lists(of),
     }
 }
 
-/// Words of the lists of this many tiles: see `compute.glsl`.
-fn list_words(tiles: u32) -> u32 {
-    4 * TILE_LISTS * (tiles.div_ceil(MOST_GROUPS) + tiles)
+/// Words of the bins of this many tiles: see `compute.glsl`.
+fn bin_words(tiles: u32) -> u32 {
+    4 * TILE_BINS * (tiles.div_ceil(MOST_GROUPS) + tiles)
 }
 
 /// Runs of records, each short enough for one dispatch.

@@ -6,7 +6,7 @@ use super::view::View;
 use crate::scene::Object;
 use crate::shader::Search;
 use crate::shader::generated::{
-    GROUP_PIXELS, LIST_LENGTHS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST,
+    GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
 use crate::shader::{Kind, Variant};
 use crate::solid::offset_surface::OffsetSurface;
@@ -117,56 +117,41 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 const LISTED_PIXELS: [u64; 2] = [300, 3];
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
-pub(crate) const LIST_LENGTHS_OF: [u32; LIST_LENGTHS as usize] =
+pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// The possible paths of an object, in the order in which they are tried. The last one is
-    /// always valid.
-    fn candidates(&self, of: &PlanObject) -> impl Iterator<Item = Path> + use<> {
-        let copies = of.object.placements().len();
-        let wraps = self.shows_patches(of) && !self.compute;
-        let cells = wraps && self.passes_cells && copies <= MOST_PROXIES;
-        // The box is as good as tiles for one copy whose outline is not used.
-        let outlined = self.uses_outline(of);
-        let tiles = self.compute || (of.variant.is_shaded() && (copies > 1 || outlined));
-        let cells_of = |cut| Path::Cells {
-            frusta: Vec::new(),
-            cut,
-        };
-        let may_cut = self.clips && proxy::may_be_cut(of.object);
-        [
-            cells.then(|| cells_of(false)),
-            (cells && may_cut).then(|| cells_of(true)),
-            tiles.then_some(Path::Tiles),
-            (!self.compute).then_some(Path::Box),
-        ]
-        .into_iter()
-        .flatten()
+    /// True if an object may be drawn by cells. The view, and the sides of the box if they cut it,
+    /// may still rule that out.
+    fn takes_cells(&self, of: &PlanObject) -> bool {
+        let few = of.copies().len() <= MOST_PROXIES;
+        self.shows_patches(of) && !self.compute && self.passes_cells && few
     }
 
-    /// The path of an object in a view: the first candidate that shows all of it.
+    /// True if cells may be clipped by the sides of an object's box.
+    fn clips_cells(&self, of: &PlanObject) -> bool {
+        self.clips && proxy::may_be_cut(of.object)
+    }
+
+    /// True if an object may be drawn by tiles. The box is as good as tiles for one copy whose
+    /// outline is not used.
+    fn takes_tiles(&self, of: &PlanObject) -> bool {
+        let pays = of.copies().len() > 1 || self.uses_outline(of);
+        self.compute || (of.variant.is_shaded() && pays)
+    }
+
+    /// The path of an object in a view: cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
-        let mut chosen = Path::Box;
-        for candidate in self.candidates(of) {
-            match candidate {
-                Path::Cells { cut, .. } => {
-                    let seen = of.surface.and_then(|s| {
-                        let least = self.least_pixels(of.copies().len());
-                        proxy::frusta(of.object, s, view, least).filter(|found| found.1 == cut)
-                    });
-                    if let Some((frusta, cut)) = seen {
-                        return Path::Cells { frusta, cut };
-                    }
-                }
-                Path::Tiles if view.parallel => {}
-                other => {
-                    chosen = other;
-                    break;
-                }
-            }
+        let surface = of.surface.filter(|_| self.takes_cells(of));
+        let cells = surface.and_then(|surface| {
+            let least = self.least_pixels(of.copies().len());
+            proxy::frusta(of.object, surface, view, least)
+        });
+        match cells {
+            Some((frusta, cut)) if !cut || self.clips_cells(of) => Path::Cells { frusta, cut },
+            _ if self.takes_tiles(of) && !view.parallel => Path::Tiles,
+            _ => Path::Box,
         }
-        chosen
     }
 
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
@@ -186,12 +171,12 @@ impl Conditions {
     }
 
     /// True if patches may be listed for tiles of an object.
-    pub fn takes_lists(&self, of: &PlanObject) -> bool {
-        self.may_list(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
+    pub fn permits_lists(&self, of: &PlanObject) -> bool {
+        self.may_permit_lists(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
     }
 
     /// True if patches may be listed for tiles of an object under some offset.
-    fn may_list(&self, of: &PlanObject) -> bool {
+    fn may_permit_lists(&self, of: &PlanObject) -> bool {
         self.shows_patches(of) && self.compute && self.subgroup_size >= LEAST_SUBGROUP
     }
 
@@ -226,37 +211,38 @@ impl Conditions {
     }
 
     /// Every pipeline that an object may need while parameters, lights, camera and placements
-    /// change: the pipelines of all its candidates. `variant`: the result of
+    /// change: the pipelines of all its paths. `variant`: the result of
     /// [`variants`](super::variants) for the object.
     pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
-        let mut kinds = Vec::new();
-        for path in self.candidates(of) {
-            match path {
-                Path::Cells { cut: false, .. } => kinds.push((Kind::Cells, [1].as_slice())),
-                Path::Cells { cut: true, .. } => {
-                    kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
-                }
-                Path::Box => kinds.push((Kind::Boxes, &[0, 1])),
-                Path::Tiles if !self.compute => kinds.push((Kind::Quads, &[0, 1])),
-                Path::Tiles => {
-                    let may_cut = proxy::may_be_cut(of.object);
-                    let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
-                    if self.may_list(of) {
-                        kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
-                    }
-                    kinds.extend([
-                        (Kind::TileTree, [0, 1].as_slice()),
-                        (Kind::TileCopies, &[0, 1]),
-                    ]);
-                }
+        let mut kinds: Vec<(Kind, &[u32])> = Vec::new();
+        if self.takes_cells(of) {
+            kinds.push((Kind::Cells, &[1]));
+            if self.clips_cells(of) {
+                kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
             }
+        }
+        if self.takes_tiles(of) && !self.compute {
+            kinds.push((Kind::Quads, &[0, 1]));
+        } else if self.takes_tiles(of) {
+            let may_cut = proxy::may_be_cut(of.object);
+            let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
+            if self.may_permit_lists(of) {
+                kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
+            }
+            kinds.extend([
+                (Kind::TileTree, [0, 1].as_slice()),
+                (Kind::TileCopies, &[0, 1]),
+            ]);
+        }
+        if !self.compute {
+            kinds.push((Kind::Boxes, &[0, 1]));
         }
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
         // An offset may move the size of the tables across the limit.
         let large = of
             .surface
             .is_some_and(|s| 4 * s.tables().own > 3 * self.own_vectors);
-        let own: &[u32] = match (variant.one_solid == 0, large) {
+        let own: &[u32] = match (variant.one_object == 0, large) {
             (true, _) => &[0],
             (false, false) => &[1],
             (false, true) => &[0, 1],
@@ -266,19 +252,16 @@ impl Conditions {
         } else {
             &[false, true]
         };
-        let lengths: Vec<u32> = if self.may_list(of) {
-            std::iter::once(0).chain(LIST_LENGTHS_OF).collect()
+        let lengths: Vec<u32> = if self.may_permit_lists(of) {
+            std::iter::once(0).chain(LIST_LENGTHS).collect()
         } else {
             vec![0]
         };
         let mut data = Vec::new();
-        for &lights in counts {
-            for &own_tables in own {
-                for &depths in depths {
-                    for &list_length in &lengths {
-                        data.push((lights, own_tables, u32::from(depths), list_length));
-                    }
-                }
+        for (&lights, &own_tables) in counts.iter().flat_map(|c| own.iter().map(move |o| (c, o))) {
+            for &depths in depths {
+                let of = |&length: &u32| (lights, own_tables, u32::from(depths), length);
+                data.extend(lengths.iter().map(of));
             }
         }
         let forms = variant.forms();
@@ -327,7 +310,7 @@ impl PlanObject<'_> {
 
     /// Patches that lists of the object's tiles are made from.
     pub fn listed_patches(&self) -> u64 {
-        self.surface.map_or(0, |s| s.listed().len() as u64 / 3)
+        self.surface.map_or(0, |s| s.patches() as u64)
     }
 
     /// True if the box shows no more than the surface's patches.

@@ -10,7 +10,7 @@ mod outline;
 mod polygon;
 mod region;
 
-pub use outline::{Segment, loop_area};
+pub use outline::{Bounds, Segment, loop_area};
 pub use region::{FillRule, Grid, Region};
 
 use crate::error::Result;

@@ -1,8 +1,33 @@
 //! Queries of an [`Outline`]: bounds, inside, exact distances and gradients.
 
 use super::Outline;
-use crate::maps::Bounds;
 use glam::DVec2;
+
+/// The rectangle of the half-plane that the solid occupies, object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest `r`.
+    pub r_min: f64,
+    /// Largest `r`.
+    pub r_max: f64,
+    /// Lowest `z`.
+    pub z_min: f64,
+    /// Highest `z`.
+    pub z_max: f64,
+}
+
+impl Bounds {
+    /// The smallest rectangle that contains both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            r_min: self.r_min.min(other.r_min),
+            r_max: self.r_max.max(other.r_max),
+            z_min: self.z_min.min(other.z_min),
+            z_max: self.z_max.max(other.z_max),
+        }
+    }
+}
 
 /// A straight piece of a boundary from `a` to `b`, with the solid on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Copies of one object, cluster by cluster.
 pub(crate) struct Clusters {
-    /// Copies by their index in the object's list; each cluster is a range of these.
+    /// Copies by their index among all copies; each cluster is a range of these.
     order: Vec<u32>,
     /// Placements in the order of `order`, since neighbours are read together.
     placements: Vec<Placement>,
@@ -35,11 +35,11 @@ impl Clusters {
     pub fn new(placements: &[Placement]) -> Self {
         let (low, high) = ends(placements.iter().map(|p| p.position));
         let cell = ((high - low).max_element() / f64::from(1u32 << BITS)).max(f64::MIN_POSITIVE);
-        let mut placed: Vec<(u64, u32)> = (placements.par_iter().enumerate())
+        let mut keyed: Vec<(u64, u32)> = (placements.par_iter().enumerate())
             .map(|(n, p)| (along_curve((p.position - low) / cell), n as u32))
             .collect();
-        placed.par_sort_unstable();
-        let order: Vec<u32> = placed.into_par_iter().map(|(_, n)| n).collect();
+        keyed.par_sort_unstable();
+        let order: Vec<u32> = keyed.into_par_iter().map(|(_, n)| n).collect();
         let placements: Vec<Placement> = order
             .par_iter()
             .map(|&copy| placements[copy as usize])
@@ -69,10 +69,10 @@ impl Clusters {
         &self.all
     }
 
-    /// The copy at index `place` of the clusters' order: its index in the object's list, and its
+    /// The copy of this rank in the order of the clusters: its index among all copies, and its
     /// placement.
-    pub fn at(&self, place: u32) -> (u32, &Placement) {
-        (self.order[place as usize], &self.placements[place as usize])
+    pub fn at(&self, rank: u32) -> (u32, &Placement) {
+        (self.order[rank as usize], &self.placements[rank as usize])
     }
 
     /// The least `value` of any copy. `bound` must not exceed the `value` of any copy in a cluster.
@@ -179,8 +179,8 @@ mod tests {
             for cluster in clusters.all() {
                 let sides = cluster.high - cluster.low;
                 area += sides.x * sides.y;
-                for place in cluster.range.clone() {
-                    let (copy, placement) = clusters.at(place);
+                for rank in cluster.range.clone() {
+                    let (copy, placement) = clusters.at(rank);
                     found.push(copy);
                     assert_eq!(*placement, placements[copy as usize]);
                     let (position, scale) = (placement.position, placement.scale);

@@ -6,27 +6,12 @@
 //! `u = 1 - z = u' / k - high`, so the offset keeps its form: `k w = k (e - b high) + b min(u', k
 //! (c + high))`.
 
-use super::{Object, Offset, Placement};
+use super::{Clip, Object, Placement};
 use crate::profile::{Outline, Profile, Raster};
+use crate::surface::Offset;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
-
-/// The part of a solid that the shape box cuts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Clip {
-    /// The box cuts nothing that an offset adds: it grows with the offset. Cells still cut
-    /// replicas.
-    #[default]
-    None,
-    /// The box cuts everything outside `[-R, R]^2 x [0, 1]`, as in the papers.
-    Box,
-}
-
-impl Clip {
-    /// Every value with its name in scene files.
-    pub const NAMES: [(&'static str, Self); 2] = [("none", Self::None), ("box", Self::Box)];
-}
 
 /// Enlargement of a shape box over the profile's, object units.
 ///

@@ -4,7 +4,7 @@
 //! A scene needs no file. An engine fills the same values:
 //!
 //! ```
-//! use glam::DVec3;
+//! use glam::{DQuat, DVec3};
 //! use revmap::profile::Profile;
 //! use revmap::scene::{Camera, Object, Scene};
 //! use std::sync::Arc;
@@ -31,13 +31,14 @@ mod copies;
 mod growth;
 mod object;
 
+pub use crate::surface::Offset;
 pub use camera::CameraFrame;
 pub(crate) use clusters::Cluster;
 pub use copies::Copies;
-pub use growth::{Clip, GrownObject, GrownProfiles, Growth};
-pub use object::{BumpForm, Object, Offset, Placement, Specular, Texturing};
+pub use growth::{GrownObject, GrownProfiles, Growth};
+pub use object::{BumpForm, Clip, Object, Specular, Texturing};
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// A whole scene.
 #[derive(Clone, Debug)]
@@ -116,6 +117,28 @@ impl Camera {
             up: DVec3::Z,
             fov_y: Self::FOV_Y,
             shift: [0.0; 2],
+        }
+    }
+}
+
+/// The placement of an object's box in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Position of the middle of the box's lower face, world units.
+    pub position: DVec3,
+    /// Unit quaternion.
+    pub rotation: DQuat,
+    /// `S`: factors along the object's axes, each positive.
+    pub scale: DVec3,
+}
+
+impl Default for Placement {
+    /// Upright at the origin, one world unit high.
+    fn default() -> Self {
+        Self {
+            position: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            scale: DVec3::ONE,
         }
     }
 }

@@ -1,9 +1,9 @@
-//! A solid of revolution: profile, texturing, offset of the surface, and placement.
+//! A solid of revolution: profile, texturing, offset of the surface, and placements.
 
-use super::{Clip, Cluster, Copies};
+use super::{Cluster, Copies, Placement};
 use crate::maps::{ColorMap, DisplacementMap, Projection};
 use crate::profile::Profile;
-use glam::{DQuat, DVec3};
+use crate::surface::Offset;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -130,49 +130,20 @@ impl Object {
     }
 }
 
-/// The placement of an object's box in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// Position of the middle of the box's lower face, world units.
-    pub position: DVec3,
-    /// Unit quaternion.
-    pub rotation: DQuat,
-    /// `S`: factors along the object's axes, each positive.
-    pub scale: DVec3,
+/// The part of a solid that the shape box cuts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// The box cuts nothing that an offset adds: it grows with the offset. Cells still cut
+    /// replicas.
+    #[default]
+    None,
+    /// The box cuts everything outside `[-R, R]^2 x [0, 1]`, as in the papers.
+    Box,
 }
 
-impl Default for Placement {
-    /// Upright at the origin, one world unit high.
-    fn default() -> Self {
-        Self {
-            position: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-            scale: DVec3::ONE,
-        }
-    }
-}
-
-/// The offset `w(z)` between the profile and the surface `F = d - w = 0`:
-/// `w = extend + bevel * min(u, chamfer)`, with the depth `u = 1 - z`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offset {
-    /// `e`, object units; negative insets.
-    pub extend: f64,
-    /// `b`, slope.
-    pub bevel: f64,
-    /// `c`, depth in `[0, 1]` down to which the bevel increases.
-    pub chamfer: f64,
-}
-
-impl Default for Offset {
-    /// The profile itself: `w = 0`. A bevel set on this default extends to the bottom.
-    fn default() -> Self {
-        Self {
-            extend: 0.0,
-            bevel: 0.0,
-            chamfer: 1.0,
-        }
-    }
+impl Clip {
+    /// Every value with its name in scene files.
+    pub const NAMES: [(&'static str, Self); 2] = [("none", Self::None), ("box", Self::Box)];
 }
 
 /// The highlight of Blinn-Phong shading.

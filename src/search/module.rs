@@ -1,6 +1,6 @@
 //! The modules of a search. Build scripts include this file, so it depends on nothing.
 
-/// The place in which a module traces rays.
+/// The stage and geometry by which a module traces rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pass {
     /// Fragments of shape boxes and of tiles.
@@ -34,7 +34,7 @@ pub enum Output {
 /// One module of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SearchModule {
-    /// The place in which rays are traced.
+    /// The stage and geometry by which rays are traced.
     pub pass: Pass,
     /// The supported features of solids.
     pub features: Features,

@@ -1,6 +1,6 @@
 //! Searches of other crates, as part of a variant.
 
-use super::list::{self, Module};
+use super::catalogue::{self, Module};
 use crate::error::{Error, ErrorKind, Result};
 use crate::maps::MapFormat;
 use crate::search::{Features, Output, Pass, Reads, Search, SearchModule};
@@ -73,11 +73,11 @@ impl External {
     }
 
     /// The search whose vertices pass the inputs of this search's fragments.
-    pub const fn vertices(self) -> list::Search {
+    pub const fn vertices(self) -> catalogue::Search {
         match (&self.search.reads, &self.search.steps) {
-            (Reads::Map { .. }, _) => list::Search::Live,
-            (Reads::Table(_), None) => list::Search::Quadric,
-            (Reads::Table(_), Some(_)) => list::Search::External,
+            (Reads::Map { .. }, _) => catalogue::Search::Live,
+            (Reads::Table(_), None) => catalogue::Search::Quadric,
+            (Reads::Table(_), Some(_)) => catalogue::Search::External,
         }
     }
 
@@ -89,22 +89,22 @@ impl External {
     /// The search's own description of `module`; none if the search has no such module.
     pub fn module(self, module: &Module) -> Option<SearchModule> {
         let pass = match module.entry {
-            list::Entry::Tree => Pass::Fragment,
-            list::Entry::TileTree => Pass::Tile,
-            list::Entry::TileCopies => Pass::Copies,
+            catalogue::Entry::Tree => Pass::Fragment,
+            catalogue::Entry::TileTree => Pass::Tile,
+            catalogue::Entry::TileCopies => Pass::Copies,
             _ => return None,
         };
         let output = match module.output {
-            list::Output::Color => Output::Color,
-            list::Output::Planes => Output::Planes,
-            list::Output::Depth | list::Output::DepthOrtho => return None,
+            catalogue::Output::Color => Output::Color,
+            catalogue::Output::Planes => Output::Planes,
+            catalogue::Output::Depth | catalogue::Output::DepthOrtho => return None,
         };
         Some(SearchModule {
             pass,
             features: match module.features {
-                list::Features::Plain => Features::Plain,
-                list::Features::Textured => Features::Textured,
-                list::Features::Full => Features::Full,
+                catalogue::Features::Plain => Features::Plain,
+                catalogue::Features::Textured => Features::Textured,
+                catalogue::Features::Full => Features::Full,
             },
             output,
             table: self.reads_table(),

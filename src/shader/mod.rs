@@ -1,14 +1,21 @@
-//! The output of `build.rs` from `shaders-glsl/`, and the variants from which pipelines are made.
+//! The GLSL of `shaders-glsl/` in Rust: modules and numbers that `build.rs` makes of it, blocks of
+//! data that it reads, and the variants from which pipelines are made.
 
+mod blocks;
+mod catalogue;
 mod external;
-mod list;
 mod module;
 mod variant;
 
-pub use list::{Module, Search};
+pub use blocks::{
+    FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, ShadowBlock,
+};
+#[cfg(test)]
+pub(crate) use catalogue::modules;
+pub use catalogue::{Module, Search};
 #[cfg(feature = "other-shaders")]
-pub use module::listed;
-pub use module::{depth_less, unpacked, words};
+pub use module::catalogued;
+pub use module::{depth_less, words};
 pub(crate) use variant::is_beveled;
 pub use variant::{Kind, ShadowCasters, Variant};
 
@@ -20,4 +27,4 @@ pub mod generated {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

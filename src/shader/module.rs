@@ -1,6 +1,7 @@
 //! SPIR-V words by module.
 
-use super::list::{Module, modules};
+use super::catalogue::{Module, modules};
+use crate::search::unpacked;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -9,9 +10,9 @@ use std::sync::OnceLock;
 static ARCHIVE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
 
 /// The byte range of each module.
-fn places() -> &'static HashMap<Module, Range<usize>> {
-    static PLACES: OnceLock<HashMap<Module, Range<usize>>> = OnceLock::new();
-    PLACES.get_or_init(|| {
+fn byte_ranges() -> &'static HashMap<Module, Range<usize>> {
+    static RANGES: OnceLock<HashMap<Module, Range<usize>>> = OnceLock::new();
+    RANGES.get_or_init(|| {
         let mut begin = 0;
         let of = |(module, bytes): (Module, &usize)| {
             let range = begin..begin + bytes;
@@ -26,32 +27,14 @@ fn places() -> &'static HashMap<Module, Range<usize>> {
 /// The module of [`modules`] that replaces this one: itself, or the least general one that can do
 /// its work.
 #[must_use]
-pub fn listed(module: &Module) -> Option<Module> {
-    module.covered_by(|m| places().contains_key(m))
+pub fn catalogued(module: &Module) -> Option<Module> {
+    module.covered_by(|m| byte_ranges().contains_key(m))
 }
 
 /// The words of the module that replaces this one; `None` if no module can.
 #[must_use]
 pub fn words(module: &Module) -> Option<Vec<u32>> {
-    unpacked(ARCHIVE.get(places().get(&listed(module)?)?.clone())?)
-}
-
-/// Unpacks words that `build.rs` packed. The bytes are deflated. A byte holds seven bits of a word,
-/// the lowest first; the eighth bit is set if more bytes follow.
-#[must_use]
-pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
-    let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
-    let mut words = Vec::with_capacity(bytes.len() / 2);
-    let (mut word, mut shift) = (0u32, 0);
-    for byte in bytes {
-        word |= u32::from(byte & 127).checked_shl(shift)?;
-        shift += 7;
-        if byte & 128 == 0 {
-            words.push(word);
-            (word, shift) = (0, 0);
-        }
-    }
-    Some(words)
+    unpacked(ARCHIVE.get(byte_ranges().get(&catalogued(module)?)?.clone())?)
 }
 
 /// A module's words for reversed depth. Fragments that declare a depth no nearer than their

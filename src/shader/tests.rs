@@ -1,16 +1,16 @@
-//! Rust and GLSL agree on shared bytes: block layouts, specialisation constants, the list of
-//! modules, and the stored SPIR-V for builds without shaderc.
+//! Rust and GLSL agree on shared bytes: block layouts, specialisation constants, the
+//! catalogue of modules, and the stored SPIR-V for builds without shaderc.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::gpu::resources::blocks::{
-    FrameBlock, InstanceBlock, LightBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
-};
 use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
+use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::list::{Entry, Features, Output, modules};
-use crate::shader::module::unpacked;
-use crate::shader::{Kind, Module, ShadowCasters, Variant, depth_less, generated as g, words};
+use crate::shader::catalogue::{Entry, Features, Output, modules};
+use crate::shader::{
+    FrameBlock, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE, ObjectBlock, ShadowBlock,
+    ShadowCasters, Variant, depth_less, generated as g, words,
+};
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 const MODULES: usize = 70;
 
 /// Opcodes and decorations of the SPIR-V specification that these tests read.
-mod op {
+pub(crate) mod op {
     pub const NAME: u32 = 5;
     pub const MEMBER_NAME: u32 = 6;
     pub const DECORATE: u32 = 71;
@@ -29,7 +29,7 @@ mod op {
     pub const OFFSET: u32 = 35;
 }
 
-fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {
+pub(crate) fn instructions(words: &[u32]) -> Vec<(u32, &[u32])> {
     let mut all = Vec::new();
     let mut rest = &words[5..];
     while let Some(first) = rest.first() {
@@ -108,8 +108,8 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
     assert_layout!(words, "Light", LightBlock { towards, color });
     assert_layout!(
         words,
-        "Solid",
-        SolidBlock {
+        "Object",
+        ObjectBlock {
             map,
             bounds,
             offset,
@@ -120,15 +120,15 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             cells,
             instances,
             patches,
-            hull
+            parts
         }
     );
     assert_layout!(
         words,
         "ShadowBlock",
         ShadowBlock {
-            shadow_batches,
-            shadow_solids
+            shadow_count,
+            shadow_objects
         }
     );
     assert_layout!(
@@ -139,11 +139,11 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             rotation,
             scale_depth,
             origin,
-            solid
+            object
         }
     );
     assert_eq!(size_of::<InstanceBlock>(), 80);
-    assert!(size_of::<SolidBlock>() <= SOLID_STRIDE as usize);
+    assert!(size_of::<ObjectBlock>() <= OBJECT_STRIDE as usize);
 }
 
 /// The comparison must fail when a member moves.
@@ -192,7 +192,7 @@ fn a_variant_sets_every_specialisation_constant() {
         .iter()
         .map(|(id, _)| *id)
         // Constants of the device.
-        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID])
+        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID, g::FETCHED_CELLS_ID])
         .collect();
     let mut all = BTreeSet::new();
     for module in modules() {
@@ -209,7 +209,7 @@ fn kept_file(name: &str) -> String {
     format!("{}/shaders-spirv/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The list of modules is finite and of known length, so that any growth is visible.
+/// The catalogue of modules is finite and of known length, so that any growth is visible.
 #[test]
 fn modules_are_few_and_small() {
     let all = modules();
@@ -304,66 +304,6 @@ fn reachable_variants_have_modules() {
             }
         }
     }
-}
-
-/// The table of descriptors agrees with every binding that a module reads.
-#[test]
-fn descriptors_are_those_of_the_shaders() {
-    const VARIABLE: u32 = 59;
-    const POINTER: u32 = 32;
-    const SAMPLED: u32 = 27;
-    const IMAGE: u32 = 25;
-    const ARRAY: u32 = 28;
-    let mut seen = BTreeSet::new();
-    for module in modules() {
-        let words = words(&module).unwrap();
-        let all = instructions(&words);
-        let decorated = |id: u32, what: u32| {
-            let of =
-                |(code, w): &&(u32, &[u32])| *code == op::DECORATE && w[0] == id && w[1] == what;
-            all.iter().find(of).map(|(_, w)| w[2])
-        };
-        let defined = |id: u32| {
-            *all.iter()
-                .find(|(code, w)| is_type(*code) && w[0] == id)
-                .unwrap()
-        };
-        for (_, w) in all.iter().filter(|(code, _)| *code == VARIABLE) {
-            let (Some(set), Some(binding)) = (decorated(w[1], 34), decorated(w[1], 33)) else {
-                continue;
-            };
-            let (code, pointer) = defined(w[0]);
-            assert_eq!(code, POINTER);
-            let mut of = defined(pointer[2]);
-            if of.0 == ARRAY {
-                of = defined(of.1[1]);
-            }
-            use ash::vk::DescriptorType as T;
-            let wanted: &[T] = match (w[2], of.0) {
-                (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
-                (_, IMAGE) => &[T::STORAGE_IMAGE],
-                (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
-                _ => &[T::STORAGE_BUFFER],
-            };
-            let known = crate::gpu::vk::descriptors::SETS[set as usize][binding as usize];
-            assert!(
-                wanted.contains(&known.kind),
-                "{}: {set}, {binding}",
-                module.name()
-            );
-            seen.insert((set, binding));
-        }
-    }
-    let all: usize = crate::gpu::vk::descriptors::SETS
-        .iter()
-        .map(|set| set.len())
-        .sum();
-    assert_eq!(seen.len(), all, "bindings that no shader reads");
-}
-
-/// True if an opcode defines a type.
-fn is_type(code: u32) -> bool {
-    (19..=39).contains(&code)
 }
 
 /// Fragments that set a depth declare its side of their triangle; for reversed depth, the other

@@ -6,9 +6,9 @@
 //! [`Conditions::reachable`](crate::plan::Conditions::reachable) lists all variants that can follow
 //! from it.
 
+use super::catalogue::{Entry, Features, Module, Output, Search};
 use super::external::External;
 use super::generated as g;
-use super::list::{Entry, Features, Module, Output, Search};
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
@@ -89,10 +89,10 @@ pub struct Variant {
     /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
     /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
-    /// 1 if the draw has one solid, and a uniform buffer holds its tables.
+    /// 1 if the draw has one object, and a uniform buffer holds its tables.
     pub own_tables: u32,
-    /// 1 if there is one solid, and a uniform buffer holds it.
-    pub one_solid: u32,
+    /// 1 if there is one object, and a uniform buffer holds it.
+    pub one_object: u32,
     /// 1 if there is one instance of it. Compute stage.
     pub one_instance: u32,
     /// Search for live parameters: 1 if there may be a bevel.
@@ -117,7 +117,7 @@ impl Variant {
         list_length: 0,
         outside: 0,
         own_tables: 0,
-        one_solid: 0,
+        one_object: 0,
         one_instance: 0,
         beveled: 0,
     };
@@ -189,7 +189,7 @@ impl Variant {
             list_length: 0,
             outside: 0,
             own_tables: 0,
-            one_solid: 0,
+            one_object: 0,
             one_instance: 0,
             // A replacement for another search has only the general form.
             beveled: u32::from(
@@ -244,8 +244,8 @@ impl Variant {
         let lists = Self {
             outside: self.outside,
             own_tables: self.own_tables,
-            one_solid: self.one_solid,
-            one_instance: self.one_instance & self.one_solid,
+            one_object: self.one_object,
+            one_instance: self.one_instance & self.one_object,
             ..Self::LISTS
         };
         if kind == Kind::TileLists {
@@ -253,13 +253,13 @@ impl Variant {
         }
         let tables = (walks && self.reads_tables()) || kind == Kind::TilePatches;
         let tested = self.search == Search::Quadric && self.cells == 0;
-        let one_solid = of(self.shadow == g::SHADOW_OFF, self.one_solid);
+        let one_object = of(self.shadow == g::SHADOW_OFF, self.one_object);
         Self {
             outside: of(on_patches || (walks && tested), self.outside),
             own_tables: of(tables, self.own_tables),
             // Lavapipe 22 crashes in shadows if it treats the solid as constants.
-            one_solid,
-            one_instance: of(of_copy, self.one_instance & one_solid),
+            one_object,
+            one_instance: of(of_copy, self.one_instance & one_object),
             list_length: match kind {
                 Kind::TilePatches => self.list_length,
                 Kind::TileTree => self.list_length.min(1),
@@ -348,7 +348,7 @@ impl Variant {
             (g::KNOWN_STEPS_ID, known_steps),
             (g::OUTSIDE_ID, self.outside),
             (g::OWN_TABLES_ID, self.own_tables),
-            (g::ONE_SOLID_ID, self.one_solid),
+            (g::ONE_OBJECT_ID, self.one_object),
             (g::ONE_INSTANCE_ID, self.one_instance),
             (g::MAY_BEVEL_ID, self.beveled),
         ]

@@ -2,9 +2,8 @@
 //! data made from it.
 
 use crate::error::Result;
-use crate::scene::Offset;
 use crate::search::{Reads, Search, SearchTable};
-use crate::solid::outline_cache::OutlineCache;
+use crate::solid::outline_cache::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::table_slot::{Part, Slot};
 use crate::solid::tables::{self, GpuTables};
@@ -25,11 +24,10 @@ pub(crate) struct OffsetSurface {
 
 /// The source of a surface.
 pub(crate) enum Recipe {
-    /// Quadrics that follow the outline under an offset. The last two values are the level and the
-    /// tolerance in object units.
-    Patches(Arc<OutlineCache>, Offset, u8, f64),
+    /// Quadrics that follow a contour, at this level, within this tolerance in object units.
+    Patches(Arc<OffsetContour>, u8, f64),
     /// The table of a search, with this number of rows.
-    Search(&'static Search, Arc<OutlineCache>, Offset, u32),
+    Search(&'static Search, Arc<OffsetContour>, u32),
 }
 
 enum Made {
@@ -133,7 +131,7 @@ impl OffsetSurface {
     /// for the exact one.
     pub fn slack(&self) -> f64 {
         match self.recipe {
-            Recipe::Patches(_, _, level, tolerance) if level > 0 => tolerance,
+            Recipe::Patches(_, level, tolerance) if level > 0 => tolerance,
             _ => 0.0,
         }
     }
@@ -167,20 +165,23 @@ impl OffsetSurface {
 impl Recipe {
     fn follow(&self) -> Result<Made> {
         match self {
-            Self::Patches(outline, offset, _, tolerance) => {
-                let contour = outline.contour(offset)?;
+            Self::Patches(contour, _, tolerance) => {
                 let options = FitOptions {
                     tolerance: *tolerance,
                 };
-                let patches = fit_patches(&contour, &options);
+                let contour = contour.get().map_err(Clone::clone)?;
+                let patches = fit_patches(contour, &options);
                 let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
                 let extent = patches.iter().fold(none, |m, p| {
                     [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
                 });
                 Ok(Made::Patches(patches, extent))
             }
-            Self::Search(search, outline, offset, rows) => match search.reads {
-                Reads::Table(make) => Ok(Made::Table(make(&outline.contour(offset)?, *rows)?)),
+            Self::Search(search, contour, rows) => match search.reads {
+                Reads::Table(make) => {
+                    let contour = contour.get().map_err(Clone::clone)?;
+                    Ok(Made::Table(make(contour, *rows)?))
+                }
                 Reads::Map { .. } => Ok(Made::Table(SearchTable::default())),
             },
         }

@@ -1,6 +1,6 @@
-//! The part of a contour that does not depend on the offset.
+//! An outline, and its contours under offsets.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::profile::Profile;
 use crate::scene::Offset;
 use crate::surface::{Contour, ContourSource, OuterCylinders};
@@ -41,5 +41,34 @@ impl OutlineCache {
             Ok(source) => source.contour(offset),
             Err(error) => Err(error.clone()),
         }
+    }
+}
+
+/// The contour of an outline under an offset, made on first use. Surfaces of all levels are made
+/// from it.
+pub(crate) struct OffsetContour {
+    outline: Arc<OutlineCache>,
+    offset: Offset,
+    made: OnceLock<Result<Contour>>,
+}
+
+impl OffsetContour {
+    pub fn new(outline: &Arc<OutlineCache>, offset: &Offset) -> Self {
+        Self {
+            outline: outline.clone(),
+            offset: *offset,
+            made: OnceLock::new(),
+        }
+    }
+
+    /// True if it was made, or if making it failed.
+    pub fn is_made(&self) -> bool {
+        self.made.get().is_some()
+    }
+
+    /// The contour, or the reason why there is none.
+    pub fn get(&self) -> std::result::Result<&Contour, &Error> {
+        let make = || self.outline.contour(&self.offset);
+        self.made.get_or_init(make).as_ref()
     }
 }

@@ -1,11 +1,11 @@
 //! Proxy hulls in the form that the vertex shader expands.
 
-use crate::shader::generated::{FRUSTUM_VECTORS, HULL_SIDES, PATCHES_PER_CELL, SIDE_ROWS};
+use crate::shader::generated::{FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS, SIDE_ROWS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices pass to its fragments: the common ones, then a cell's quadrics
-/// and guards, and the box's sides.
-pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
+/// and guards, the box's sides and the frustum's number.
+pub(crate) const COMPONENTS: u32 = 4 * (13 + 2 * PATCHES_PER_CELL);
 
 /// All output components of these vertices: a position and four clip distances are added.
 pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;
@@ -22,7 +22,7 @@ pub(crate) struct GpuProxyHull {
 impl GpuProxyHull {
     pub fn new(patches: &[QuadricPatch]) -> Self {
         let options = ProxyHullOptions {
-            sides: HULL_SIDES,
+            sides: RING_CORNERS,
             patches_per_cell: PATCHES_PER_CELL,
             ..ProxyHullOptions::default()
         };
@@ -105,7 +105,7 @@ pub(crate) fn indices(frusta: u32) -> Vec<u32> {
         let at = BOX_VERTICES + 4 * strip;
         [at, at + 1, at + 2, at, at + 2, at + 3]
     });
-    let n = HULL_SIDES;
+    let n = RING_CORNERS;
     let frusta = (0..frusta).flat_map(move |frustum| {
         (0..n).flat_map(move |side| {
             let (a, b) = (frustum * 2 * n, frustum * 2 * n + n);
@@ -133,7 +133,7 @@ mod tests {
                 .iter()
                 .all(|v| (BOX_VERTICES..BOX_VERTICES + 16 * SIDE_ROWS).contains(v))
         );
-        assert_eq!(frusta.len() as u32, 3 * 6 * HULL_SIDES);
-        assert_eq!(frusta.iter().max(), Some(&(3 * 2 * HULL_SIDES - 1)));
+        assert_eq!(frusta.len() as u32, 3 * 6 * RING_CORNERS);
+        assert_eq!(frusta.iter().max(), Some(&(3 * 2 * RING_CORNERS - 1)));
     }
 }

@@ -1,21 +1,20 @@
 //! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
 
 use crate::search::SearchTable;
-use crate::shader::generated::{LISTED_PATCHES, MOST_OWN_VECTORS, PATCH_ROWS, PATCH_VECTORS};
+use crate::shader::generated::{LISTED_PATCHES, PATCH_ROWS};
 use crate::surface::{GpuPatch, QuadricPatch, Tables};
-use ash::vk;
 
-/// A table that may be placed anywhere in a buffer.
+/// A table that may be stored anywhere in a buffer.
 pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
     /// Number of vectors, from the first on, that the search itself reads.
     pub own: usize,
-    /// The words of `Solid.patches` of `blocks.glsl` after the first vector's number.
+    /// The words of `Object.patches` of `blocks.glsl` after the first vector's number.
     facts: [u32; 3],
 }
 
 impl GpuTables {
-    /// `Solid.patches` of a table whose first vector is number `begin` of the buffer.
+    /// `Object.patches` of a table whose first vector is number `begin` of the buffer.
     pub fn block(&self, begin: u32) -> [u32; 4] {
         let [a, b, c] = self.facts;
         [begin, a, b, c]
@@ -57,11 +56,6 @@ impl GpuTables {
             facts: table.facts,
         }
     }
-}
-
-/// Most vectors of one solid's tables that a device's uniform buffers hold.
-pub(crate) fn own_vectors(limits: &vk::PhysicalDeviceLimits) -> u32 {
-    (limits.max_uniform_buffer_range / 16).clamp(PATCH_VECTORS, MOST_OWN_VECTORS)
 }
 
 /// Patches for lists, in the layout of `patch_runs.glsl`; empty if there are none, or too many.

@@ -1,11 +1,11 @@
 //! The contour `F = d - w = 0` of an outline within the box, as chains that keep every corner.
 
+use super::Offset;
 use super::chain::{Chain, Segments};
 use super::offset::{Corner, Layer, Trimmer};
 use super::tree::Tree;
 use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Outline, Segment};
-use crate::scene::Offset;
 use glam::DVec2;
 
 /// The boundary of the half-plane's solid within `0 <= z <= 1`: its turned surface, and its

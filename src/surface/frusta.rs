@@ -1,11 +1,38 @@
 //! The shell of one cell: frusta along its surface, and walls at its ends. [`hull`](super::hull)
 //! gives the purpose.
 
-use super::{ProxyHullOptions, QuadricPatch};
+use super::QuadricPatch;
 use glam::DVec2;
 
 /// Walls reach at least this far into the solid, object units.
 const ROOT: f64 = 1e-4;
+
+/// Options for making shells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProxyHullOptions {
+    /// Corners of the rings, at least 3.
+    pub sides: u32,
+    /// Most patches of a cell, all of which a fragment tests.
+    pub patches_per_cell: u32,
+    /// Largest distance of the surface below a frustum before the frustum is divided, object units.
+    pub gap: f64,
+    /// Distance by which frusta are moved outwards beyond touching, object units: a rasteriser
+    /// moves corners by fractions of a pixel.
+    pub margin: f64,
+}
+
+impl Default for ProxyHullOptions {
+    /// The best values of the charts in `docs/searches.md`: few triangles, at the cost of fragments
+    /// without a hit.
+    fn default() -> Self {
+        Self {
+            sides: 12,
+            patches_per_cell: 8,
+            gap: 0.03,
+            margin: 1e-4,
+        }
+    }
+}
 
 /// A part of a cell's surface on one patch, between two heights, or between two radii for a plane.
 #[derive(Clone, Copy, Debug)]

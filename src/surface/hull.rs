@@ -53,35 +53,9 @@
 use super::QuadricPatch;
 use super::cavity_culling::CavityCulling;
 use super::frusta::FrustaBuilder;
+pub use super::frusta::ProxyHullOptions;
 use glam::DVec2;
 use std::ops::Range;
-
-/// Options for making shells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProxyHullOptions {
-    /// Corners of the rings, at least 3.
-    pub sides: u32,
-    /// Most patches of a cell, all of which a fragment tests.
-    pub patches_per_cell: u32,
-    /// Largest distance of the surface below a frustum before the frustum is divided, object units.
-    pub gap: f64,
-    /// Distance by which frusta are moved outwards beyond touching, object units: a rasteriser
-    /// moves corners by fractions of a pixel.
-    pub margin: f64,
-}
-
-impl Default for ProxyHullOptions {
-    /// The best values of the charts in `docs/searches.md`: few triangles, at the cost of fragments
-    /// without a hit.
-    fn default() -> Self {
-        Self {
-            sides: 12,
-            patches_per_cell: 8,
-            gap: 0.03,
-            margin: 1e-4,
-        }
-    }
-}
 
 /// A ring of triangles between two regular polygons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

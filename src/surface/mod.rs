@@ -42,6 +42,29 @@ pub(crate) use solid_radii::{SOLID_ROWS, solid_radii};
 
 use glam::DVec2;
 
+/// The offset `w(z)` between the profile and the surface `F = d - w = 0`:
+/// `w = extend + bevel * min(u, chamfer)`, with the depth `u = 1 - z`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offset {
+    /// `e`, object units; negative insets.
+    pub extend: f64,
+    /// `b`, slope.
+    pub bevel: f64,
+    /// `c`, depth in `[0, 1]` down to which the bevel increases.
+    pub chamfer: f64,
+}
+
+impl Default for Offset {
+    /// The profile itself: `w = 0`. A bevel set on this default extends to the bottom.
+    fn default() -> Self {
+        Self {
+            extend: 0.0,
+            bevel: 0.0,
+            chamfer: 1.0,
+        }
+    }
+}
+
 /// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its
 /// left.
 ///

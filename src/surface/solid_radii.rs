@@ -36,7 +36,7 @@ pub(crate) fn solid_radii(patches: &[QuadricPatch]) -> [f64; N] {
 mod tests {
     use super::*;
     use crate::profile::Outline;
-    use crate::scene::Offset;
+    use crate::surface::Offset;
     use crate::surface::{ContourSource, FitOptions, fit_patches};
     use glam::DVec2;
 

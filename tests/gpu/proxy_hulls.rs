@@ -28,7 +28,7 @@ fn a_crowd_in_one_depth_buffer() {
             let copy = placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]);
             object.instances = vec![object.placement, copy].into();
         }
-        // Copies too small for tile lists of their own.
+        // Copies too small for tiles of their own.
         if n == 4 {
             object.instances = (0..7)
                 .map(|k| {

@@ -1,4 +1,4 @@
-// Blocks that the CPU writes for each frame, object and instance. src/gpu/resources/blocks.rs has the same layout; a
+// Blocks that the CPU writes for each frame, object and instance. src/shader/blocks.rs has the same layout; a
 // test compares the offsets.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
@@ -39,11 +39,11 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
     vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
-    uvec4 solid;      // x: index of its solid; y: radius of the box about the instance's position (float bits)
+    uvec4 object;     // x: index of its object; y: radius of the box about the instance's position (float bits)
 };
 
 // An object: the data that its instances share.
-struct Solid {
+struct Object {
     vec4 map;        // columns, rows, texel h in object units, factor from stored to object units
     vec4 bounds;     // R; clip radius about the axis; clip z, low and high
     vec4 offset;     // e, b, c; upper limit on search steps
@@ -55,30 +55,30 @@ struct Solid {
     uvec4 instances; // first, count, index of the shape map among those of shadows
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
-    uvec4 hull;      // first frustum; unused; first vector of the listed patches; first vector of the rows of sides
+    uvec4 parts;     // first frustum; unused; first vector of the listed patches; first vector of the rows of sides
 };
 
-// A solid padded to the largest alignment of uniform buffer offsets on any device.
-struct SolidPlace {
-    Solid solid;
+// An object padded to the largest alignment of uniform buffer offsets on any device.
+struct PaddedObject {
+    Object object;
     uvec4 padding[5];
 };
 
-layout(set = 0, binding = 1, std430) readonly buffer SolidBlock {
-    SolidPlace solids[];
+layout(set = 0, binding = 1, std430) readonly buffer ObjectBlock {
+    PaddedObject objects[];
 };
 
-// The solid of a draw or dispatch that has only one.
-layout(set = 0, binding = 6, std140) uniform OwnSolid {
-    Solid own_solid;
+// The object of a draw or dispatch that has only one.
+layout(set = 0, binding = 6, std140) uniform OwnObject {
+    Object own_object;
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
-// Current solid: the instance's, or one that may cast a shadow on it.
-Solid solid;
+// Current object: the instance's, or one that may cast a shadow on it.
+Object object;
 
 void take_frame()
 {
@@ -93,30 +93,30 @@ void take_frame()
     frame.pixels = frame_block.pixels;
 }
 
-// Copies the solid from either buffer.
-#define TAKE_SOLID(from) \
-    solid.map = from.map; \
-    solid.bounds = from.bounds; \
-    solid.offset = from.offset; \
-    solid.axis = from.axis; \
-    solid.albedo = from.albedo; \
-    solid.specular = from.specular; \
-    solid.texturing = from.texturing; \
-    solid.cells = from.cells; \
-    solid.instances = from.instances; \
-    solid.patches = from.patches; \
-    solid.hull = from.hull
+// Copies the object from either buffer.
+#define TAKE_OBJECT(from) \
+    object.map = from.map; \
+    object.bounds = from.bounds; \
+    object.offset = from.offset; \
+    object.axis = from.axis; \
+    object.albedo = from.albedo; \
+    object.specular = from.specular; \
+    object.texturing = from.texturing; \
+    object.cells = from.cells; \
+    object.instances = from.instances; \
+    object.patches = from.patches; \
+    object.parts = from.parts
 
-void take_solid(uint number)
+void take_object(uint number)
 {
-    if (ONE_SOLID != 0u) {
-        TAKE_SOLID(own_solid);
+    if (ONE_OBJECT != 0u) {
+        TAKE_OBJECT(own_object);
         // Loop lengths come from the storage buffer: lavapipe 22 treats uniforms that loops depend on as constants, and
         // crashes.
-        solid.offset.w = solids[number].solid.offset.w;
-        solid.cells = solids[number].solid.cells;
+        object.offset.w = objects[number].object.offset.w;
+        object.cells = objects[number].object.cells;
     } else {
-        TAKE_SOLID(solids[number].solid);
+        TAKE_OBJECT(objects[number].object);
     }
 }
 

@@ -36,8 +36,8 @@ Look look_of(Instance i)
 {
     Look look;
     look.rotation = i.rotation;
-    look.scale_shininess = vec4(scale_of(i), solid.specular.y);
-    look.albedo_strength = vec4(solid.albedo.rgb, solid.specular.x);
+    look.scale_shininess = vec4(scale_of(i), object.specular.y);
+    look.albedo_strength = vec4(object.albedo.rgb, object.specular.x);
     look.ambient = frame.ambient.rgb;
     look.light_0 = turned_to(i.rotation, first_light);
     look.light_1 = turned_to(i.rotation, second_light);

@@ -1,9 +1,9 @@
-// Tables of quadric patches. The tables of a solid, in this order:
+// Tables of quadric patches. The tables of an object, in this order:
 // - words, four per vector: first PATCH_NODES nodes of the tree, level by level. A node holds the least r^2 (rounded
-//   down, low half) and the largest (rounded up, high half) in units of solid.patches.w. The runs of the rows follow,
+//   down, low half) and the largest (rounded up, high half) in units of object.patches.w. The runs of the rows follow,
 //   first << RUN_BITS | count;
-// - records from solid.patches.y, two vectors each: a patch's quadric, its guard;
-// - ranges of z from solid.patches.z, two records per vector.
+// - records from object.patches.y, two vectors each: a patch's quadric, its guard;
+// - ranges of z from object.patches.z, two records per vector.
 // Frusta of cells are stored separately (proxy_cells.vert).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
@@ -35,7 +35,7 @@ uint patch_word(uint at)
     if (takes_own_tables()) {
         return own_patch_tables[at >> 2][at & 3u];
     }
-    return patch_tables[solid.patches.x + (at >> 2)][at & 3u];
+    return patch_tables[object.patches.x + (at >> 2)][at & 3u];
 }
 
 vec4 patch_vector(uint at)
@@ -43,25 +43,25 @@ vec4 patch_vector(uint at)
     if (takes_own_tables()) {
         return uintBitsToFloat(own_patch_tables[at]);
     }
-    return uintBitsToFloat(patch_tables[solid.patches.x + at]);
+    return uintBitsToFloat(patch_tables[object.patches.x + at]);
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
-    return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[solid.hull.z + at];
+    return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[object.parts.z + at];
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
-    return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[solid.hull.z + at][k];
+    return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[object.parts.z + at][k];
 }
 
 // Returns the least and largest r^2 of a node.
 vec2 node_extent(uint word)
 {
-    return vec2(word & 0xffffu, word >> 16) * uintBitsToFloat(solid.patches.w);
+    return vec2(word & 0xffffu, word >> 16) * uintBitsToFloat(object.patches.w);
 }
 
 #endif

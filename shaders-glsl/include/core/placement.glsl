@@ -32,11 +32,11 @@ vec4 clip_of(Instance i, vec3 p)
     return vec4(xy, z, parallel ? 1.0 : depth);
 }
 
-// Transforms a point `p`, relative to `place`, to object space relative to the axis at z = 0. The difference of
+// Transforms a point `p`, relative to `origin`, to object space relative to the axis at z = 0. The difference of
 // positions is computed first, because it is exactly zero for the instance itself.
-vec3 point_to_axis(Instance i, vec3 place, vec3 p)
+vec3 point_to_axis(Instance i, vec3 origin, vec3 p)
 {
-    return rotate(conjugate(i.rotation), (place - i.position_sx.xyz) + p) / scale_of(i) - vec3(solid.axis.xy, 0.0);
+    return rotate(conjugate(i.rotation), (origin - i.position_sx.xyz) + p) / scale_of(i) - vec3(object.axis.xy, 0.0);
 }
 
 vec3 direction_to_object(Instance i, vec3 d)

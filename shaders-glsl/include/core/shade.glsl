@@ -64,7 +64,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     vec3 shaded = turned;
 #if TEXTURED || OUTPUT == OUTPUT_PLANES
     // Normal in the replica's own space, which is reflected and scaled to its cell.
-    vec3 count = vec3(solid.cells.xyz);
+    vec3 count = vec3(object.cells.xyz);
     vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
@@ -84,7 +84,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
         if (BUMP != BUMP_OFF) {
             vec3 tilted = bumped(n, hit.point, c, right, down);
             tilted = normalize((REPLICAS == 0u ? tilted : tilted * hit.sense * count) / scale);
-            shaded = solid.texturing.z == 0.0 ? turned : tilted;
+            shaded = object.texturing.z == 0.0 ? turned : tilted;
         }
     }
 #endif
@@ -98,10 +98,10 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     // A shadow ray starts off the surface, so that it cannot hit the surface itself. The offset is a few roundings for
     // exact patches and 1.5 texels for a map. Offsets are object space lengths, which a scale does not change equally
     // along all axes.
-    float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * solid.map.z;
+    float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * object.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
-    vec3 place = ray_origin(rays, pixel) + vec3(solid.axis.xy, 0.0) + hit.t * v;
-    point = rotate(look.rotation, place * scale + facing * lift * turned);
+    vec3 from_axis = ray_origin(rays, pixel) + vec3(object.axis.xy, 0.0) + hit.t * v;
+    point = rotate(look.rotation, from_axis * scale + facing * lift * turned);
 #endif
     // The first two lights are unrolled: a loop costs software drivers a sixth of a frame or more, even with no
     // iterations. Shadow code is so long that all lights share one loop.

@@ -6,8 +6,8 @@
 #include "core/replicas.glsl"
 
 layout(set = 0, binding = 3, std140) uniform ShadowBlock {
-    uvec4 shadow_batches; // x: number of batches
-    Solid shadow_solids[MAX_SHADOW_BATCHES];
+    uvec4 shadow_count; // x: number of objects
+    Object shadow_objects[MAX_SHADOW_OBJECTS];
 };
 
 // Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle.
@@ -68,10 +68,10 @@ bool may_meet(Disc disc, vec3 middle, float radius)
     return from_cone <= radius + slack && along >= -radius - slack;
 }
 
-// Returns the rays of `left` that the current solid does not block.
-uint unstopped_by(Instance i, vec3 place, vec3 point, Disc disc, uint left)
+// Returns the rays of `left` that the current object does not block.
+uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint left)
 {
-    vec3 eye = point_to_axis(i, place, point);
+    vec3 eye = point_to_axis(i, origin, point);
     vec2 angle = disc.first;
     for (uint k = 0u; k < LIGHT_RAYS; ++k) {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
@@ -85,28 +85,28 @@ uint unstopped_by(Instance i, vec3 place, vec3 point, Disc disc, uint left)
 }
 
 // Returns the rays of `left`, one bit each, that no solid blocks.
-uint unstopped(vec3 place, vec3 point, Disc disc, uint left)
+uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
 {
-    for (uint b = 0u; b < shadow_batches.x && left != 0u; ++b) {
-        uint first = shadow_solids[b].instances.x;
-        uint end = first + shadow_solids[b].instances.y;
+    for (uint b = 0u; b < shadow_count.x && left != 0u; ++b) {
+        uint first = shadow_objects[b].instances.x;
+        uint end = first + shadow_objects[b].instances.y;
         for (uint n = first; n < end && left != 0u; ++n) {
-            vec3 middle = instances[n].position_sx.xyz - place - point;
-            bool near = may_meet(disc, middle, uintBitsToFloat(instances[n].solid.y));
+            vec3 middle = instances[n].position_sx.xyz - origin - point;
+            bool near = may_meet(disc, middle, uintBitsToFloat(instances[n].object.y));
             // This is a loop because software drivers execute the body of a branch even if no lane takes it.
             for (uint k = near ? 0u : LIGHT_RAYS; k < LIGHT_RAYS; k = LIGHT_RAYS) {
-                solid = shadow_solids[b];
-                shadow_map = int(solid.instances.z);
-                left = unstopped_by(instances[n], place, point, disc, left);
+                object = shadow_objects[b];
+                shadow_map = int(object.instances.z);
+                left = unstopped_by(instances[n], origin, point, disc, left);
             }
         }
     }
     return left;
 }
 
-// Returns the visible fraction of the light, 0 to 1. `point` is relative to `place`, and `place` to the eye; world
+// Returns the visible fraction of the light, 0 to 1. `point` is relative to `origin`, and `origin` to the eye; world
 // axes. `normal` points to the lit side; directions below its horizon are hidden.
-float light_reaching(vec3 place, vec3 point, vec3 normal, Disc disc)
+float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
 {
     uint open = 0u;
     vec2 angle = disc.first;
@@ -114,18 +114,18 @@ float light_reaching(vec3 place, vec3 point, vec3 normal, Disc disc)
         open |= dot(normal, towards_disc(disc, k, angle)) > 0.0 ? 1u << k : 0u;
         angle = next_angle(angle);
     }
-    Solid own = solid;
+    Object own = object;
     casts = true;
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
     for (uint pass = 0u; asked != 0u; ++pass) {
-        uint left = unstopped(place, point, disc, open & asked);
+        uint left = unstopped(origin, point, disc, open & asked);
         bool agree = pass == 0u && (left == asked || left == 0u);
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
-    solid = own;
+    object = own;
     casts = false;
     return float(bitCount(lit)) / float(LIGHT_RAYS);
 }

@@ -7,8 +7,8 @@
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
 #if SHADOWED
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
-int shadow_map; // index of the map of the traced solid, if `casts`
-bool casts = false; // true while the traced solid is a possible shadow caster
+int shadow_map; // index of the map of the traced object, if `casts`
+bool casts = false; // true while the traced object is a possible shadow caster
 #endif
 
 vec4 gather_map(vec2 at)
@@ -35,45 +35,45 @@ vec4 filter_map(vec2 at)
 // that coordinate rounding cannot select others. Weights are full floats, where a sampler has only 8 bits.
 struct Cell {
     vec4 d;     // order: (i, j+1), (i+1, j+1), (i+1, j), (i, j)
-    vec2 place; // 0 to 1; extrapolated by half a texel beyond the centres of the outermost texels
+    vec2 position; // 0 to 1; extrapolated by half a texel beyond the centres of the outermost texels
 };
 
 Cell shape_cell(vec2 rz)
 {
-    vec2 size = solid.map.xy;
-    vec2 texel = vec2(rz.x, 1.0 - rz.y) * solid.map.y - 0.5;
+    vec2 size = object.map.xy;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) * object.map.y - 0.5;
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     Cell cell;
-    cell.d = gather_map((base + 1.0) * (1.0 / size)) * solid.map.w;
+    cell.d = gather_map((base + 1.0) * (1.0 / size)) * object.map.w;
     // The texel beyond the axis equals the first by symmetry.
-    cell.place = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
-    cell.place = clamp(cell.place, vec2(0.0, -0.5), vec2(1.5));
+    cell.position = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
+    cell.position = clamp(cell.position, vec2(0.0, -0.5), vec2(1.5));
     return cell;
 }
 
 float cell_distance(Cell cell)
 {
-    vec2 across = mix(vec2(cell.d.w, cell.d.x), vec2(cell.d.z, cell.d.y), cell.place.x);
-    return mix(across.x, across.y, cell.place.y);
+    vec2 across = mix(vec2(cell.d.w, cell.d.x), vec2(cell.d.z, cell.d.y), cell.position.x);
+    return mix(across.x, across.y, cell.position.y);
 }
 
 // Returns d(d)/d(r, z) of the bilinear cell; its length is about 1.
 vec2 cell_gradient(Cell cell)
 {
-    float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.place.y);
-    float dj = mix(cell.d.x - cell.d.w, cell.d.y - cell.d.z, cell.place.x);
-    return vec2(dr, -dj) * solid.map.y;
+    float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.position.y);
+    float dj = mix(cell.d.x - cell.d.w, cell.d.y - cell.d.z, cell.position.x);
+    return vec2(dr, -dj) * object.map.y;
 }
 
 vec2 papers_coordinates(vec2 rz)
 {
-    return vec2(rz.x, 1.0 - rz.y) / (solid.map.xy * solid.map.z);
+    return vec2(rz.x, 1.0 - rz.y) / (object.map.xy * object.map.z);
 }
 
 float map_distance(vec2 rz)
 {
     if (RGBA8 != 0) {
-        return filter_map(papers_coordinates(rz)).b * solid.map.w;
+        return filter_map(papers_coordinates(rz)).b * object.map.w;
     }
     return cell_distance(shape_cell(rz));
 }
@@ -88,7 +88,7 @@ vec2 creased_gradient(vec2 rz, vec2 along)
     if (len > 0.99) {
         return g;
     }
-    vec2 aside = vec2(-g.y, g.x) * (1.5 * solid.map.z / max(len, 1e-3));
+    vec2 aside = vec2(-g.y, g.x) * (1.5 * object.map.z / max(len, 1e-3));
     Cell left = shape_cell(rz + aside);
     Cell right = shape_cell(rz - aside);
     vec2 g_left = cell_gradient(left);

@@ -7,15 +7,15 @@
 float offset_width(float z)
 {
     if (!bool(BEVELED)) {
-        return solid.offset.x;
+        return object.offset.x;
     }
-    return solid.offset.x + solid.offset.y * min(1.0 - z, solid.offset.z);
+    return object.offset.x + object.offset.y * min(1.0 - z, object.offset.z);
 }
 
 // Returns dw/dz.
 float offset_slope(float z)
 {
-    return bool(BEVELED) && 1.0 - z < solid.offset.z ? -solid.offset.y : 0.0;
+    return bool(BEVELED) && 1.0 - z < object.offset.z ? -object.offset.y : 0.0;
 }
 
 float field(vec2 rz)

@@ -22,37 +22,37 @@ struct Coordinates {
 // increase, not normalised.
 float arc_length(vec2 rz, out vec2 rising)
 {
-    vec2 size = solid.map.xy;
-    vec2 texel = vec2(rz.x, 1.0 - rz.y) / solid.map.z - 0.5;
+    vec2 size = object.map.xy;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) / object.map.z - 0.5;
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     vec4 eta = textureGather(arc_map, (base + 1.0) / size);
     float most = max(max(eta.x, eta.y), max(eta.z, eta.w));
     eta += vec4(lessThan(eta, vec4(most - 0.5)));
-    vec2 place = clamp(texel - base, 0.0, 1.0);
-    rising = vec2(mix(eta.z - eta.w, eta.y - eta.x, place.y), mix(eta.w - eta.x, eta.z - eta.y, place.x));
-    vec2 across = mix(eta.wx, eta.zy, place.x);
-    float mixed = mix(across.x, across.y, place.y);
+    vec2 position = clamp(texel - base, 0.0, 1.0);
+    rising = vec2(mix(eta.z - eta.w, eta.y - eta.x, position.y), mix(eta.w - eta.x, eta.z - eta.y, position.x));
+    vec2 across = mix(eta.wx, eta.zy, position.x);
+    float mixed = mix(across.x, across.y, position.y);
     return mixed > 1.0 ? mixed - 1.0 : mixed;
 }
 
 // Returns profile units per object unit; the box may have grown with the offset.
 float profile_units()
 {
-    return solid.specular.z;
+    return object.specular.z;
 }
 
-// Returns the coordinates at `place`, object units relative to the axis. `n`: normal. Gradients are per profile unit.
-Coordinates texture_coordinates(vec3 place, vec3 n)
+// Returns the coordinates at `point`, object units relative to the axis. `n`: normal. Gradients are per profile unit.
+Coordinates texture_coordinates(vec3 point, vec3 n)
 {
     Coordinates c;
-    vec3 p = place * profile_units() - vec3(0.0, 0.0, solid.specular.w);
+    vec3 p = point * profile_units() - vec3(0.0, 0.0, object.specular.w);
     float r2 = dot(p.xy, p.xy);
     float r = sqrt(r2);
     c.grad_xi = vec3(-p.y, p.x, 0.0) / (2.0 * PI * max(r2, 1e-12));
     c.uv.x = r > 0.0 ? (PI + atan(p.y, p.x)) / (2.0 * PI) : 0.5;
     if (PROJECTION == PROJECTION_PLANAR) {
-        float width = solid.texturing.w;
-        c.uv = (p.xy + solid.axis.xy * profile_units()) / width + 0.5;
+        float width = object.texturing.w;
+        c.uv = (p.xy + object.axis.xy * profile_units()) / width + 0.5;
         c.grad_xi = vec3(1.0 / width, 0.0, 0.0);
         c.grad_eta = vec3(0.0, 1.0 / width, 0.0);
     } else if (PROJECTION == PROJECTION_SPHERICAL) {
@@ -63,14 +63,14 @@ Coordinates texture_coordinates(vec3 place, vec3 n)
         c.grad_eta = -vec3(q.xy * (q.z / max(r, 1e-6)), -r) / (PI * rho2);
     } else if (PROJECTION == PROJECTION_ARC) {
         vec2 rising;
-        c.uv.y = arc_length(vec2(length(place.xy), place.z), rising);
+        c.uv.y = arc_length(vec2(length(point.xy), point.z), rising);
         vec3 around = vec3(-p.y, p.x, 0.0) / max(r, 1e-6);
         // Rate of arc length along the surface. Its sign is reversed within a cavity, and it is larger where an outline
         // is shorter. The table is invalid between the two sides of a thin wall; the rate of the longest outline is
         // used there.
         vec3 along = cross(n, around);
-        float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / solid.map.z;
-        c.grad_eta = along * ((abs(rate) < 16.0 * solid.axis.z ? rate : solid.axis.z) / profile_units());
+        float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / object.map.z;
+        c.grad_eta = along * ((abs(rate) < 16.0 * object.axis.z ? rate : object.axis.z) / profile_units());
     } else {
         c.uv.y = p.z;
         c.grad_eta = vec3(0.0, 0.0, 1.0);
@@ -88,7 +88,7 @@ vec3 footprint(vec3 v, vec3 dv, vec3 n, float t)
 
 vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 {
-    vec2 repeat = solid.texturing.xy;
+    vec2 repeat = object.texturing.xy;
     vec2 turn = vec2(1.0, -1.0) * repeat; // eta = 1 is the top row
     vec2 dx = vec2(dot(c.grad_xi, right), dot(c.grad_eta, right)) * turn;
     vec2 dy = vec2(dot(c.grad_xi, down), dot(c.grad_eta, down)) * turn;
@@ -100,7 +100,7 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 // `a`. BUMP_PAPERS is the papers' form, in which a turn around the axis has length 1 at any radius.
 vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
 {
-    vec2 slope = sample_repeated(displacement_map, c, right, down).rg * solid.texturing.xy;
+    vec2 slope = sample_repeated(displacement_map, c, right, down).rg * object.texturing.xy;
     vec3 g;
     if (BUMP == BUMP_PAPERS) {
         float r = length(p.xy);
@@ -109,7 +109,7 @@ vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
     } else {
         g = slope.x * c.grad_xi + slope.y * c.grad_eta;
     }
-    vec3 tilted = n - solid.texturing.z * (g - n * dot(n, g));
+    vec3 tilted = n - object.texturing.z * (g - n * dot(n, g));
     float len = length(tilted);
     return len > 0.0 ? tilted / len : n;
 }

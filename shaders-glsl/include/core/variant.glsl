@@ -1,5 +1,5 @@
 // Compile-time options of a module, and the constants shared with the CPU. build.rs defines the macros for each entry
-// of src/shader/list.rs, and generates the same constants for Rust from this file.
+// of src/shader/catalogue.rs, and generates the same constants for Rust from this file.
 #ifndef VARIANT_GLSL
 #define VARIANT_GLSL
 
@@ -68,7 +68,7 @@ layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
 #endif
 #if SEARCH == SEARCH_EXTERNAL
 layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches that share their modules
-layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the solid's block
+layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the object's block
 #endif
 layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, so no depth is compared
 layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing is drawn later that reads depths
@@ -76,11 +76,12 @@ layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, 
 // 1: the box does not cut the solid, and the eye is outside it. Cells and listed patches always have the eye outside;
 // for them only the first condition counts.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
-layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one solid, and a uniform buffer holds its tables
-layout(constant_id = 14) const uint ONE_SOLID = 0u; // 1: there is one solid, in a uniform buffer
+layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
+layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: there is one object, in a uniform buffer
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
+layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
@@ -107,22 +108,22 @@ const uint PATCH_VECTORS = 1024u; // minimum of OWN_VECTORS: uniform buffers of 
 const uint MOST_OWN_VECTORS = 4096u;
 const uint PATCH_ROWS = 256u; // rows of a solid's tables, a power of 4
 const uint PATCH_NODES = 340u; // nodes of the tree over the rows: 256 + 64 + 16 + 4
-const uint HULL_SIDES = 12u; // corners of a hull's rings
-const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a hull's cell
-const uint SIDE_ROWS = 32u; // strips per box side that cuts a hull
+const uint RING_CORNERS = 12u; // corners of a frustum's rings
+const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a cell
+const uint SIDE_ROWS = 32u; // strips per box side that cuts shells
 const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
-const uint LIST_LENGTHS = 4u; // number of different lengths of a tile's patch list
-const uint TILE_LISTS = 5u; // lists of tiles: one for each length, and one of tiles that use the tree
+const uint TREE_BIN = 4u; // bin of tiles that use the tree; before it, one bin for each length of a list of patches
+const uint TILE_BINS = 5u; // number of bins
 const uint SHORT_LIST = 8u; // first of the list lengths
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;
 const uint LONGEST_LIST = 48u;
-const uint MAX_SHADOW_BATCHES = 64u; // upper limit on batches of a scene with shadows
+const uint MAX_SHADOW_OBJECTS = 64u; // upper limit on objects of a scene with shadows
 const uint MAX_SHADOW_MAPS = 12u; // upper limit on different shape maps of a scene with shadows
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
 const uint QUAD_BITS = 15u; // bits of each coordinate of a quad's corner
-const uint TILE_SPLIT = 2147483648u; // replaces a tile's number of copies: each of its pixels has a list of its own
+const uint TILE_SPLIT = 2147483648u; // replaces a tile's number of copies: each of its pixels has a queue of its own
 const uint BOX_INDICES = 36u; // indices of a shape box; those of the strips of its sides follow
 const uint STRIP_INDICES = 768u; // indices of all strips: 6 each, 4 sides, SIDE_ROWS rows
 

@@ -19,8 +19,8 @@
 // - `quadric`: coefficients q of the hit patch, G = q.x r^2 + q.y + q.z z + q.w z^2. The gradient of G is the normal.
 // `starts_in_table` returns true if the ray begins within the solid; it reads only m.o and m.c.
 //
-// `patch_vector` (core/patch_tables.glsl) reads the table. solid.patches.yzw holds three words about it, defined by
-// `SearchTable` in src/search.rs.
+// `patch_vector` (core/patch_tables.glsl) reads the table. object.patches.yzw holds three words about it, defined by
+// `SearchTable` in src/search/mod.rs.
 #ifndef SEARCH_EXTERNAL_GLSL
 #define SEARCH_EXTERNAL_GLSL
 #if SEARCH_TABLE
@@ -33,7 +33,7 @@
 // Upper limit on steps. Loops of constant length are a tenth faster in lavapipe.
 int most_steps()
 {
-    return KNOWN_STEPS != 0u ? int(KNOWN_STEPS) : int(solid.offset.w);
+    return KNOWN_STEPS != 0u ? int(KNOWN_STEPS) : int(object.offset.w);
 }
 #endif
 

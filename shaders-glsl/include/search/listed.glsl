@@ -35,19 +35,19 @@ void share_patches()
     if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
         shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
     }
-    if (ONE_SOLID == 0u) {
-        solid.hull.z = solids[instance_words[INSTANCE_WORDS * tile_record.y + 16u]].solid.hull.z;
+    if (ONE_OBJECT == 0u) {
+        object.parts.z = objects[instance_words[INSTANCE_WORDS * tile_record.y + 16u]].object.parts.z;
     }
     uint none = listed_word(0u, 0u);
     uint runs = tile_record.z;
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
-        uint place = j + self;
-        if (place < 8u * LIST_LENGTH) {
-            uint number = place >> 3;
+        uint at = j + self;
+        if (at < 8u * LIST_LENGTH) {
+            uint number = at >> 3;
             uint lower = runs >> 9 & 63u;
             uint k = number < lower ? (runs & 511u) + number : (runs >> 15 & 511u) + number - lower;
             k = number < lower + (runs >> 24) ? k : none;
-            listed[place] = uintBitsToFloat(listed_word(1u + 3u * k + (place >> 2 & 1u), place & 3u));
+            listed[at] = uintBitsToFloat(listed_word(1u + 3u * k + (at >> 2 & 1u), at & 3u));
         }
     }
 }

@@ -31,8 +31,8 @@ void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, 
 {
     float root = entering_root(m, q, 1.0);
     float z = m.o.z + root * m.v.z;
-    float place = guard.x * z + guard.y * square_at(m, root);
-    bvec3 within = lessThanEqual(vec3(guard.z, place, abs(z - 0.5)), vec3(place, guard.w, 0.5 + HEIGHT_SLACK));
+    float guarded = guard.x * z + guard.y * square_at(m, root);
+    bvec3 within = lessThanEqual(vec3(guard.z, guarded, abs(z - 0.5)), vec3(guarded, guard.w, 0.5 + HEIGHT_SLACK));
     bool nearer = all(within) && root > least && root < best;
     best = mix(best, root, nearer);
     quadric = mix(quadric, q, bvec4(nearer));
@@ -46,8 +46,8 @@ bool starts_within(Meridian m)
     uint beyond = 0u;
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
-        vec4 q = patch_vector(solid.patches.y + 2u * record);
-        vec4 ranges = patch_vector(solid.patches.z + (record >> 1));
+        vec4 q = patch_vector(object.patches.y + 2u * record);
+        vec4 ranges = patch_vector(object.patches.z + (record >> 1));
         vec2 range = (record & 1u) == 0u ? ranges.xy : ranges.zw;
         float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
@@ -106,14 +106,14 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        uint first = solid.patches.y + 2u * (run >> RUN_BITS);
+        uint first = object.patches.y + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
             vec4 q = patch_vector(first + 2u * k);
             vec4 guard = patch_vector(first + 2u * k + 1u);
             ++steps;
             float root = entering_root(m, q, side);
-            float place = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
-            bool within = all(lessThanEqual(vec4(guard.z, place, -slack, root), vec4(place, guard.w, root, m.s_end + slack)));
+            float guarded = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
+            bool within = all(lessThanEqual(vec4(guard.z, guarded, -slack, root), vec4(guarded, guard.w, root, m.s_end + slack)));
             bool nearer = within && root < best;
             best = mix(best, root, nearer);
             hit_quadric = mix(hit_quadric, q, bvec4(nearer));

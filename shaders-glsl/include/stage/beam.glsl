@@ -21,7 +21,7 @@ struct Beam {
 // Returns the depth of the far side of the box.
 float farthest_of(PixelRays rays, Instance i)
 {
-    vec3 half_size = vec3(solid.bounds.x, solid.bounds.x, 0.5);
+    vec3 half_size = vec3(object.bounds.x, object.bounds.x, 0.5);
     vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale_of(i);
     return rays.base + dot(abs(forward), half_size);
 }
@@ -54,7 +54,7 @@ vec2 node_span(Beam beam, uint k)
 {
     // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
     uint at = SPAN_FIRST + k;
-    float most = node_extent(patch_tables[solid.patches.x + (at >> 2)][at & 3u]).y;
+    float most = node_extent(patch_tables[object.patches.x + (at >> 2)][at & 3u]).y;
     float radius = sqrt(max(most, 0.0)) + beam.width;
     float low = (float(k) / float(SPAN_NODES) - beam.width - beam.o.z) * beam.per_z;
     float high = (float(k + 1u) / float(SPAN_NODES) + beam.width - beam.o.z) * beam.per_z;

@@ -1,17 +1,17 @@
-// Finds the nearest hit of a pixel among the copies in its tile's list.
+// Finds the nearest hit of a pixel among the copies in the queue of its tile.
 #ifndef COPIES_GLSL
 #define COPIES_GLSL
 #include "stage/stores.glsl"
 
-// Loads the members of a solid that a search reads.
+// Loads the members of an object that a search reads.
 void take_shape(uint number)
 {
-    solid.map = solids[number].solid.map;
-    solid.bounds = solids[number].solid.bounds;
-    solid.offset = solids[number].solid.offset;
-    solid.axis = solids[number].solid.axis;
-    solid.cells = solids[number].solid.cells;
-    solid.patches = solids[number].solid.patches;
+    object.map = objects[number].object.map;
+    object.bounds = objects[number].object.bounds;
+    object.offset = objects[number].object.offset;
+    object.axis = objects[number].object.axis;
+    object.cells = objects[number].object.cells;
+    object.patches = objects[number].object.patches;
 }
 
 // Finds the nearest hit. The first of equal depths wins, as under the depth test. The loop ends when the next copy
@@ -29,8 +29,8 @@ bool nearest_copy(uint first, uint count, uvec2 pixel, inout float depth, out ui
         }
         uint number = tile_words[first + 2u * n];
         Instance i = instances[number];
-        if (ONE_SOLID == 0u) {
-            take_shape(i.solid.x);
+        if (ONE_OBJECT == 0u) {
+            take_shape(i.object.x);
         }
         PixelRays rays = pixel_rays(i);
         Hit hit;
@@ -50,20 +50,20 @@ bool nearest_copy(uint first, uint count, uvec2 pixel, inout float depth, out ui
     return found;
 }
 
-// Returns the pixel of this invocation, the first word of its list and the number of copies in it.
+// Returns the pixel of this invocation, the first word of its queue and the number of copies in it.
 uvec2 this_pixel(out uint first, out uint count)
 {
     uint at = 4u * (pushed.first + gl_WorkGroupID.x);
-    uint place = tile_words[at] + (gl_LocalInvocationID.x | gl_LocalInvocationID.y << 16);
+    uint position = tile_words[at] + (gl_LocalInvocationID.x | gl_LocalInvocationID.y << 16);
     first = tile_words[at + 1u];
     count = tile_words[at + 2u];
     if (count == TILE_SPLIT) {
         at = first + 3u * gl_LocalInvocationIndex;
-        place = tile_words[at];
+        position = tile_words[at];
         first += tile_words[at + 1u];
         count = tile_words[at + 2u];
     }
-    return uvec2(place & 0xffffu, place >> 16);
+    return uvec2(position & 0xffffu, position >> 16);
 }
 
 #endif

@@ -1,10 +1,10 @@
-// Runs of patches that a tile's rays may hit, and the list made from them.
+// Runs of patches that a tile's rays may hit, and the record made from them.
 //
 // Layout of the table, in vectors: first a header with the number of patches and the unit of radii (float bits). Then
 // three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
-#define LIST_WORDS
+#define BIN_WORDS
 #include "stage/compute.glsl"
 
 // The first and the last patch, and the widest gap between two successive ones.
@@ -34,18 +34,18 @@ uvec2 lengths_of(PatchRuns runs)
                  : uvec2(runs.last + 1u - runs.first, 0u);
 }
 
-// Adds a record to list `n`. Heads are zero at first; the first record completes the indirect dispatch.
+// Adds a record to bin `n`. Heads are zero at first; the first record completes the indirect dispatch.
 void append(uint n, uvec4 record)
 {
-    uint head = list_head(n);
-    uint place = atomicAdd(list_words[head], 1u);
-    if (place == 0u) {
-        list_words[head + 1u] = 1u;
-        list_words[head + 2u] = 1u;
+    uint head = bin_head(n);
+    uint index = atomicAdd(bin_words[head], 1u);
+    if (index == 0u) {
+        bin_words[head + 1u] = 1u;
+        bin_words[head + 2u] = 1u;
     }
-    uint at = list_tiles(n) + 4u * place;
+    uint at = bin_records(n) + 4u * index;
     for (uint k = 0u; k < 4u; ++k) {
-        list_words[at + k] = record[k];
+        bin_words[at + k] = record[k];
     }
 }
 

@@ -15,13 +15,13 @@ struct Quad {
 Quad this_quad()
 {
     uint at = 4u * (LARGE_POINTS != 0u ? uint(gl_VertexIndex) : uint(gl_VertexIndex) / 6u);
-    uint place = tile_words[at];
-    uvec2 corner = uvec2(place, place >> QUAD_BITS) & ((1u << QUAD_BITS) - 1u);
-    return Quad(corner, 1u << (place >> (2u * QUAD_BITS)), tile_words[at + 1u], uintBitsToFloat(tile_words[at + 3u]));
+    uint packed = tile_words[at];
+    uvec2 corner = uvec2(packed, packed >> QUAD_BITS) & ((1u << QUAD_BITS) - 1u);
+    return Quad(corner, 1u << (packed >> (2u * QUAD_BITS)), tile_words[at + 1u], uintBitsToFloat(tile_words[at + 3u]));
 }
 
 // Sets the position of a vertex. The quad's depth is the nearest that a fragment can have.
-void place_quad(Quad quad)
+void position_quad(Quad quad)
 {
     vec2 at = vec2(quad.corner) + 0.5 * float(quad.side);
     if (LARGE_POINTS == 0u) {

@@ -17,7 +17,7 @@ void begin_frame()
 
 uint record_word(uint n)
 {
-    return LIST_LENGTH != 0u ? list_words[list_tiles(pushed.list) + 4u * gl_WorkGroupID.x + n]
+    return LIST_LENGTH != 0u ? bin_words[bin_records(pushed.bin) + 4u * gl_WorkGroupID.x + n]
                              : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
 }
 
@@ -33,7 +33,7 @@ uvec2 tile_corner()
     return uvec2(tile_record.x & 0xffffu, tile_record.x >> 16);
 }
 
-// Computes look and rays from the instance and its solid.
+// Computes look and rays from the instance and its object.
 void begin_tile()
 {
     tile_look = look_of(tile_instance);

@@ -24,16 +24,16 @@ void hand_over_tree(vec2 span)
 #if READS_TABLES && !TAKES_STEPS
     tree_span = span;
 #endif
-    tree_bounds = solid.bounds;
-    tree_axis = OUTPUT == OUTPUT_DEPTH ? vec4(solid.axis.xy, float(instance_number), 0.0) : solid.axis;
+    tree_bounds = object.bounds;
+    tree_axis = OUTPUT == OUTPUT_DEPTH ? vec4(object.axis.xy, float(instance_number), 0.0) : object.axis;
 #if READS_MAP
-    tree_map = solid.map;
+    tree_map = object.map;
 #endif
 #if TAKES_STEPS
-    tree_offset = solid.offset;
+    tree_offset = object.offset;
 #endif
 #if READS_TABLES
-    tree_patches = solid.patches;
+    tree_patches = object.patches;
 #endif
 }
 #else
@@ -49,18 +49,18 @@ vec2 span_of_rays()
 void take_over_tree()
 {
 #if OUTPUT == OUTPUT_DEPTH && REPEATED
-    take_solid(instances[uint(tree_axis.z)].solid.x);
+    take_object(instances[uint(tree_axis.z)].object.x);
 #endif
-    solid.bounds = tree_bounds;
-    solid.axis = tree_axis;
+    object.bounds = tree_bounds;
+    object.axis = tree_axis;
 #if READS_MAP
-    solid.map = tree_map;
+    object.map = tree_map;
 #endif
 #if TAKES_STEPS
-    solid.offset = tree_offset;
+    object.offset = tree_offset;
 #endif
 #if READS_TABLES
-    solid.patches = tree_patches;
+    object.patches = tree_patches;
 #endif
 }
 #endif

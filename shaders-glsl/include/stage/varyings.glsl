@@ -24,12 +24,12 @@ layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both l
 #endif
 
 #ifndef VERTEX_GLSL
-// Loads the frame and the solid. Fragments call this first.
+// Loads the frame and the object. Fragments call this first.
 void take_over()
 {
     take_frame();
 #if OUTPUT != OUTPUT_DEPTH
-    take_solid(instances[uint(look_ambient.w)].solid.x);
+    take_object(instances[uint(look_ambient.w)].object.x);
 #endif
     frame.dir_00.w = ray_dir_00.w;
     frame.dir_x.w = ray_dir_x.w;

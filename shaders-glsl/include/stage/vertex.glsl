@@ -7,14 +7,14 @@
 // Index of this vertex's instance among all.
 uint instance_number;
 
-// Loads frame, lights and solid and returns instance `number`. Vertex shaders call this first.
+// Loads frame, lights and object and returns instance `number`. Vertex shaders call this first.
 Instance begin(uint number)
 {
     take_frame();
     take_lights();
     instance_number = number;
     Instance i = instances[number];
-    take_solid(i.solid.x);
+    take_object(i.object.x);
     return i;
 }
 
@@ -22,7 +22,7 @@ Instance begin(uint number)
 vec3 fraction_of_pixel(Instance i)
 {
     vec3 scale = scale_of(i);
-    float farthest = max(i.scale_depth.z, 0.0) + length(scale * vec3(solid.bounds.xx, 0.6));
+    float farthest = max(i.scale_depth.z, 0.0) + length(scale * vec3(object.bounds.xx, 0.6));
     bool parallel = frame.clip_x.w != 0.0;
     return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
 }

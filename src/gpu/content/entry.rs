@@ -1,16 +1,15 @@
-//! A renderer's record of an object: its values, and the resources that are prepared from them.
+//! A renderer's record of an object: its values, and the resources that are derived from them.
 
-use crate::gpu::resources::block::{note_growth, solid_block};
-use crate::gpu::resources::blocks::SolidBlock;
-use crate::gpu::resources::map_key::MapFacts;
-use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
+use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::TextureSet;
-use crate::scene::{GrownObject, Object};
+use crate::scene::{GrownObject, Growth, Object};
 use crate::settings::{SearchSettings, Solver};
-use crate::shader::Variant;
 use crate::shader::generated::FRUSTUM_VECTORS;
+use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::outline_cache::OffsetContour;
+use crate::solid::reach::{farthest_corner, largest_width};
 use crate::solid::table_slot::{Part, Slot};
 use std::ops::Range;
 use std::sync::Arc;
@@ -18,26 +17,26 @@ use std::sync::Arc;
 /// One object.
 pub(in crate::gpu) struct Entry {
     pub object: Object,
-    /// Values that were set since the last preparation.
+    /// Values that were set since the last refresh.
     pub wanted: Option<Object>,
     /// The object that is drawn in its place, in a box that has grown with the offset.
     pub grown: Option<GrownObject>,
-    /// `None` before the first frame, and if the first preparation failed.
-    pub prepared: Option<Prepared>,
+    /// `None` before the first refresh, and if that failed.
+    pub derived: Option<Derived>,
     pub instances: Range<u32>,
     /// The renderer's version at the last change.
     pub version: u64,
 }
 
 /// Resources that follow from an object's values, whatever the view.
-pub(in crate::gpu) struct Prepared {
+pub(in crate::gpu) struct Derived {
     /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
+    /// The contour whose patches are searched, or would be if it closed; `None` for a search on the
+    /// map or on a table of its own.
+    pub contour: Option<Arc<OffsetContour>>,
     /// Surfaces by level, for levels that views needed. Empty for a search on the map.
     pub levels: Vec<(u8, Arc<OffsetSurface>)>,
-    /// True if the contour does not close, so that another search replaces the search of the
-    /// settings.
-    pub fails: bool,
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
     /// True if cells and lists of patches may replace the tree.
@@ -57,7 +56,7 @@ impl Entry {
             object,
             wanted: None,
             grown: None,
-            prepared: None,
+            derived: None,
             instances,
             version,
         }
@@ -68,50 +67,119 @@ impl Entry {
         self.wanted.as_ref().unwrap_or(&self.object)
     }
 
-    /// The values that were prepared last, in a box that cuts nothing.
+    /// The values of the last refresh, in a box that cuts nothing.
     pub fn drawn(&self) -> &Object {
         self.grown.as_ref().map_or(&self.object, |g| &g.object)
     }
 
-    /// The block that shaders read, for this surface; `None` before the object is prepared.
+    /// The growth of the box with the offset.
+    pub fn growth(&self) -> Growth {
+        self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
+    }
+
+    /// The block that shaders read, for this surface; `None` before anything was derived.
     pub fn block(
         &self,
         number: u32,
         surface: Option<&OffsetSurface>,
         settings: &SearchSettings,
-    ) -> Option<SolidBlock> {
-        let p = self.prepared.as_ref()?;
-        let length = p.arc.as_ref().map_or(1.0, |a| a.length);
-        let (instances, map) = (&self.instances, p.shadow_map);
-        let mut block = solid_block(
-            self.drawn(),
-            &p.facts,
-            length,
-            instances,
-            map,
-            p.solver,
-            settings,
-        );
-        block.instances[3] = number;
-        if let Some(grown) = &self.grown {
-            note_growth(&mut block, &grown.growth, grown.object.profile.radius);
-        }
-        let Some(surface) = surface else {
-            return Some(block);
-        };
+    ) -> Option<ObjectBlock> {
+        let derived = self.derived.as_ref()?;
+        let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
         #[allow(clippy::cast_possible_truncation)]
-        if p.solver.follows_tolerance() {
-            block.bounds[1] += surface.slack() as f32;
-        }
-        let begin = |part| surface.slot(part).map(Slot::begin);
-        if let Some(tables) = begin(Part::Tables) {
-            block.patches = surface.tables().block(tables);
-        }
-        if let Some(frusta) = begin(Part::Frusta) {
-            block.hull[0] = frusta;
-            block.hull[3] = frusta + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS;
-        }
-        block.hull[2] = begin(Part::Patches).unwrap_or(0);
-        Some(block)
+        let f = |v: f64| v as f32;
+        let (look, beveled) = (&object.texturing, is_beveled(object));
+        let length = derived.arc.as_ref().map_or(1.0, |arc| arc.length);
+        let [x, y] = object.axis_offset();
+        let steps = settings.max_steps;
+        let steps = steps.unwrap_or_else(|| solver.default_steps(beveled));
+        let [red, green, blue] = object.color;
+        // Textures find the profile's box in a box that has grown.
+        let growth = self.growth();
+        let profile_radius = object.profile.radius * growth.height() - growth.side;
+        let [across, up, high] = object.repeat;
+        let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
+        let begin = |part| surface.and_then(|s| s.slot(part)).map(Slot::begin);
+        let frusta = begin(Part::Frusta);
+        Some(ObjectBlock {
+            #[allow(clippy::cast_precision_loss)] // at most 16384
+            map: [
+                map.columns as f32,
+                map.rows as f32,
+                f(1.0 / f64::from(map.rows)),
+                map.scale,
+            ],
+            bounds: bounds(object, map, solver, surface),
+            offset: [
+                f(object.offset.extend),
+                if beveled { f(object.offset.bevel) } else { 0.0 },
+                f(object.offset.chamfer),
+                #[allow(clippy::cast_precision_loss)] // at most 65536
+                {
+                    steps.max(1) as f32
+                },
+            ],
+            axis: [f(x), f(y), f(1.0 / length), 0.0],
+            albedo: [red, green, blue, 1.0],
+            specular: [
+                object.specular.strength,
+                object.specular.shininess,
+                f(growth.height()),
+                f(growth.low),
+            ],
+            texturing: [
+                f(look.repeat[0]),
+                f(look.repeat[1]),
+                f(look.bump),
+                f(2.0 * profile_radius),
+            ],
+            cells: [across, up, high, mirrored],
+            instances: [
+                self.instances.start,
+                self.instances.end - self.instances.start,
+                derived.shadow_map,
+                number,
+            ],
+            patches: begin(Part::Tables)
+                .zip(surface)
+                .map_or([0; 4], |(at, s)| s.tables().block(at)),
+            parts: [
+                frusta.unwrap_or(0),
+                0,
+                begin(Part::Patches).unwrap_or(0),
+                frusta.zip(surface).map_or(0, |(at, s)| {
+                    at + s.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS
+                }),
+            ],
+        })
     }
+}
+
+/// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside of
+/// which nothing is solid.
+#[allow(clippy::cast_possible_truncation)]
+fn bounds(
+    object: &Object,
+    map: &MapFacts,
+    solver: Solver,
+    surface: Option<&OffsetSurface>,
+) -> [f32; 4] {
+    let texel = 1.0 / f64::from(map.rows);
+    let grow = largest_width(&object.offset).max(0.0) + texel;
+    // The map gives no values beyond its last column.
+    let reach = if solver.reads_map() {
+        f64::from(map.columns) * texel
+    } else {
+        f64::INFINITY
+    };
+    let radius = (map.bounds.r_max + grow)
+        .min(farthest_corner(object) + texel)
+        .min(reach);
+    let patches = surface.filter(|_| solver.follows_tolerance());
+    [
+        object.profile.radius as f32,
+        radius as f32 + patches.map_or(0.0, |s| s.slack() as f32),
+        (map.bounds.z_min - grow).max(0.0) as f32,
+        (map.bounds.z_max + grow).min(1.0) as f32,
+    ]
 }

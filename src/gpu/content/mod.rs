@@ -2,29 +2,25 @@
 //! plan of the last view. It records no commands.
 //!
 //! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
-//! derives resources from new values. `planned.rs` plans a view's frame. `costs.rs` says what an
-//! object takes.
+//! derives resources from new values. `view_plan.rs` plans a view's frame.
 
-pub(super) mod costs;
 pub(super) mod entry;
-pub(super) mod object_id;
 pub(super) mod objects;
-pub(super) mod planned;
 pub(super) mod refresh;
+pub(super) mod view_plan;
 
 use crate::error::Result;
 use crate::gpu::device::Shared;
-use crate::gpu::frame::output::Output;
-use crate::gpu::memory::uploads::Uploads;
+use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::{ShadowMaps, Textures};
+use crate::gpu::vk::output::Output;
 use crate::scene::Lighting;
 use crate::settings::{Planes, SearchSettings};
 use crate::shader::ShadowCasters;
-use object_id::next_renderer;
-use objects::Objects;
-use planned::Planned;
+use objects::{Objects, next_renderer};
 use std::sync::Arc;
+use view_plan::ViewPlan;
 
 /// Objects, lights, and all that is derived from them.
 pub(super) struct Content {
@@ -35,9 +31,9 @@ pub(super) struct Content {
     pub geometry: Arc<Geometry>,
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
-    lit: Lighting,
-    /// Entries whose values differ from their prepared state.
-    changed: Vec<u32>,
+    pub lit: Lighting,
+    /// Entries whose values differ from what was derived.
+    pub changed: Vec<u32>,
     /// True if the fallback draws every entry, because one has no surface and shadows meet all by
     /// one search.
     all_fall_back: bool,
@@ -45,7 +41,7 @@ pub(super) struct Content {
     /// Counts changes.
     pub version: u64,
     /// The plan of the last view.
-    pub planned: Option<Arc<Planned>>,
+    pub plan: Option<Arc<ViewPlan>>,
     /// True if compute compares depths with those of the target.
     pub target_has_depths: bool,
     pub rebuilds: u64,
@@ -57,7 +53,12 @@ pub(super) struct Content {
 
 impl Content {
     /// No objects, for a renderer with this output.
-    pub fn new(device: &Arc<Shared>, output: Output, settings: &SearchSettings) -> Result<Self> {
+    pub fn new(
+        device: &Arc<Shared>,
+        geometry: Arc<Geometry>,
+        output: Output,
+        settings: &SearchSettings,
+    ) -> Result<Self> {
         let identity = next_renderer();
         let mut uploads = Uploads::of(identity);
         Ok(Self {
@@ -65,14 +66,14 @@ impl Content {
             textures: Textures::new(device, &mut uploads, settings.map_format)?,
             shadow_maps: Arc::default(),
             uploads,
-            geometry: Geometry::of(device)?,
+            geometry,
             lighting: Lighting::default(),
             lit: Lighting::default(),
             changed: Vec::new(),
             all_fall_back: false,
             casters: ShadowCasters::default(),
             version: 1,
-            planned: None,
+            plan: None,
             target_has_depths: true,
             rebuilds: 0,
             notes: Vec::new(),

@@ -1,19 +1,65 @@
-//! The objects of a renderer: added, removed and changed.
+//! The objects of a renderer, and their identities: the renderer, its entry, and the object in that
+//! entry.
 
 use super::Content;
 use super::entry::Entry;
-use super::object_id::{MOST_GENERATIONS, MOST_NUMBERS, ObjectId};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::renderer::Renderer;
-use crate::scene::{Copies, Lighting, Object, Offset, Placement};
+use crate::scene::Object;
 use range_alloc::RangeAllocator;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// An object of one renderer; other renderers reject the id. The id names the same object whatever
+/// is set, and no other object after the removal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ObjectId {
+    pub(in crate::gpu) renderer: u32,
+    pub(in crate::gpu) generation: u32,
+    pub(in crate::gpu) number: u32,
+}
+
+// 64 bits hold 16 million objects at once, a million objects in turn per entry, and a million
+// renderers of the process. Identities of renderers repeat after that.
+const NUMBER_BITS: u32 = 24;
+const GENERATION_BITS: u32 = 20;
+const RENDERER_BITS: u32 = 20;
+
+/// Upper limit on entries of a renderer.
+pub(in crate::gpu) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
+/// Upper limit on objects that use one entry in turn. The entry then stays empty.
+pub(in crate::gpu) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
+
+impl ObjectId {
+    /// The id as one number, never 0, for interfaces that carry plain numbers.
+    #[must_use]
+    pub const fn to_bits(self) -> u64 {
+        let renderer = (self.renderer as u64) << (NUMBER_BITS + GENERATION_BITS);
+        renderer | (self.generation as u64) << NUMBER_BITS | self.number as u64
+    }
+
+    /// The id that [`ObjectId::to_bits`] encoded. Any other number is the id of no object.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation)] // each part is masked
+    pub const fn from_bits(bits: u64) -> Self {
+        Self {
+            renderer: (bits >> (NUMBER_BITS + GENERATION_BITS)) as u32,
+            generation: (bits >> NUMBER_BITS) as u32 & (MOST_GENERATIONS - 1),
+            number: bits as u32 & (MOST_NUMBERS as u32 - 1),
+        }
+    }
+}
+
+/// The identity of a new renderer, which is not 0.
+pub(in crate::gpu) fn next_renderer() -> u32 {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1
+}
 
 /// Entries by number, their order, and ranges of instances.
 pub(crate) struct Objects {
     /// The renderer that ids name.
     pub renderer: u32,
-    places: Vec<Place>,
+    numbered: Vec<Numbered>,
     free: Vec<u32>,
     /// Numbers and generations in the order in which objects were added, including dead ones.
     order: Vec<(u32, u32)>,
@@ -22,18 +68,19 @@ pub(crate) struct Objects {
     instances: RangeAllocator<u32>,
 }
 
+/// The entry that has a number now, and how many had it before.
 #[derive(Default)]
-struct Place {
+struct Numbered {
     generation: u32,
     entry: Option<Entry>,
 }
 
 impl Objects {
-    /// An empty list, for the renderer of this identity.
+    /// No objects, for the renderer of this identity.
     pub fn of(renderer: u32) -> Self {
         Self {
             renderer,
-            places: Vec::new(),
+            numbered: Vec::new(),
             free: Vec::new(),
             order: Vec::new(),
             dead: 0,
@@ -47,8 +94,8 @@ impl Objects {
     }
 
     /// One more than the largest number that an object has had.
-    pub fn places(&self) -> usize {
-        self.places.len()
+    pub fn number_count(&self) -> usize {
+        self.numbered.len()
     }
 
     /// One more than the number of the last instance.
@@ -59,9 +106,9 @@ impl Objects {
     /// All objects with their numbers, in the order in which they were added.
     pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
         self.order.iter().filter_map(|&(number, generation)| {
-            let place = &self.places[number as usize];
-            let entry = place.entry.as_ref()?;
-            (place.generation == generation).then_some((number, entry))
+            let numbered = &self.numbered[number as usize];
+            let entry = numbered.entry.as_ref()?;
+            (numbered.generation == generation).then_some((number, entry))
         })
     }
 
@@ -72,12 +119,12 @@ impl Objects {
 
     /// The entry of a number; `None` if it is gone.
     pub fn at(&self, number: u32) -> Option<&Entry> {
-        self.places.get(number as usize)?.entry.as_ref()
+        self.numbered.get(number as usize)?.entry.as_ref()
     }
 
     /// The mutable entry of a number; `None` if it is gone.
     pub fn at_mut(&mut self, number: u32) -> Option<&mut Entry> {
-        self.places.get_mut(number as usize)?.entry.as_mut()
+        self.numbered.get_mut(number as usize)?.entry.as_mut()
     }
 
     /// The position of an object in the order of all objects.
@@ -85,38 +132,38 @@ impl Objects {
         self.ordered().position(|(n, _)| n == number).unwrap_or(0)
     }
 
-    fn add(&mut self, object: Object, version: u64) -> Result<ObjectId> {
-        if self.free.is_empty() && self.places.len() == MOST_NUMBERS {
+    pub fn add(&mut self, object: Object, version: u64) -> Result<ObjectId> {
+        if self.free.is_empty() && self.numbered.len() == MOST_NUMBERS {
             let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
         let instances = self.allocate(object.placements().len())?;
         let number = self.free.pop().unwrap_or_else(|| {
-            self.places.push(Place::default());
-            self.places.len() as u32 - 1
+            self.numbered.push(Numbered::default());
+            self.numbered.len() as u32 - 1
         });
-        let place = &mut self.places[number as usize];
-        place.entry = Some(Entry::new(object, instances, version));
-        self.order.push((number, place.generation));
+        let numbered = &mut self.numbered[number as usize];
+        numbered.entry = Some(Entry::new(object, instances, version));
+        self.order.push((number, numbered.generation));
         Ok(ObjectId {
             renderer: self.renderer,
             number,
-            generation: place.generation,
+            generation: numbered.generation,
         })
     }
 
-    fn remove(&mut self, id: ObjectId) {
-        let place = &mut self.places[id.number as usize];
-        place.generation += 1;
-        if let Some(entry) = place.entry.take() {
+    pub fn remove(&mut self, id: ObjectId) {
+        let numbered = &mut self.numbered[id.number as usize];
+        numbered.generation += 1;
+        if let Some(entry) = numbered.entry.take() {
             self.instances.free_range(entry.instances);
         }
-        if place.generation < MOST_GENERATIONS {
+        if numbered.generation < MOST_GENERATIONS {
             self.free.push(id.number);
         }
         self.dead += 1;
         if self.dead > self.order.len() / 2 {
-            let alive = |&(n, g): &(u32, u32)| self.places[n as usize].generation == g;
+            let alive = |&(n, g): &(u32, u32)| self.numbered[n as usize].generation == g;
             self.order.retain(alive);
             self.dead = 0;
         }
@@ -145,150 +192,23 @@ impl Objects {
     }
 }
 
-impl Renderer {
-    /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::TooLarge`] for
-    /// more than 2^31 instances or 2^24 objects.
-    pub fn add(&mut self, object: Object) -> Result<ObjectId> {
-        object.check()?;
-        self.content.version += 1;
-        let id = self.content.objects.add(object, self.content.version)?;
-        self.content.changed.push(id.number);
-        Ok(id)
-    }
-
-    /// Removes an object. Frames that were prepared earlier keep it until they are done.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Usage`] for an object that does not exist.
-    pub fn remove(&mut self, id: ObjectId) -> Result<()> {
-        self.content.entry(id)?;
-        self.content.objects.remove(id);
-        self.content.version += 1;
-        Ok(())
-    }
-
-    /// The values of an object that were set last.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Usage`] for an object that does not exist.
-    pub fn object(&self, id: ObjectId) -> Result<&Object> {
-        Ok(self.content.entry(id)?.latest())
-    }
-
-    /// Sets all values of an object. Equal values cost nothing.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::Usage`] for an
-    /// object that does not exist.
-    pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
-        object.check()?;
-        let latest = self.content.entry(id)?.latest();
-        if latest.same_look(&object) {
-            if latest.instances != object.instances {
-                self.set_instances(id, object.instances)?;
-            }
-            return self.set_placement(id, object.placement);
-        }
-        self.content.resize(id, object.placements().len())?;
-        self.content.change(id)?.wanted = Some(object);
-        self.content.changed.push(id.number);
-        Ok(())
-    }
-
-    /// Moves the surface of an object.
-    ///
-    /// # Errors
-    /// Same as [`Renderer::set`].
-    pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
-        offset.check()?;
-        if self.content.entry(id)?.latest().offset == offset {
-            return Ok(());
-        }
-        let entry = self.content.change(id)?;
-        let (wanted, object) = (&mut entry.wanted, &entry.object);
-        wanted.get_or_insert_with(|| object.clone()).offset = offset;
-        self.content.changed.push(id.number);
-        Ok(())
-    }
-
-    /// Moves an object that has one copy.
-    ///
-    /// # Errors
-    /// Same as [`Renderer::set`].
-    pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
-        placement.check()?;
-        if self.content.entry(id)?.latest().placement == placement {
-            return Ok(());
-        }
-        let entry = self.content.change(id)?;
-        entry.object.placement = placement;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.placement = placement;
-        }
-        if let Some(grown) = &mut entry.grown {
-            grown.object.placement = grown.growth.placement(&placement);
-        }
-        Ok(())
-    }
-
-    /// Sets the copies of an object. An empty list gives one copy, at the object's placement.
-    ///
-    /// # Errors
-    /// Same as [`Renderer::set`].
-    pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
-        let instances = instances.into();
-        instances.check(|all| all.iter().try_for_each(Placement::check))?;
-        self.content.resize(id, instances.len().max(1))?;
-        let entry = self.content.change(id)?;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.instances.clone_from(&instances);
-        }
-        if let Some(grown) = &mut entry.grown {
-            let all = instances.iter().map(|p| grown.growth.placement(p));
-            grown.object.instances = all.collect();
-        }
-        entry.object.instances = instances;
-        Ok(())
-    }
-
-    /// Sets lights and shadows for all objects.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`] for values out of range, with the key.
-    pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
-        lighting.check()?;
-        crate::gpu::resources::block::check_lights(lighting)?;
-        let codes = |l: &Lighting| (l.lights.len(), l.shadow);
-        if codes(lighting) != codes(&self.content.lighting) {
-            self.content.changed.extend(self.content.objects.numbers());
-            self.content.version += 1;
-        }
-        if codes(lighting) == codes(&self.content.lit) {
-            self.content.lit = lighting.clone();
-        }
-        self.content.lighting = lighting.clone();
-        Ok(())
-    }
-}
-
 impl Content {
     /// Returns the entry of an object, or an error if the object does not exist.
-    fn entry(&self, id: ObjectId) -> Result<&Entry> {
-        let place = self.objects.places.get(id.number as usize);
-        let place = place.filter(|place| {
-            place.generation == id.generation && id.renderer == self.objects.renderer
+    pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
+        let numbered = self.objects.numbered.get(id.number as usize);
+        let numbered = numbered.filter(|numbered| {
+            numbered.generation == id.generation && id.renderer == self.objects.renderer
         });
-        place.and_then(|place| place.entry.as_ref()).ok_or_else(|| {
-            let message = "the object was removed, or is another renderer's";
-            Error::new(ErrorKind::Usage, message)
-        })
+        numbered
+            .and_then(|numbered| numbered.entry.as_ref())
+            .ok_or_else(|| {
+                let message = "the object was removed, or is another renderer's";
+                Error::new(ErrorKind::Usage, message)
+            })
     }
 
     /// Returns the entry of an object, marked as changed.
-    fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
+    pub fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
         self.entry(id)?;
         self.version += 1;
         let version = self.version;
@@ -299,11 +219,35 @@ impl Content {
     }
 
     /// Gives an object room for exactly this many copies.
-    fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
+    pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
         if self.entry(id)?.instances.len() != count {
             self.objects.resize(id.number, count)?;
             self.change(id)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_id_comes_back_from_its_bits() {
+        let (most, last) = ((1 << RENDERER_BITS) - 1, MOST_GENERATIONS - 1);
+        for renderer in [1, 2, most] {
+            for generation in [0, 1, last] {
+                for number in [0, 1, MOST_NUMBERS as u32 - 1] {
+                    let id = ObjectId {
+                        renderer,
+                        generation,
+                        number,
+                    };
+                    assert_ne!(id.to_bits(), 0);
+                    assert_eq!(ObjectId::from_bits(id.to_bits()), id);
+                }
+            }
+        }
+        assert_ne!(next_renderer(), next_renderer());
     }
 }

@@ -1,34 +1,39 @@
-//! Conversion of an object's values to device resources. All objects are prepared before any new
-//! value is stored. A failure restores what shadows need of all objects.
+//! Conversion of values to all that does not depend on a view: solids, contours, maps, textures and
+//! variants. All is derived before any new value is stored. A failure restores what
+//! shadows need of all objects.
 
 use super::Content;
-use super::entry::{Entry, Prepared};
+use super::entry::{Derived, Entry};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::resources::block::check_format;
-use crate::gpu::resources::map_key::MapKey;
-use crate::gpu::resources::shape_texture::ShapeTexture;
+use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
-use crate::gpu::resources::textures::{Bound, ShadowMaps};
+use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
 use crate::maps::Projection;
-use crate::plan::{View, levels};
 use crate::scene::{GrownObject, Growth, Object, Shadow};
 use crate::settings::Solver;
-use crate::shader::generated::{MAX_SHADOW_BATCHES, MAX_SHADOW_MAPS};
+use crate::shader::generated::{MAX_SHADOW_MAPS, MAX_SHADOW_OBJECTS};
 use crate::shader::{ShadowCasters, Variant};
 use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::outline_cache::OffsetContour;
+use rayon::prelude::*;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// The search for objects without a surface of their own; it reads only the map.
 pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
-/// A changed object, resolved before the device is touched.
+/// An object for which all is derived anew, and what was found for it so far.
 struct Resolved {
     number: u32,
     /// The object in a box that has grown.
     grown: Option<GrownObject>,
     solid: Arc<Solid>,
-    level: u8,
-    surface: Option<Arc<OffsetSurface>>,
+    /// The contour of a search on patches, made.
+    contour: Option<Arc<OffsetContour>>,
+    /// The table of another crate's search, made.
+    table: Option<Arc<OffsetSurface>>,
+    map: Option<Arc<ShapeTexture>>,
 }
 
 impl Resolved {
@@ -37,13 +42,18 @@ impl Resolved {
         let own = (entry.latest(), Growth::default());
         self.grown.as_ref().map_or(own, |g| (&g.object, g.growth))
     }
+
+    /// True if the search on patches has no contour to search.
+    fn fails(&self) -> bool {
+        self.contour.as_ref().is_some_and(|c| c.get().is_err())
+    }
 }
 
 impl Content {
     /// Applies the values that were added and set since the last call. After an error, objects
     /// added since that call are left out until they are set again. Lights and all other values but
-    /// placements and copies are again those of that call. `view` is the view of the next frame, if it is known.
-    pub fn refresh(&mut self, view: Option<&View>) -> Result<()> {
+    /// placements and copies are again those of that call.
+    pub fn refresh(&mut self) -> Result<()> {
         if self.changed.is_empty() {
             return Ok(());
         }
@@ -51,7 +61,7 @@ impl Content {
         changed.sort_unstable();
         changed.dedup();
         let before = (self.all_fall_back, self.casters, self.shadow_maps.clone());
-        let result = self.apply(&changed, view);
+        let result = self.apply(&changed);
         if result.is_ok() {
             self.lit.clone_from(&self.lighting);
         } else {
@@ -80,51 +90,42 @@ impl Content {
         Ok(())
     }
 
-    fn apply(&mut self, changed: &[u32], view: Option<&View>) -> Result<()> {
-        let resolved = self.resolve(changed, view)?;
-        let (falls_back, casters) = (self.falls_back(&resolved), self.shadow_casters());
-        if falls_back != self.all_fall_back || casters != self.casters {
-            (self.all_fall_back, self.casters) = (falls_back, casters);
+    /// Prepares the changed objects, and all others if the frame's common data changes.
+    fn apply(&mut self, changed: &[u32]) -> Result<()> {
+        let mut work = self.resolve(changed)?;
+        let common = (self.falls_back(&work), self.shadow_casters());
+        if common != (self.all_fall_back, self.casters) {
+            (self.all_fall_back, self.casters) = common;
             // Other code draws each object from now on.
-            if changed.len() < self.objects.len() {
-                let all = self.objects.numbers();
-                return self.apply(&all, view);
-            }
+            work.extend(self.resolve(&self.others(&work))?);
         }
         let casts = self.lighting.shadow != Shadow::Off;
-        if casts && self.objects.len() > MAX_SHADOW_BATCHES as usize {
-            let (count, most) = (self.objects.len(), MAX_SHADOW_BATCHES);
+        if casts && self.objects.len() > MAX_SHADOW_OBJECTS as usize {
+            let (count, most) = (self.objects.len(), MAX_SHADOW_OBJECTS);
             return Err(Error::new(
                 ErrorKind::Content,
                 format!("shadows between {count} objects; at most {most} are drawn: use instances, or set \"off\""),
             )
             .at_key("shadow"));
         }
-        let mut mapped = Vec::with_capacity(resolved.len());
-        for one in resolved {
-            let map = self
-                .map_of(&one)
-                .map_err(|e| self.named(e, one.number, "profile"))?;
-            mapped.push((one, map));
+        self.find_maps(&mut work)?;
+        let shadow_maps = self.shadow_maps_with(&work)?;
+        if !Arc::ptr_eq(&shadow_maps, &self.shadow_maps) {
+            self.shadow_maps = shadow_maps;
+            // Each object binds the new maps.
+            let mut others = self.resolve(&self.others(&work))?;
+            self.find_maps(&mut others)?;
+            work.extend(others);
         }
-        let shadow_maps = self.shadow_maps_with(&mapped)?;
-        let all_anew = !Arc::ptr_eq(&shadow_maps, &self.shadow_maps);
-        self.shadow_maps = shadow_maps;
-        if all_anew && mapped.len() < self.objects.len() {
-            let all = self.objects.numbers();
-            return self.apply(&all, view);
-        }
-        let mut ready = Vec::with_capacity(mapped.len());
-        for (one, map) in mapped {
-            let number = one.number;
-            let prepared = self
-                .prepared(&one, map)
-                .map_err(|e| self.named(e, number, "profile"))?;
-            ready.push((number, one.grown, prepared));
+        let mut ready = Vec::with_capacity(work.len());
+        for one in work {
+            let derived = self.derive(&one);
+            let derived = derived.map_err(|e| self.named(e, one.number, "profile"))?;
+            ready.push((one.number, one.grown, derived));
         }
         self.version += 1;
         let version = self.version;
-        for (number, grown, prepared) in ready {
+        for (number, grown, derived) in ready {
             let Some(entry) = self.objects.at_mut(number) else {
                 continue;
             };
@@ -132,88 +133,94 @@ impl Content {
                 entry.object = wanted;
             }
             entry.grown = grown;
-            entry.prepared = Some(prepared);
+            entry.derived = Some(derived);
             entry.version = version;
         }
         Ok(())
     }
 
-    /// Finds or makes the surfaces of changed objects, on all cores.
-    fn resolve(&mut self, changed: &[u32], view: Option<&View>) -> Result<Vec<Resolved>> {
+    /// The numbers of all other objects.
+    fn others(&self, work: &[Resolved]) -> Vec<u32> {
+        let known: HashSet<u32> = work.iter().map(|one| one.number).collect();
+        let mut all = self.objects.numbers();
+        all.retain(|number| !known.contains(number));
+        all
+    }
+
+    /// Finds or makes the solids, contours and tables of objects, on all cores.
+    fn resolve(&mut self, numbers: &[u32]) -> Result<Vec<Resolved>> {
         let solver = self.settings.solver;
-        let mut resolved = Vec::with_capacity(changed.len());
-        for &number in changed {
+        let mut resolved = Vec::with_capacity(numbers.len());
+        let mut geometry = self.geometry.lock()?;
+        for &number in numbers {
             let Some(entry) = self.objects.at(number) else {
                 continue;
             };
-            let mut geometry = self.geometry.lock()?;
             let grown = geometry.solids.grown.grown(entry.latest());
             let object = grown.as_ref().map_or(entry.latest(), |g| &g.object);
             let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
             let solid = geometry.solids.get(&object.profile);
-            drop(geometry);
-            // The common level for shadows is known only when all objects are planned.
-            let level = match view {
-                Some(view) if self.has_levels() && self.lighting.shadow == Shadow::Off => {
-                    let pixels = levels::pixels_per_unit(object, growth.height(), view, false);
-                    levels::coarsest(self.settings.tolerance, pixels)
-                }
-                _ => 0,
-            };
-            let surface = if solver.reads_map() {
-                None
-            } else if let Solver::Other(search) = solver {
+            let (mut contour, mut table) = (None, None);
+            if solver.follows_tolerance() {
+                contour = Some(solid.contour(&object.offset)?);
+            } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
                 let rows = MapKey::new(object, &growth, &self.settings).rows;
-                Some(solid.search_table(search, &object.offset, rows)?)
-            } else {
-                Some(solid.patches(&object.offset, &growth, level)?)
-            };
+                table = Some(solid.search_table(search, &object.offset, rows)?);
+            }
             resolved.push(Resolved {
                 number,
                 grown,
                 solid,
-                level,
-                surface,
+                contour,
+                table,
+                map: None,
             });
         }
-        let surfaces: Vec<_> = resolved.iter().filter_map(|r| r.surface.clone()).collect();
-        self.make_surfaces(&surfaces);
+        drop(geometry);
+        self.rebuilds += make_contours(&resolved);
+        let tables: Vec<_> = resolved.iter().filter_map(|r| r.table.clone()).collect();
+        self.make_surfaces(&tables);
         for one in &resolved {
-            let Some(error) = one.surface.as_ref().and_then(|s| s.failure()) else {
-                continue;
-            };
-            if solver.reads_own_table() {
+            if let Some(error) = one.table.as_ref().and_then(|table| table.failure()) {
                 return Err(self.named(error.clone(), one.number, "profile"));
             }
-            let entry = self.objects.at(one.number);
-            let name = entry.map_or("", |e| &e.latest().name);
-            let note = format!(
-                "object.{} ({name}) is drawn by the search {} in place of {}: {}",
-                self.objects.position(one.number),
-                FALLBACK.name(),
-                solver.name(),
-                error.message
-            );
-            if !self.notes.contains(&note) {
-                self.notes.push(note);
-            }
+            let error = one.contour.as_ref().and_then(|c| c.get().err());
+            self.note_fallback(one.number, error);
         }
         Ok(resolved)
     }
 
+    /// Adds a note on an object whose contour failed with this error.
+    fn note_fallback(&mut self, number: u32, error: Option<&Error>) {
+        let Some(error) = error else {
+            return;
+        };
+        let name = self.objects.at(number).map_or("", |e| &e.latest().name);
+        let note = format!(
+            "object.{} ({name}) is drawn by the search {} in place of {}: {}",
+            self.objects.position(number),
+            FALLBACK.name(),
+            self.settings.solver.name(),
+            error.message
+        );
+        if !self.notes.contains(&note) {
+            self.notes.push(note);
+        }
+    }
+
     /// Returns true if shadows force the fallback on all objects: a shadow's ray meets every solid
     /// by one search.
-    fn falls_back(&self, resolved: &[Resolved]) -> bool {
-        let fails =
-            |s: &Option<Arc<OffsetSurface>>| s.as_ref().is_some_and(|s| s.failure().is_some());
-        let is_new = |number: u32| resolved.iter().any(|r| r.number == number);
-        let of_old = |(number, entry): (u32, &Entry)| {
-            let prepared = entry.prepared.as_ref();
-            let surface = prepared.and_then(|p| p.levels.first().map(|l| l.1.clone()));
-            prepared.is_some_and(|p| p.fails || fails(&surface)) && !is_new(number)
+    fn falls_back(&self, work: &[Resolved]) -> bool {
+        let fails = |derived: &Derived| {
+            let contour = derived.contour.as_ref();
+            contour.is_some_and(|contour| contour.get().is_err())
+        };
+        let old = |number: &u32| {
+            let entry = self.objects.at(*number);
+            entry.is_some_and(|entry| entry.derived.as_ref().is_some_and(fails))
         };
         self.lighting.shadow != Shadow::Off
-            && (resolved.iter().any(|r| fails(&r.surface)) || self.objects.ordered().any(of_old))
+            && (work.iter().any(Resolved::fails) || self.others(work).iter().any(old))
     }
 
     /// The properties of solids that shadow rays may meet; the default without shadows.
@@ -228,43 +235,48 @@ impl Content {
         }
     }
 
-    fn solver_of(&self, surface: Option<&Arc<OffsetSurface>>) -> Solver {
-        let fails = surface.is_some_and(|s| s.failure().is_some());
-        if fails || (self.all_fall_back && surface.is_some()) {
+    /// The search that draws an object.
+    fn solver_of(&self, one: &Resolved) -> Solver {
+        if one.fails() || (self.all_fall_back && one.contour.is_some()) {
             FALLBACK
         } else {
             self.settings.solver
         }
     }
 
-    /// The shape map of a changed object; `None` if nothing reads it.
-    fn map_of(&mut self, one: &Resolved) -> Result<Option<Arc<ShapeTexture>>> {
-        if !self.solver_of(one.surface.as_ref()).reads_map() {
-            return Ok(None);
+    /// Finds or bakes the shape maps of objects.
+    fn find_maps(&mut self, work: &mut [Resolved]) -> Result<()> {
+        for one in work {
+            let map = self.map_of(one);
+            one.map = map.map_err(|e| self.named(e, one.number, "profile"))?;
         }
+        Ok(())
+    }
+
+    /// The shape map of an object; `None` if nothing reads it.
+    fn map_of(&mut self, one: &Resolved) -> Result<Option<Arc<ShapeTexture>>> {
         let Some(entry) = self.objects.at(one.number) else {
             return Ok(None);
         };
+        if !self.solver_of(one).reads_map() {
+            return Ok(None);
+        }
         let (wanted, growth) = one.shown(entry);
         let key = MapKey::new(wanted, &growth, &self.settings);
-        let there = entry.prepared.as_ref().and_then(|p| p.map.as_ref());
+        let there = entry.derived.as_ref().and_then(|p| p.map.as_ref());
         if let Some(there) = there
             && Arc::ptr_eq(&wanted.profile, &entry.drawn().profile)
             && there.key.holds(&key)
         {
             return Ok(Some(there.clone()));
         }
-        one.solid
-            .map(&self.device, &mut self.uploads, key)
-            .map(Some)
+        let map = one.solid.map(&self.device, &mut self.uploads, key)?;
+        Ok(Some(map))
     }
 
-    /// The maps that shadows read, including maps of changed objects. Returns the present list if
+    /// The maps that shadows read, including maps of changed objects. Returns the present value if
     /// nothing differs.
-    fn shadow_maps_with(
-        &self,
-        mapped: &[(Resolved, Option<Arc<ShapeTexture>>)],
-    ) -> Result<Arc<ShadowMaps>> {
+    fn shadow_maps_with(&self, work: &[Resolved]) -> Result<Arc<ShadowMaps>> {
         if self.lighting.shadow == Shadow::Off {
             return Ok(if self.shadow_maps.maps.is_empty() {
                 self.shadow_maps.clone()
@@ -274,10 +286,9 @@ impl Content {
         }
         let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
         for (number, entry) in self.objects.ordered() {
-            let new = mapped.iter().find(|(r, _)| r.number == number);
-            let map = match new {
-                Some((_, map)) => map.as_ref(),
-                None => entry.prepared.as_ref().and_then(|p| p.map.as_ref()),
+            let map = match work.iter().find(|one| one.number == number) {
+                Some(one) => one.map.as_ref(),
+                None => entry.derived.as_ref().and_then(|p| p.map.as_ref()),
             };
             if let Some(map) = map
                 && !maps.iter().any(|m| Arc::ptr_eq(m, map))
@@ -305,18 +316,18 @@ impl Content {
         })
     }
 
-    fn prepared(&mut self, one: &Resolved, map: Option<Arc<ShapeTexture>>) -> Result<Prepared> {
-        let (number, solid, surface) = (one.number, &one.solid, one.surface.clone());
-        let solver = self.solver_of(surface.as_ref());
+    /// Makes all that draws an object.
+    fn derive(&mut self, one: &Resolved) -> Result<Derived> {
+        let (number, solid, solver) = (one.number, &one.solid, self.solver_of(one));
         let Some(entry) = self.objects.at(number) else {
             return Err(Error::new(
                 ErrorKind::Other,
-                "an object is gone while it is prepared",
+                "an object is gone while it is refreshed",
             ));
         };
         let (object, growth) = one.shown(entry);
         check_format(entry.latest(), solver, &self.settings).map_err(|e| self.under(e, number))?;
-        let facts = map.as_ref().map_or_else(
+        let facts = one.map.as_ref().map_or_else(
             || MapKey::new(object, &growth, &self.settings).unbaked(&object.profile),
             |m| m.facts,
         );
@@ -328,28 +339,24 @@ impl Content {
         let planes = self.output.planes();
         let (settings, lighting) = (&self.settings, &self.lighting);
         let variant = Variant::new(settings, planes, solver, lighting, object, self.casters);
-        let shadow_map = map.as_ref().and_then(|map| {
+        let shadow_map = one.map.as_ref().and_then(|map| {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
         });
-        let bound = Bound {
+        let bound = ObjectTextures {
             look: &object.texturing,
-            shape: map.clone(),
+            shape: one.map.clone(),
             arc: arc.clone(),
             shadows: &self.shadow_maps,
         };
-        Ok(Prepared {
+        Ok(Derived {
             textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
             solid: solid.clone(),
-            fails: surface.as_ref().is_some_and(|s| s.failure().is_some()),
-            levels: surface
-                .filter(|_| !solver.reads_map())
-                .map(|surface| (one.level, surface))
-                .into_iter()
-                .collect(),
+            contour: one.contour.clone(),
+            levels: one.table.iter().map(|table| (0, table.clone())).collect(),
             solver,
             takes_patches: solver == Solver::Exact && settings.proxy_min_pixels != u32::MAX,
-            map,
+            map: one.map.clone(),
             facts,
             arc,
             shadow_map: shadow_map.and_then(|n| u32::try_from(n).ok()).unwrap_or(0),
@@ -383,4 +390,15 @@ impl Content {
         }
         error
     }
+}
+
+/// Makes all contours that are not made yet, on all cores, each once. Returns the number of those
+/// that do not close.
+fn make_contours(resolved: &[Resolved]) -> u64 {
+    let contours = resolved.iter().filter_map(|one| one.contour.as_ref());
+    let mut new: Vec<_> = contours.filter(|contour| !contour.is_made()).collect();
+    new.sort_unstable_by_key(|contour| Arc::as_ptr(contour));
+    new.dedup_by_key(|contour| Arc::as_ptr(contour));
+    let fails = new.par_iter().filter(|contour| contour.get().is_err());
+    fails.count() as u64
 }

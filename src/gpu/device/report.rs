@@ -3,7 +3,8 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::instance::{API_VERSION, Instance};
 use crate::gpu::vk::call::Call;
-use crate::shader::generated::GROUP_PIXELS;
+use crate::gpu::vk::pipelines::DeviceConstants;
+use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
 use ash::vk;
 use std::ffi::CStr;
 
@@ -32,6 +33,7 @@ pub struct DeviceReport {
 }
 
 /// A device with the values that opening it needs.
+#[derive(Clone)]
 pub(crate) struct Candidate {
     pub report: DeviceReport,
     pub physical: vk::PhysicalDevice,
@@ -44,11 +46,12 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Returns true if textures are filtered anisotropically. Software devices take ten times as
-    /// long for it, and llvmpipe filters differently in fragment and compute shaders.
-    pub fn anisotropic(&self) -> bool {
-        self.features.sampler_anisotropy == vk::TRUE
-            && self.properties.device_type != vk::PhysicalDeviceType::CPU
+    /// The largest anisotropy of textures; none if they are not filtered so. Software devices take
+    /// ten times as long for it, and llvmpipe filters differently in fragment and compute shaders.
+    pub fn anisotropy(&self) -> Option<f32> {
+        let filters = self.features.sampler_anisotropy == vk::TRUE
+            && self.properties.device_type != vk::PhysicalDeviceType::CPU;
+        filters.then_some(self.properties.limits.max_sampler_anisotropy)
     }
 
     /// Returns true if triangles can be clipped by the four sides of a box, and corners are placed
@@ -94,11 +97,21 @@ impl Candidate {
         self.extensions.iter().any(named)
     }
 
+    /// The constants of all pipelines.
+    pub fn constants(&self) -> DeviceConstants {
+        let most = self.properties.limits.max_uniform_buffer_range / 16;
+        DeviceConstants {
+            own_vectors: most.clamp(PATCH_VECTORS, MOST_OWN_VECTORS),
+            large_points: self.large_points(),
+            fetched_cells: self.properties.device_type != vk::PhysicalDeviceType::CPU,
+        }
+    }
+
     /// The optional features that are enabled if the device offers them.
     pub fn wanted_features(&self) -> vk::PhysicalDeviceFeatures {
         vk::PhysicalDeviceFeatures {
             fragment_stores_and_atomics: vk::TRUE,
-            sampler_anisotropy: vk::Bool32::from(self.anisotropic()),
+            sampler_anisotropy: vk::Bool32::from(self.anisotropy().is_some()),
             shader_clip_distance: vk::Bool32::from(self.clips()),
             large_points: vk::Bool32::from(self.large_points()),
             multi_draw_indirect: self.features.multi_draw_indirect,
@@ -121,7 +134,7 @@ impl Candidate {
         let side = limits.max_image_dimension2_d;
         [
             ("GPU timestamps", timestamps),
-            ("anisotropic filtering", yes_no(self.anisotropic())),
+            ("anisotropic filtering", yes_no(self.anisotropy().is_some())),
             ("hulls of solids that their box cuts", yes_no(self.clips())),
             ("squares of crowds as points", yes_no(self.large_points())),
             ("largest map", format!("{side} texels a side")),

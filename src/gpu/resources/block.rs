@@ -1,15 +1,12 @@
 //! Conversion of scene values to the blocks that shaders read.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::resources::blocks::{FrameBlock, InstanceBlock, LightBlock, SolidBlock};
-use crate::gpu::resources::map_key::MapFacts;
 use crate::maps::MapFormat;
 use crate::plan::{DepthOrder, View};
-use crate::scene::{Growth, Lighting, Object, Placement};
+use crate::scene::{Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
-use crate::shader::is_beveled;
-use crate::solid::reach::{farthest_corner, largest_width};
+use crate::shader::{FrameBlock, InstanceBlock, LightBlock};
 use glam::DVec3;
 
 /// Returns an error if a map's format cannot show the object's offset.
@@ -28,104 +25,13 @@ pub(crate) fn check_format(
     Ok(())
 }
 
-/// The object's block. `instances` is the range of its copies, `shadow_map` the index of its map
-/// among the maps that shadows read.
-pub(crate) fn solid_block(
-    object: &Object,
-    map: &MapFacts,
-    arc_length: f64,
-    instances: &std::ops::Range<u32>,
-    shadow_map: u32,
-    solver: Solver,
-    settings: &SearchSettings,
-) -> SolidBlock {
-    let texel = 1.0 / f64::from(map.rows);
-    let width = largest_width(&object.offset);
-    let grow = width.max(0.0) + texel;
-    let [x, y] = object.axis_offset();
-    // The map gives no values beyond its last column.
-    let reach = if solver.reads_map() {
-        f64::from(map.columns) * texel
-    } else {
-        f64::INFINITY
-    };
-    let clip = (map.bounds.r_max + grow)
-        .min(farthest_corner(object) + texel)
-        .min(reach);
-    #[allow(clippy::cast_possible_truncation)]
-    let f = |v: f64| v as f32;
-    let look = &object.texturing;
-    let beveled = is_beveled(object);
-    let steps = settings
-        .max_steps
-        .unwrap_or_else(|| solver.default_steps(beveled))
-        .max(1);
-    let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
-    SolidBlock {
-        #[allow(clippy::cast_precision_loss)] // at most 16384
-        map: [map.columns as f32, map.rows as f32, f(texel), map.scale],
-        bounds: [
-            f(object.profile.radius),
-            f(clip),
-            f((map.bounds.z_min - grow).max(0.0)),
-            f((map.bounds.z_max + grow).min(1.0)),
-        ],
-        offset: [
-            f(object.offset.extend),
-            if beveled { f(object.offset.bevel) } else { 0.0 },
-            f(object.offset.chamfer),
-            #[allow(clippy::cast_precision_loss)] // at most 65536
-            {
-                steps as f32
-            },
-        ],
-        axis: [f(x), f(y), f(1.0 / arc_length), 0.0],
-        albedo: [object.color[0], object.color[1], object.color[2], 1.0],
-        specular: [
-            object.specular.strength,
-            object.specular.shininess,
-            1.0,
-            0.0,
-        ],
-        texturing: [
-            f(look.repeat[0]),
-            f(look.repeat[1]),
-            f(look.bump),
-            f(2.0 * object.profile.radius),
-        ],
-        cells: [
-            object.repeat[0],
-            object.repeat[1],
-            object.repeat[2],
-            mirrored,
-        ],
-        instances: [
-            instances.start,
-            instances.end - instances.start,
-            shadow_map,
-            0,
-        ],
-        patches: [0; 4],
-        hull: [0; 4],
-    }
-}
-
-/// Adds the values by which textures find the profile's box in a larger box, whose radius is
-/// `radius`.
-#[allow(clippy::cast_possible_truncation)]
-pub(crate) fn note_growth(block: &mut SolidBlock, growth: &Growth, radius: f64) {
-    block.specular[2] = growth.height() as f32;
-    block.specular[3] = growth.low as f32;
-    block.texturing[3] = (2.0 * (radius * growth.height() - growth.side)) as f32;
-}
-
 /// The block of one copy of `object` in a view. World coordinates are subtracted here, in double
 /// precision.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn instance_block(
     object: &Object,
     placement: &Placement,
-    solid: u32,
+    number: u32,
     view: &View,
 ) -> InstanceBlock {
     let rotation = placement.rotation.normalize();
@@ -149,7 +55,7 @@ pub(crate) fn instance_block(
         rotation: q.to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
-        solid: [solid, reach.to_bits(), 0, 0],
+        object: [number, reach.to_bits(), 0, 0],
     }
 }
 

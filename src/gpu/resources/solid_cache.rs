@@ -6,16 +6,16 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::uploads::Uploads;
-use crate::gpu::resources::map_key::{MapFacts, MapKey};
+use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
+use crate::gpu::resources::shape_texture::{MapFacts, MapKey};
 use crate::plan::levels;
 use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Growth, Offset};
 use crate::search::Search;
 use crate::solid::kept::Kept;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
-use crate::solid::outline_cache::OutlineCache;
+use crate::solid::outline_cache::{OffsetContour, OutlineCache};
 use std::hash::Hash;
 use std::sync::{Arc, Mutex};
 
@@ -32,6 +32,7 @@ pub(crate) struct SolidCache {
 /// Everything that is made from one profile.
 pub(crate) struct Solid {
     pub outline: Arc<OutlineCache>,
+    contours: Shelf<[u64; 3], OffsetContour>,
     surfaces: Shelf<SurfaceKey, OffsetSurface>,
     /// The key includes the uploading renderer: commands of two renderers may run in any order.
     maps: Shelf<(u32, MapKey), ShapeTexture>,
@@ -71,13 +72,21 @@ impl Solid {
     fn new(profile: &Arc<Profile>) -> Self {
         Self {
             outline: Arc::new(OutlineCache::new(profile)),
+            contours: Shelf::default(),
             surfaces: Shelf::default(),
             maps: Shelf::default(),
             arcs: Shelf::default(),
         }
     }
 
-    /// The boundary as quadrics. A new surface is not made yet.
+    /// The contour under an offset. A new contour is not made yet.
+    pub fn contour(&self, offset: &Offset) -> Result<Arc<OffsetContour>> {
+        shelved(&self.contours, bits(offset), || {
+            Ok(OffsetContour::new(&self.outline, offset))
+        })
+    }
+
+    /// The boundary under an offset as quadrics. A new surface is not made yet.
     pub fn patches(
         &self,
         offset: &Offset,
@@ -87,7 +96,7 @@ impl Solid {
         let key = SurfaceKey::Patches(bits(offset), level);
         shelved(&self.surfaces, key, || {
             let tolerance = levels::bound(level) / growth.height();
-            let recipe = Recipe::Patches(self.outline.clone(), *offset, level, tolerance);
+            let recipe = Recipe::Patches(self.contour(offset)?, level, tolerance);
             Ok(OffsetSurface::new(recipe))
         })
     }
@@ -101,7 +110,7 @@ impl Solid {
     ) -> Result<Arc<OffsetSurface>> {
         let key = SurfaceKey::Search(search, bits(offset), rows);
         shelved(&self.surfaces, key, || {
-            let recipe = Recipe::Search(search, self.outline.clone(), *offset, rows);
+            let recipe = Recipe::Search(search, self.contour(offset)?, rows);
             Ok(OffsetSurface::new(recipe))
         })
     }

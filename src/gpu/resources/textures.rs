@@ -1,19 +1,18 @@
 //! The textures that an object's shader samples: colour and displacement maps, each on the device
 //! once. The sets that bind them.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Image;
-use crate::gpu::memory::uploads::Uploads;
+use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
-use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
-use crate::gpu::vk::sampler::{Sampler, Wrap};
+use crate::gpu::resources::texture_binding::{Sampler, SetPool, Wrap};
 use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
 use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::solid::kept::Kept;
 use ash::vk;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 /// A colour or displacement map on the device. The map is kept because its address is the key.
 struct Covering<M> {
@@ -55,7 +54,7 @@ pub(crate) struct Textures {
 }
 
 /// The textures that an object binds.
-pub(crate) struct Bound<'a> {
+pub(crate) struct ObjectTextures<'a> {
     pub look: &'a Texturing,
     pub shape: Option<Arc<ShapeTexture>>,
     pub arc: Option<Arc<ArcTexture>>,
@@ -89,9 +88,9 @@ impl Textures {
         &mut self,
         device: &Arc<Shared>,
         uploads: &mut Uploads,
-        bound: Bound,
+        bound: ObjectTextures,
     ) -> Result<Arc<TextureSet>> {
-        let Bound {
+        let ObjectTextures {
             look,
             shape,
             arc,
@@ -246,66 +245,5 @@ fn covering<M>(
 impl Drop for TextureSet {
     fn drop(&mut self) {
         self.pool.give_back(self.set);
-    }
-}
-
-/// Descriptor sets of textures. New pools are made as sets are needed, and returned sets are used
-/// again.
-struct SetPool {
-    state: Mutex<Sets>,
-    device: Arc<Shared>,
-}
-
-#[derive(Default)]
-struct Sets {
-    pools: Vec<vk::DescriptorPool>,
-    free: Vec<vk::DescriptorSet>,
-}
-
-/// Number of sets in one pool.
-const SETS: u32 = 64;
-
-impl SetPool {
-    fn new(device: &Arc<Shared>) -> Self {
-        Self {
-            state: Mutex::default(),
-            device: device.clone(),
-        }
-    }
-
-    fn take(&self) -> Result<vk::DescriptorSet> {
-        let mut state = self
-            .state
-            .lock()
-            .map_err(|_| Error::new(ErrorKind::Other, "the pool of textures is poisoned"))?;
-        if let Some(set) = state.free.pop() {
-            return Ok(set);
-        }
-        let layouts = &self.device.pipelines()?.set_layouts;
-        let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
-        state.pools.push(pool);
-        state.free = sets;
-        state
-            .free
-            .pop()
-            .ok_or_else(|| Error::new(ErrorKind::Other, "a pool of textures gave no set"))
-    }
-
-    fn give_back(&self, set: vk::DescriptorSet) {
-        if let Ok(mut state) = self.state.lock() {
-            state.free.push(set);
-        }
-    }
-}
-
-impl Drop for SetPool {
-    fn drop(&mut self) {
-        let Ok(state) = self.state.get_mut() else {
-            return;
-        };
-        for pool in state.pools.drain(..) {
-            // SAFETY: the renderer's frames are done; the pool frees its sets.
-            unsafe { self.device.raw.destroy_descriptor_pool(pool, None) };
-        }
     }
 }

@@ -48,12 +48,12 @@ pub(crate) const TARGET_SET: usize = 2;
 pub(crate) const SETS: [&[Binding]; 3] = [
     &[
         one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // the frame
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // solids
+        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // objects
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // instances
-        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // solids that may throw shadows
+        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // objects that may throw shadows
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tables of all solids
         one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
-        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only solid
+        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
     ],
     &[
         TEXTURE, // shape map
@@ -75,7 +75,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(
             vk::DescriptorType::STORAGE_BUFFER,
             vk::ShaderStageFlags::COMPUTE,
-        ), // lists of tiles
+        ), // bins of tiles
     ],
 ];
 
@@ -173,5 +173,72 @@ pub(crate) unsafe fn write(
         };
         // SAFETY: as the caller promised.
         unsafe { raw.update_descriptor_sets(&[to], &[]) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::SETS;
+    use crate::shader::tests::{instructions, op};
+    use crate::shader::{modules, words};
+    use std::collections::BTreeSet;
+
+    /// The table of descriptors agrees with every binding that a module reads.
+    #[test]
+    fn descriptors_are_those_of_the_shaders() {
+        const VARIABLE: u32 = 59;
+        const POINTER: u32 = 32;
+        const SAMPLED: u32 = 27;
+        const IMAGE: u32 = 25;
+        const ARRAY: u32 = 28;
+        let mut seen = BTreeSet::new();
+        for module in modules() {
+            let words = words(&module).unwrap();
+            let all = instructions(&words);
+            let decorated = |id: u32, what: u32| {
+                let of = |(code, w): &&(u32, &[u32])| {
+                    *code == op::DECORATE && w[0] == id && w[1] == what
+                };
+                all.iter().find(of).map(|(_, w)| w[2])
+            };
+            let defined = |id: u32| {
+                *all.iter()
+                    .find(|(code, w)| is_type(*code) && w[0] == id)
+                    .unwrap()
+            };
+            for (_, w) in all.iter().filter(|(code, _)| *code == VARIABLE) {
+                let (Some(set), Some(binding)) = (decorated(w[1], 34), decorated(w[1], 33)) else {
+                    continue;
+                };
+                let (code, pointer) = defined(w[0]);
+                assert_eq!(code, POINTER);
+                let mut of = defined(pointer[2]);
+                if of.0 == ARRAY {
+                    of = defined(of.1[1]);
+                }
+                use ash::vk::DescriptorType as T;
+                let wanted: &[T] = match (w[2], of.0) {
+                    (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
+                    (_, IMAGE) => &[T::STORAGE_IMAGE],
+                    (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
+                    _ => &[T::STORAGE_BUFFER],
+                };
+                let known = SETS[set as usize][binding as usize];
+                assert!(
+                    wanted.contains(&known.kind),
+                    "{}: {set}, {binding}",
+                    module.name()
+                );
+                seen.insert((set, binding));
+            }
+        }
+        let all: usize = SETS.iter().map(|set| set.len()).sum();
+        assert_eq!(seen.len(), all, "bindings that no shader reads");
+    }
+
+    /// True if an opcode defines a type.
+    fn is_type(code: u32) -> bool {
+        (19..=39).contains(&code)
     }
 }

@@ -1,8 +1,6 @@
 //! The usage table: the stages, accesses and image layout of each use of a resource. A barrier is
 //! named by the use before it and the use after it.
 
-use crate::gpu::device::Shared;
-use crate::gpu::memory::{Buffer, Image};
 use ash::vk;
 
 /// A use of a resource.
@@ -27,7 +25,7 @@ pub(crate) enum Usage {
 }
 
 impl Usage {
-    fn stages(self) -> vk::PipelineStageFlags {
+    pub fn stages(self) -> vk::PipelineStageFlags {
         use vk::PipelineStageFlags as S;
         match self {
             Self::Nothing => S::TOP_OF_PIPE,
@@ -40,7 +38,7 @@ impl Usage {
         }
     }
 
-    fn access(self) -> vk::AccessFlags {
+    pub fn access(self) -> vk::AccessFlags {
         use vk::AccessFlags as A;
         match self {
             Self::Nothing => A::empty(),
@@ -53,7 +51,7 @@ impl Usage {
         }
     }
 
-    fn layout(self) -> vk::ImageLayout {
+    pub fn layout(self) -> vk::ImageLayout {
         use vk::ImageLayout as L;
         match self {
             Self::Nothing => L::UNDEFINED,
@@ -67,46 +65,9 @@ impl Usage {
     }
 }
 
-/// Records a barrier on one image.
-pub(crate) fn image_barrier(
-    device: &Shared,
-    cmd: vk::CommandBuffer,
-    image: &Image,
-    from: Usage,
-    to: Usage,
-) {
-    let barrier = vk::ImageMemoryBarrier::default()
-        .src_access_mask(from.access())
-        .dst_access_mask(to.access())
-        .old_layout(from.layout())
-        .new_layout(to.layout())
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .image(image.raw)
-        .subresource_range(image.kind.range());
-    wait(device, cmd, (from, to), &[], &[barrier]);
-}
-
-/// Records a barrier on one buffer.
-pub(crate) fn buffer_barrier(
-    device: &Shared,
-    cmd: vk::CommandBuffer,
-    buffer: &Buffer,
-    from: Usage,
-    to: Usage,
-) {
-    let barrier = vk::BufferMemoryBarrier::default()
-        .src_access_mask(from.access())
-        .dst_access_mask(to.access())
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .buffer(buffer.raw)
-        .size(vk::WHOLE_SIZE);
-    wait(device, cmd, (from, to), &[barrier], &[]);
-}
-
-fn wait(
-    device: &Shared,
+/// Records barriers between two uses of resources.
+pub(crate) fn wait(
+    raw: &ash::Device,
     cmd: vk::CommandBuffer,
     (from, to): (Usage, Usage),
     buffers: &[vk::BufferMemoryBarrier],
@@ -116,14 +77,6 @@ fn wait(
     // SAFETY: `cmd` is recording, outside of a render pass; buffers and images live until it has
     // run.
     unsafe {
-        device.raw.cmd_pipeline_barrier(
-            cmd,
-            from.stages(),
-            to.stages(),
-            none,
-            &[],
-            buffers,
-            images,
-        );
+        raw.cmd_pipeline_barrier(cmd, from.stages(), to.stages(), none, &[], buffers, images);
     }
 }

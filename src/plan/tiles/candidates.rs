@@ -113,17 +113,15 @@ impl<'a> Candidates<'a> {
     /// The copies of a candidate that some pixel may show.
     pub fn items<'b>(&self, of: &'b Candidate) -> &'b [Item] {
         of.items.get_or_init(|| {
-            let places = of.cluster.map_or(0..0, |cluster| cluster.range.clone());
-            places
-                .filter_map(|place| self.item(of.batch, place))
-                .collect()
+            let ranks = of.cluster.map_or(0..0, |cluster| cluster.range.clone());
+            ranks.filter_map(|rank| self.item(of.batch, rank)).collect()
         })
     }
 
     /// The copy at a position among its batch's clusters, if some pixel may show it.
-    pub fn item(&self, number: u32, place: u32) -> Option<Item> {
+    pub fn item(&self, number: u32, rank: u32) -> Option<Item> {
         let (batch, facts) = (&self.batches[number as usize], &self.facts[number as usize]);
-        let (copy, placement) = batch.placements.at(place);
+        let (copy, placement) = batch.placements.at(rank);
         let axes = self.projector.axes(placement, batch.shape.axis);
         let ScreenBounds { pixels, near } = self.projector.bounds(&axes, &batch.shape)?;
         if batch.surface.is_some_and(|s| !is_apart(s, axes.eye)) {
@@ -137,7 +135,7 @@ impl<'a> Candidates<'a> {
             batch: number,
             copy,
             pixels,
-            place,
+            rank,
         })
     }
 
@@ -153,10 +151,10 @@ impl<'a> Candidates<'a> {
 
 impl<'a> Placements<'a> {
     /// The number of the copy at a position, and its placement.
-    pub fn at(&self, place: u32) -> (u32, &'a Placement) {
+    pub fn at(&self, rank: u32) -> (u32, &'a Placement) {
         match self {
             Self::One(placement) => (0, placement),
-            Self::Many(copies) => copies.clusters().at(place),
+            Self::Many(copies) => copies.clusters().at(rank),
         }
     }
 

@@ -2,7 +2,7 @@
 //! per pixel and one depth per row. One depth per row is enough because, on a field, the copies in
 //! a row of pixels have similar depths.
 
-use super::bounds::{MARGIN, ProjectedAxes, SLACK};
+use super::bounds::{MARGIN, ProjectedAxes, SLACK, first_pixel, last_pixel};
 use crate::surface::{CylinderPiece, InnerCylinders};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -254,22 +254,6 @@ impl Cover {
             }
         }
     }
-}
-
-/// The first pixel whose centre is not before a position.
-///
-/// Casts are faster than the library's rounding, which is a function call.
-pub(super) fn first_pixel(place: f64) -> i32 {
-    let place = place - 0.5;
-    let whole = place as i32;
-    whole.saturating_add(i32::from(f64::from(whole) < place))
-}
-
-/// The last pixel whose centre is not after a position.
-pub(super) fn last_pixel(place: f64) -> i32 {
-    let place = place - 0.5;
-    let whole = place as i32;
-    whole.saturating_sub(i32::from(f64::from(whole) > place))
 }
 
 #[cfg(test)]

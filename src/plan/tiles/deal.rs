@@ -7,7 +7,7 @@ use crate::shader::generated::TILE_SPLIT;
 
 /// A copy in a tile.
 #[derive(Clone, Copy)]
-pub(super) struct Listed {
+pub(super) struct TileCopy {
     /// Number of the tile in the band.
     pub tile: u32,
     pub batch: u32,
@@ -18,10 +18,10 @@ pub(super) struct Listed {
     pub pixels: u64,
 }
 
-/// Records and lists of one layer in one band, in the layout of `tile_words.glsl`. Lists count from
-/// the band's first.
+/// Records and queues of one layer in one band, in the layout of `tile_words.glsl`. Queues count from
+/// the band's first word.
 #[derive(Default)]
-pub(super) struct BandLists {
+pub(super) struct BandRecords {
     /// Compute: tiles of several copies.
     pub several: Vec<[u32; 4]>,
     /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
@@ -31,18 +31,18 @@ pub(super) struct BandLists {
     /// Fragments: quads of one copy each.
     pub quads: Vec<[u32; 4]>,
     pub words: Vec<u32>,
-    /// Pixels that wait until a record is full: their position, the start of their list and its
+    /// Pixels that wait until a record is full: their position, the start of their queue and its
     /// number of copies.
     waiting: Vec<[u32; 3]>,
 }
 
 /// Pixels of a tile.
 const PIXELS: usize = (SIDE * SIDE) as usize;
-/// A single list serves a tile if its copies cover at least three quarters of it on average.
+/// A single queue serves a tile if its copies cover at least three quarters of it on average.
 const LEAST_PART: [u32; 2] = [3, 4];
 /// Least number of a tile's pixels for which a copy gets a record of its own.
 const SINGLE_PIXELS: u32 = 24;
-/// Most copies per pixel, on average, in the lists of a tile's pixels. Longer lists would take too
+/// Most copies per pixel, on average, in the queues of a tile's pixels. Longer queues would take too
 /// much memory where many copies are behind each other.
 const MOST_COPIES: u32 = 8;
 
@@ -64,12 +64,12 @@ impl Dealer<'_> {
     /// `corner`: position of a tile, in tiles.
     pub fn deal(
         &self,
-        listed: &[Listed],
+        listed: &[TileCopy],
         tiles: u32,
         layers: usize,
         corner: impl Fn(u32) -> [u32; 2],
-    ) -> Vec<BandLists> {
-        let mut lists: Vec<BandLists> = (0..layers).map(|_| BandLists::default()).collect();
+    ) -> Vec<BandRecords> {
+        let mut lists: Vec<BandRecords> = (0..layers).map(|_| BandRecords::default()).collect();
         let (sorted, ends) = by_tile(listed, tiles);
         let mut rest = Vec::new();
         for tile in (0..tiles).filter(|t| ends[*t as usize] < ends[*t as usize + 1]) {
@@ -93,23 +93,23 @@ impl Dealer<'_> {
             }
             while let Some(first) = rest.first() {
                 let layer = self.layer_of[first.batch as usize];
-                let of = |one: &Listed| self.layer_of[one.batch as usize] == layer;
+                let of = |one: &TileCopy| self.layer_of[one.batch as usize] == layer;
                 lists[layer as usize].add(rest.iter().filter(|one| of(one)), place);
                 rest.retain(|one| !of(one));
             }
         }
-        lists.iter_mut().for_each(BandLists::gather);
+        lists.iter_mut().for_each(BandRecords::gather);
         lists
     }
 
     /// Index of the tile's copy that gets a record of its own.
-    fn single_of(&self, here: &[Listed]) -> Option<usize> {
-        let is_large = |one: &Listed| one.pixels.count_ones() >= SINGLE_PIXELS;
+    fn single_of(&self, here: &[TileCopy]) -> Option<usize> {
+        let is_large = |one: &TileCopy| one.pixels.count_ones() >= SINGLE_PIXELS;
         match here {
             [one] if is_large(one) || self.single[one.batch as usize] => Some(0),
             _ => (0..here.len()).find(|&n| {
                 // Copies that coincide need the same search: the first of equal depths stays.
-                let alike = |other: &Listed| other.near == here[n].near;
+                let alike = |other: &TileCopy| other.near == here[n].near;
                 let unique = here.iter().filter(|one| alike(one)).count() == 1;
                 self.lists[here[n].batch as usize] && is_large(&here[n]) && unique
             }),
@@ -119,7 +119,7 @@ impl Dealer<'_> {
 
 /// Copies sorted by tile, in their given order within a tile, and the start and end of each tile's
 /// copies.
-fn by_tile(listed: &[Listed], tiles: u32) -> (Vec<Listed>, Vec<u32>) {
+fn by_tile(listed: &[TileCopy], tiles: u32) -> (Vec<TileCopy>, Vec<u32>) {
     let mut ends = vec![0u32; tiles as usize + 1];
     for one in listed {
         ends[one.tile as usize + 1] += 1;
@@ -137,9 +137,9 @@ fn by_tile(listed: &[Listed], tiles: u32) -> (Vec<Listed>, Vec<u32>) {
     (order.iter().map(|n| listed[*n as usize]).collect(), ends)
 }
 
-impl BandLists {
+impl BandRecords {
     /// Adds a tile's only copy, or a copy with a record of its own.
-    fn add_single(&mut self, one: &Listed, [x, y]: [u32; 2], lists: bool) {
+    fn add_single(&mut self, one: &TileCopy, [x, y]: [u32; 2], lists: bool) {
         let corner = (x * SIDE) | ((y * SIDE) << 16);
         let to = if lists {
             &mut self.listed
@@ -150,7 +150,7 @@ impl BandLists {
     }
 
     /// Adds the copies of a tile.
-    fn add<'a>(&mut self, here: impl Iterator<Item = &'a Listed> + Clone, [x, y]: [u32; 2]) {
+    fn add<'a>(&mut self, here: impl Iterator<Item = &'a TileCopy> + Clone, [x, y]: [u32; 2]) {
         let at = |x: u32, y: u32| x | (y << 16);
         let corner = at(x * SIDE, y * SIDE);
         let (mut count, mut pixels) = (0, 0);
@@ -176,9 +176,9 @@ impl BandLists {
     }
 
     /// Makes a list for each of a tile's pixels: its start and its number of copies.
-    fn split(&mut self, here: impl Iterator<Item = Listed> + Clone) -> [[u32; 2]; PIXELS] {
+    fn split(&mut self, here: impl Iterator<Item = TileCopy> + Clone) -> [[u32; 2]; PIXELS] {
         let mut lists = [[0u32; 2]; PIXELS];
-        let each = |one: Listed, visit: &mut dyn FnMut(usize)| {
+        let each = |one: TileCopy, visit: &mut dyn FnMut(usize)| {
             let mut pixels = one.pixels;
             while pixels != 0 {
                 visit(pixels.trailing_zeros() as usize);
@@ -240,7 +240,7 @@ mod tests {
     type Found = BTreeMap<(u32, u32), (Vec<u32>, bool)>;
 
     /// Copies of many sizes, from whole tiles to single pixels, nearest first.
-    fn copies() -> Vec<Listed> {
+    fn copies() -> Vec<TileCopy> {
         let mut state = 7u64;
         let mut next = move || {
             state = state
@@ -251,7 +251,7 @@ mod tests {
         (0..90)
             .map(|copy| {
                 let few = next() & next() >> 7 & next() << 3;
-                Listed {
+                TileCopy {
                     tile: (next() % u64::from(TILES)) as u32,
                     batch: 0,
                     copy,
@@ -286,7 +286,7 @@ mod tests {
         copies.map(|w| w[0]).collect()
     }
 
-    fn dealt(copies: &[Listed], tiles: u32, lists: bool) -> BandLists {
+    fn dealt(copies: &[TileCopy], tiles: u32, lists: bool) -> BandRecords {
         let dealer = Dealer {
             drawer: Drawer::Groups,
             layer_of: &[0],
@@ -318,7 +318,7 @@ mod tests {
     }
 
     /// The lists that work groups search, and the number of idle invocations.
-    fn visited(lists: &BandLists) -> (Found, u32) {
+    fn visited(lists: &BandRecords) -> (Found, u32) {
         let mut found = BTreeMap::new();
         let mut idle = 0;
         for &[corner, first, count, _] in &lists.several {
@@ -377,8 +377,8 @@ mod tests {
 
     #[test]
     fn deep_tiles_keep_one_list() {
-        let deep: Vec<Listed> = (0..100)
-            .map(|copy| Listed {
+        let deep: Vec<TileCopy> = (0..100)
+            .map(|copy| TileCopy {
                 tile: 0,
                 batch: 0,
                 copy,
@@ -386,7 +386,7 @@ mod tests {
                 pixels: 0xff << (copy % 7),
             })
             .collect();
-        let of = |copies: &[Listed]| dealt(copies, 1, false);
+        let of = |copies: &[TileCopy]| dealt(copies, 1, false);
         let lists = of(&deep);
         assert_eq!(lists.words.len(), 2 * deep.len());
         assert_eq!(lists.several, [[0, 0, 100, 100]]);

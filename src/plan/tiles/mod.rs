@@ -1,11 +1,10 @@
-//! Tiles of the screen and the copies that each may show, nearest first: one list for all objects
-//! and copies of a frame.
+//! Tiles of the screen and the copies that each may show, nearest first, for all objects and copies
+//! of a frame.
 //!
-//! 1. Clusters of neighbouring copies are projected to the picture ([`cluster_bounds`]) and sorted,
+//! 1. Clusters of neighbouring copies are projected to the picture ([`bounds`]) and sorted,
 //!    nearest first ([`candidates`]).
 //! 2. Clusters are opened from the nearest to the farthest, except for wholly hidden ones
-//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth
-//!    ([`bounds`]). Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
+//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth. Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
 //!    first.
 //! 3. In this order, copies are listed in the tiles that may show them ([`outer`]). The pixels that
 //!    a copy is sure to hide are marked there ([`cover`]). Later copies are not listed for pixels
@@ -21,7 +20,6 @@
 
 mod bounds;
 mod candidates;
-mod cluster_bounds;
 mod cover;
 mod deal;
 mod outer;
@@ -36,7 +34,7 @@ use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
 use candidates::{Candidates, CopyFacts};
 use cover::{SIDE, within};
-use deal::{BandLists, Dealer};
+use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
 use strip::Strip;
@@ -56,8 +54,8 @@ pub(crate) struct Batch<'a> {
     pub surface: Option<&'a OffsetSurface>,
     /// Half of the box's side.
     pub half_side: f64,
-    /// True if patches may be listed for its tiles.
-    pub lists: bool,
+    /// True if patches may be listed for its tiles in some views.
+    pub permits_lists: bool,
 }
 
 /// The placements of an object's copies.
@@ -75,8 +73,8 @@ struct Item {
     batch: u32,
     copy: u32,
     pixels: [u16; 4],
-    /// Position among the batch's clusters.
-    place: u32,
+    /// Rank in the order of the batch's clusters.
+    rank: u32,
 }
 
 /// Rows of tiles in a band, and columns in a block. The records of a block are contiguous.
@@ -101,7 +99,7 @@ pub(crate) enum Drawer {
     Groups,
 }
 
-/// Records of all tiles and their lists, in the layout of the shaders' single buffer of words
+/// Records of all tiles and queues of copies, in the layout of the shaders' single buffer of words
 /// (`tile_words.glsl`).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct TileWords {
@@ -174,10 +172,10 @@ impl<'a> Visible<'a> {
         self.facts[batch].apart
     }
 
-    /// True if patches may be listed for a batch's tiles.
-    pub fn takes_lists(&self, batch: usize) -> bool {
+    /// True if patches are listed for a batch's tiles in this view.
+    pub fn lists_patches(&self, batch: usize) -> bool {
         let facts = &self.facts[batch];
-        self.batches[batch].lists && facts.apart && facts.even
+        self.batches[batch].permits_lists && facts.apart && facts.even
     }
 
     /// The copies of each batch that may show, in ascending order.
@@ -197,7 +195,7 @@ impl<'a> Visible<'a> {
     pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
         let [across, down] = self.size;
         let lists: Vec<bool> = (0..self.batches.len())
-            .map(|b| drawer == Drawer::Groups && self.takes_lists(b))
+            .map(|b| drawer == Drawer::Groups && self.lists_patches(b))
             .collect();
         let single: Vec<bool> = self
             .batches
@@ -206,8 +204,8 @@ impl<'a> Visible<'a> {
             .collect();
         let of_band = |band: u32| {
             let corner = |tile: u32| {
-                let [block, place] = [tile / (BLOCK * BLOCK), tile % (BLOCK * BLOCK)];
-                [block * BLOCK + place % BLOCK, band * BLOCK + place / BLOCK]
+                let [block, at] = [tile / (BLOCK * BLOCK), tile % (BLOCK * BLOCK)];
+                [block * BLOCK + at % BLOCK, band * BLOCK + at / BLOCK]
             };
             let listed = self.strips.iter().map(|s| &s.listed[band as usize][..]);
             let dealer = Dealer {
@@ -220,7 +218,7 @@ impl<'a> Visible<'a> {
             let tiles = across.next_multiple_of(BLOCK) * BLOCK;
             dealer.deal(&listed.collect::<Vec<_>>().concat(), tiles, layers, corner)
         };
-        let bands: Vec<Vec<BandLists>> = (0..down.div_ceil(BLOCK))
+        let bands: Vec<Vec<BandRecords>> = (0..down.div_ceil(BLOCK))
             .into_par_iter()
             .map(of_band)
             .collect();
@@ -228,13 +226,13 @@ impl<'a> Visible<'a> {
     }
 }
 
-/// Joins the records and lists of all bands to one buffer.
-fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
+/// Joins the records and queues of all bands to one buffer.
+fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
     let mut records: Vec<[u32; 4]> = Vec::new();
     let mut lists = 0;
     let mut all = Vec::with_capacity(layers);
     for layer in 0..layers {
-        let mut put = |of: for<'b> fn(&'b BandLists) -> &'b [[u32; 4]]| {
+        let mut put = |of: for<'b> fn(&'b BandRecords) -> &'b [[u32; 4]]| {
             let first = records.len() as u32;
             for band in bands {
                 records.extend(of(&band[layer]));
@@ -257,7 +255,7 @@ fn join(bands: &[Vec<BandLists>], layers: usize) -> TileWords {
             several: first..records.len() as u32,
         });
     }
-    // Lists follow all records.
+    // Queues follow all records.
     let behind = 4 * records.len() as u32;
     for layer in &all {
         for record in &mut records[layer.several.start as usize..layer.several.end as usize] {

@@ -1,8 +1,7 @@
 //! The rows of pixels that a solid may cover: projections of cylinders about its axis that contain
 //! it.
 
-use super::bounds::ProjectedAxes;
-use super::cover::{first_pixel, last_pixel};
+use super::bounds::{ProjectedAxes, first_pixel, last_pixel};
 use crate::surface::OuterCylinders;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;

@@ -1,7 +1,7 @@
 //! Quads of pixels for which fragments are drawn.
 
 use super::cover::{SIDE, block};
-use super::deal::{BandLists, Listed};
+use super::deal::{BandRecords, TileCopy};
 use crate::shader::generated::QUAD_BITS;
 
 /// A quad within a tile.
@@ -48,17 +48,18 @@ impl Quad {
 
     /// The quad's position in the layout of `tile_words.glsl`. `corner`: pixel of its tile's
     /// corner.
-    fn place(&self, corner: [u32; 2]) -> u32 {
+    fn packed(&self, corner: [u32; 2]) -> u32 {
         let [x, y] = [0, 1].map(|k| corner[k] + self.corner[k]);
         x | y << QUAD_BITS | self.side.ilog2() << (2 * QUAD_BITS)
     }
 }
 
-impl BandLists {
+impl BandRecords {
     /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
-    pub(super) fn add_quads(&mut self, one: &Listed, corner: [u32; 2], inside: u64) {
+    pub(super) fn add_quads(&mut self, one: &TileCopy, corner: [u32; 2], inside: u64) {
         Quad::WHOLE.cut(one.pixels & inside, inside, &mut |quad| {
-            self.quads.push([quad.place(corner), one.copy, 0, one.near]);
+            self.quads
+                .push([quad.packed(corner), one.copy, 0, one.near]);
         });
     }
 }

@@ -5,7 +5,7 @@
 use super::bounds::Projector;
 use super::candidates::{Candidate, Candidates};
 use super::cover::Cover;
-use super::deal::Listed;
+use super::deal::TileCopy;
 use super::outer::rows;
 use super::{BLOCK, Batch, Item};
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub(super) struct Strip<'a> {
     /// The ends of each row of the current copy.
     rows: Vec<[f64; 2]>,
     /// The listed copies of each band, nearest first.
-    pub listed: Vec<Vec<Listed>>,
+    pub listed: Vec<Vec<TileCopy>>,
     /// Batch and number of every copy that may show.
     pub copies: Vec<(u32, u32)>,
 }
@@ -73,7 +73,7 @@ impl<'a> Strip<'a> {
             return;
         }
         let batch = &self.batches[item.batch as usize];
-        let (_, placement) = batch.placements.at(item.place);
+        let (_, placement) = batch.placements.at(item.rank);
         let axes = self.projector.axes(placement, batch.shape.axis);
         let [_, top, _, bottom] = item.pixels.map(u32::from);
         let known = batch
@@ -94,7 +94,7 @@ impl<'a> Strip<'a> {
         let mut shows = false;
         self.cover.open(item.pixels, rows, near, |[x, y], pixels| {
             shows = true;
-            self.listed[(y / BLOCK) as usize].push(Listed {
+            self.listed[(y / BLOCK) as usize].push(TileCopy {
                 tile: x / BLOCK * (BLOCK * BLOCK) + y % BLOCK * BLOCK + x % BLOCK,
                 batch: item.batch,
                 copy: batch.first + item.copy,
@@ -116,12 +116,13 @@ impl<'a> Strip<'a> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::gpu::resources::solid_cache::SolidCache;
     use crate::plan::View;
     use crate::plan::tiles::{Cylinder, Drawer, Placements, Visible};
     use crate::profile::Profile;
-    use crate::scene::{Camera, Copies, Growth, Offset, Placement};
-    use crate::solid::offset_surface::OffsetSurface;
+    use crate::scene::{Camera, Copies, Offset, Placement};
+    use crate::solid::offset_surface::{OffsetSurface, Recipe};
+    use crate::solid::outline_cache::{OffsetContour, OutlineCache};
+    use crate::surface::FitOptions;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -130,8 +131,8 @@ mod tests {
     fn fill_plainly(strip: &mut Strip, candidates: &Candidates) {
         let mut items = Vec::new();
         for (number, batch) in (0..).zip(candidates.batches) {
-            let places = 0..batch.placements.len() as u32;
-            items.extend(places.filter_map(|place| candidates.item(number, place)));
+            let ranks = 0..batch.placements.len() as u32;
+            items.extend(ranks.filter_map(|rank| candidates.item(number, rank)));
         }
         items.retain(|item: &Item| strip.cover.meets(item.pixels));
         items.sort_unstable();
@@ -140,9 +141,10 @@ mod tests {
 
     fn surface(points: &[[f64; 2]]) -> Arc<OffsetSurface> {
         let profile = Arc::new(Profile::polygon(points, 0.5).unwrap());
-        let solid = SolidCache::default().get(&profile);
-        let offset = Offset::default();
-        solid.patches(&offset, &Growth::default(), 0).unwrap()
+        let outline = Arc::new(OutlineCache::new(&profile));
+        let contour = OffsetContour::new(&outline, &Offset::default()).into();
+        let recipe = Recipe::Patches(contour, 0, FitOptions::default().tolerance);
+        OffsetSurface::new(recipe).into()
     }
 
     /// A field of 20 x 20 world units with copies of about this size. `tall`: ratio of height to
@@ -190,7 +192,7 @@ mod tests {
                     outer: surface.outer().map(|outer| (outer, 0.0)),
                     surface: Some(surface),
                     half_side: 0.5,
-                    lists: true,
+                    permits_lists: true,
                 };
                 first += placements.len() as u32;
                 batch

@@ -7,14 +7,14 @@ void main()
 {
     begin_frame();
     take_record();
-    take_solid(ONE_SOLID != 0u ? pushed.solid : tile_instance.solid.x);
+    take_object(ONE_OBJECT != 0u ? pushed.object : tile_instance.object.x);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);
     vec3 v = ray_direction(tile_rays, pixel);
     float a = dot(v.xy, v.xy);
     float b = dot(o.xy, v.xy);
-    float inside = b * b - a * (dot(o.xy, o.xy) - solid.bounds.y * solid.bounds.y);
+    float inside = b * b - a * (dot(o.xy, o.xy) - object.bounds.y * object.bounds.y);
     Hit hit;
     hit.t = -(b + sqrt(max(inside, 0.0))) / a;
     hit.point = o + hit.t * v;

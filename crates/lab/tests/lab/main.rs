@@ -8,6 +8,8 @@ mod benchmark;
 #[cfg(feature = "report")]
 mod crowds;
 #[cfg(feature = "shaderc")]
+mod fetched_cells;
+#[cfg(feature = "shaderc")]
 mod floor;
 #[cfg(feature = "mesh")]
 mod mesh;

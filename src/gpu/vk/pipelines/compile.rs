@@ -2,8 +2,8 @@
 
 use super::Pipelines;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::call::Call;
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::color_formats;
 use crate::plan::DepthOrder;
 use crate::shader::{Kind, Module, Search, Variant, depth_less, words};
@@ -52,7 +52,7 @@ impl Pipelines {
         }
         #[cfg(feature = "other-shaders")]
         if let Some(source) = &self.source {
-            let module = crate::shader::listed(module).unwrap_or(*module);
+            let module = crate::shader::catalogued(module).unwrap_or(*module);
             if let Some(words) = source(module.entry.file(), &module.macros())? {
                 return Ok(words);
             }
@@ -122,14 +122,7 @@ impl Pipelines {
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default()
-            .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(match is_quads {
-                true => vk::CullModeFlags::NONE,
-                false => vk::CullModeFlags::BACK,
-            })
-            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-            .line_width(1.0);
+        let raster = rasterization(is_quads);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
@@ -182,6 +175,18 @@ impl Pipelines {
         let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
+}
+
+/// Filled triangles; quads have no back.
+fn rasterization(is_quads: bool) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    vk::PipelineRasterizationStateCreateInfo::default()
+        .polygon_mode(vk::PolygonMode::FILL)
+        .cull_mode(match is_quads {
+            true => vk::CullModeFlags::NONE,
+            false => vk::CullModeFlags::BACK,
+        })
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .line_width(1.0)
 }
 
 fn first(

@@ -1,11 +1,11 @@
 //! A frame's plan and the surfaces that it draws.
 
 use super::Content;
-use super::entry::{Entry, Prepared};
+use super::entry::{Derived, Entry};
 use crate::error::Result;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
-use crate::scene::{Growth, Shadow};
+use crate::scene::Shadow;
 use crate::settings::{Solver, Tolerance};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
@@ -14,10 +14,10 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The plan of one view, for one version of a renderer's objects.
-pub(crate) struct Planned {
+pub(crate) struct ViewPlan {
     pub view: View,
     pub version: u64,
-    pub plan: FramePlan,
+    pub frame: FramePlan,
     /// One per drawn object, in order.
     pub objects: Vec<PlannedObject>,
 }
@@ -33,21 +33,15 @@ pub(crate) struct PlannedObject {
 impl Content {
     /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
     /// the view's slot, is of this view and version.
-    pub fn planned(&mut self, view: &View, known: Option<&Arc<Planned>>) -> Result<Arc<Planned>> {
-        self.refresh(Some(view))?;
-        let same = |p: &&Arc<Planned>| p.version == self.version && p.view == *view;
-        if let Some(planned) = self
-            .planned
-            .as_ref()
-            .into_iter()
-            .chain(known)
-            .find(same)
-            .cloned()
-        {
-            self.planned = Some(planned.clone());
-            return Ok(planned);
+    pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
+        self.refresh()?;
+        let same = |p: &&Arc<ViewPlan>| p.version == self.version && p.view == *view;
+        let mut plans = self.plan.iter().chain(known);
+        if let Some(plan) = plans.find(same).cloned() {
+            self.plan = Some(plan.clone());
+            return Ok(plan);
         }
-        let objects = self.with_surfaces(view)?;
+        let objects = self.with_surfaces(Some(view))?;
         let with = self.conditions();
         let read: Vec<PlanObject> = objects
             .iter()
@@ -56,29 +50,29 @@ impl Content {
                 entry.plan_object(planned, &self.settings)
             })
             .collect();
-        let made = Arc::new(Planned {
+        let made = Arc::new(ViewPlan {
             view: *view,
             version: self.version,
-            plan: plan(view, &read, &with),
+            frame: plan(view, &read, &with),
             objects,
         });
-        self.planned = Some(made.clone());
+        self.plan = Some(made.clone());
         Ok(made)
     }
 
     /// The inputs of a plan other than view and objects.
     pub fn conditions(&self) -> Conditions {
-        let limits = &self.device.limits;
+        let limits = self.device.limits();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            clips: self.device.clips,
-            software: self.device.report.kind == "cpu",
-            subgroup_size: self.device.subgroup_size,
+            clips: self.device.chosen.clips(),
+            software: self.device.chosen.report.kind == "cpu",
+            subgroup_size: self.device.chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
-            own_vectors: self.device.constants.own_vectors as usize,
+            own_vectors: self.device.chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             casts: self.lighting.shadow != Shadow::Off,
@@ -86,72 +80,60 @@ impl Content {
         }
     }
 
-    /// Returns true if objects may be drawn at other levels than the exact one.
-    pub fn has_levels(&self) -> bool {
-        self.settings.tolerance != Tolerance::EXACT && self.settings.solver.follows_tolerance()
-    }
-
-    /// Returns all objects with the surfaces of the levels that the view allows. With shadows, all
-    /// objects take the finest level that one of them needs. The reason is that a shadow may fall
-    /// nearer to the eye than its caster.
-    fn with_surfaces(&mut self, view: &View) -> Result<Vec<PlannedObject>> {
-        let casts = self.lighting.shadow != Shadow::Off;
-        let level_of = |entry: &Entry, prepared: &Prepared| {
-            if !self.has_levels() || !prepared.solver.follows_tolerance() {
-                return 0;
-            }
-            let pixels = entry.pixels_per_unit(view, casts);
-            if pixels > 0.0 || casts {
-                coarsest(self.settings.tolerance, pixels)
-            } else {
-                // An object that does not show takes a level that is already made.
-                prepared.levels.first().map_or(0, |(level, _)| *level)
-            }
-        };
-        let mut found: Vec<PlannedObject> = self
-            .objects
-            .ordered()
-            .filter_map(|(number, entry)| {
-                let level = level_of(entry, entry.prepared.as_ref()?);
-                Some(PlannedObject {
-                    number,
-                    level,
-                    surface: None,
-                })
-            })
-            .collect();
-        if casts {
-            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
-            found.iter_mut().for_each(|f| f.level = finest);
-        }
+    /// Returns all objects with surfaces of the levels that the view allows. Makes the surfaces that
+    /// are new.
+    pub fn with_surfaces(&mut self, view: Option<&View>) -> Result<Vec<PlannedObject>> {
+        let mut found = self.levels(view);
         let mut new = Vec::new();
         for one in &mut found {
             let Some(entry) = self.objects.at_mut(one.number) else {
                 continue;
             };
             let (growth, offset) = (entry.growth(), entry.drawn().offset);
-            let Some(prepared) = &mut entry.prepared else {
+            let Some(derived) = &mut entry.derived else {
                 continue;
             };
-            if prepared.levels.is_empty() {
-                continue;
+            let known = derived.levels.iter().find(|(level, _)| *level == one.level);
+            one.surface = known.map(|(_, surface)| surface.clone());
+            if one.surface.is_none() && derived.solver.follows_tolerance() {
+                let surface = derived.solid.patches(&offset, &growth, one.level)?;
+                derived.levels.push((one.level, surface.clone()));
+                new.push(surface.clone());
+                one.surface = Some(surface);
             }
-            let known = prepared
-                .levels
-                .iter()
-                .find(|(level, _)| *level == one.level);
-            one.surface = match known {
-                Some((_, surface)) => Some(surface.clone()),
-                None => {
-                    let surface = prepared.solid.patches(&offset, &growth, one.level)?;
-                    prepared.levels.push((one.level, surface.clone()));
-                    new.push(surface.clone());
-                    Some(surface)
-                }
-            };
         }
         self.make_surfaces(&new);
         Ok(found)
+    }
+
+    /// The level of each object: the coarsest that the view allows, or the exact one if there is no
+    /// view. With shadows, all objects take the finest level that one of them needs. The reason is
+    /// that a shadow may fall nearer to the eye than its caster.
+    fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
+        let casts = self.lighting.shadow != Shadow::Off;
+        let tolerance = self.settings.tolerance;
+        let level_of = |entry: &Entry, derived: &Derived| match view {
+            Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
+                let pixels = entry.pixels_per_unit(view, casts);
+                // An object that does not show takes a level that is already made.
+                let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
+                made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
+            }
+            _ => 0,
+        };
+        let planned = |(number, entry): (u32, &Entry)| {
+            Some(PlannedObject {
+                number,
+                level: level_of(entry, entry.derived.as_ref()?),
+                surface: None,
+            })
+        };
+        let mut found: Vec<_> = self.objects.ordered().filter_map(planned).collect();
+        if casts {
+            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
+            found.iter_mut().for_each(|f| f.level = finest);
+        }
+        found
     }
 
     /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
@@ -173,11 +155,6 @@ impl Content {
 }
 
 impl Entry {
-    /// The growth of the box with the offset.
-    pub fn growth(&self) -> Growth {
-        self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
-    }
-
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
     pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
@@ -189,13 +166,13 @@ impl Entry {
         levels::bound(level) * self.pixels_per_unit(view, false)
     }
 
-    /// The object in the form that a plan reads; `None` before it is prepared.
+    /// The object in the form that a plan reads; `None` before it is derived.
     pub fn plan_object<'a>(
         &'a self,
         planned: &'a PlannedObject,
         settings: &crate::settings::SearchSettings,
     ) -> Option<PlanObject<'a>> {
-        let prepared = self.prepared.as_ref()?;
+        let derived = self.derived.as_ref()?;
         let surface = planned.surface.as_ref();
         let block = self.block(planned.number, surface.map(Arc::as_ref), settings)?;
         let texels = 2.0 / f64::from(block.map[1]);
@@ -204,12 +181,12 @@ impl Entry {
             object: self.drawn(),
             number: planned.number,
             first_instance: self.instances.start,
-            variant: prepared.variant,
-            textures: Arc::as_ptr(&prepared.textures) as usize,
+            variant: derived.variant,
+            textures: Arc::as_ptr(&derived.textures) as usize,
             surface,
-            takes_patches: prepared.takes_patches && surface.is_some(),
+            takes_patches: derived.takes_patches && surface.is_some(),
             shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
-            outline: Some((prepared.solid.outline.as_ref(), away)),
+            outline: Some((derived.solid.outline.as_ref(), away)),
         })
     }
 }

@@ -1,10 +1,10 @@
 //! The draw path of each object, and the memory that it takes on the device.
 
-use super::entry::Entry;
-use super::planned::PlannedObject;
-use crate::gpu::renderer::Renderer;
-use crate::gpu::resources::blocks::InstanceBlock;
+use super::Renderer;
+use crate::gpu::content::entry::Entry;
+use crate::gpu::content::view_plan::PlannedObject;
 use crate::plan::{DrawPath, View};
+use crate::shader::InstanceBlock;
 use crate::solid::table_slot::Part;
 
 /// The draw path of an object in the last prepared frame, and its memory on the device.
@@ -37,13 +37,13 @@ impl Renderer {
     /// The costs of all objects in the last planned frame, in order.
     #[must_use]
     pub fn object_costs(&self) -> Vec<ObjectCost> {
-        let Some(planned) = &self.content.planned else {
+        let Some(plan) = &self.content.plan else {
             return Vec::new();
         };
-        let objects = planned.objects.iter().zip(&planned.plan.paths);
+        let objects = plan.objects.iter().zip(&plan.frame.paths);
         let cost = |(object, path): (&PlannedObject, &DrawPath)| {
             let entry = self.content.objects.at(object.number)?;
-            Some(entry.cost(object, *path, &planned.view))
+            Some(entry.cost(object, *path, &plan.view))
         };
         objects.filter_map(cost).collect()
     }
@@ -64,16 +64,16 @@ impl Renderer {
 
 impl Entry {
     fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> ObjectCost {
-        let prepared = self.prepared.as_ref();
-        let follows = prepared.is_some_and(|p| p.solver.follows_tolerance());
+        let derived = self.derived.as_ref();
+        let follows = derived.is_some_and(|p| p.solver.follows_tolerance());
         let fitted = object.surface.as_ref().filter(|_| follows);
         let error = fitted.map(|_| self.error_pixels(object.level, view));
         let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
-            let placed = object.surface.as_ref().filter(|s| s.slot(part).is_some());
-            placed.map_or(0, |s| 16 * s.vectors(part).len() as u64)
+            let stored = object.surface.as_ref().filter(|s| s.slot(part).is_some());
+            stored.map_or(0, |s| 16 * s.vectors(part).len() as u64)
         });
-        let map = prepared.and_then(|p| Some(p.map.as_ref()?.texture.bytes()));
-        let arc = prepared.and_then(|p| Some(p.arc.as_ref()?.texture.bytes()));
+        let map = derived.and_then(|p| Some(p.map.as_ref()?.texture.bytes()));
+        let arc = derived.and_then(|p| Some(p.arc.as_ref()?.texture.bytes()));
         ObjectCost {
             path,
             level: fitted.map(|_| u32::from(object.level)),

@@ -9,15 +9,14 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::create;
 use crate::gpu::device::instance::Instance;
 use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
-use crate::gpu::frame::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::pipelines::DeviceConstants;
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
-use crate::shader::{Kind, ShadowCasters, Variant, listed};
+use crate::shader::{Kind, ShadowCasters, Variant, catalogued};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -102,7 +101,7 @@ impl PipelineCompiler {
         let mut info = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
-        let constants = DeviceConstants::of(&chosen);
+        let constants = chosen.constants();
         let pipelines = Pipelines::new(raw.clone(), None, constants)?;
         let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
@@ -150,7 +149,7 @@ impl PipelineCompiler {
             ..self.conditions
         };
         let alone = Variant {
-            one_solid: 1,
+            one_object: 1,
             ..variant
         };
         let outside = u32::from(object.clip != Clip::Box);
@@ -233,7 +232,7 @@ impl PipelineCompiler {
                 shader: stage_name(&text(&executable.name)),
                 module: match variant.external {
                     Some(external) if !vertices => external.name(&module),
-                    _ => listed(&module).unwrap_or(module).name(),
+                    _ => catalogued(&module).unwrap_or(module).name(),
                 },
                 subgroup_size: executable.subgroup_size,
                 statistics: said.iter().filter_map(statistic).collect(),

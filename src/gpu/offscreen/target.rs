@@ -3,43 +3,16 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::frame::srgb::pack_srgb;
-use crate::gpu::memory::buffers::{device_local, read_back};
-use crate::gpu::memory::{Buffer, Image, ImageKind};
+use crate::gpu::memory::buffers::{Buffer, Use};
+use crate::gpu::memory::{Image, ImageKind};
+use crate::gpu::offscreen::commands::Commands;
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::commands::Commands;
+use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::render_pass::{DEPTH_FORMAT, color_formats};
-use crate::gpu::vk::usage::{Usage, buffer_barrier, image_barrier};
+use crate::gpu::vk::usage::Usage;
 use crate::settings::{DrawStage, Planes};
 use ash::vk;
 use std::sync::Arc;
-
-/// Memory that compute shaders write to. Fragment shaders that draw all planes write to it besides
-/// their attachments.
-#[derive(Clone, Debug)]
-pub struct ComputeTarget {
-    /// A storage buffer of two 32-bit words per pixel, row by row from the top. The first half
-    /// holds the depths of all pixels, as bits of floats. The second half holds a second word of
-    /// each pixel. This word is the colour, packed as `R8G8B8A8_SRGB`, if only colour is drawn,
-    /// else a count of look-ups. Before a frame the host clears depths to 1.0 and colours to its
-    /// background, or fills in what is already drawn.
-    pub words: vk::Buffer,
-    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`. Empty if only
-    /// colour is drawn, or if fragments draw.
-    pub images: Vec<vk::ImageView>,
-    /// True if depths count: compute compares with the depths in the buffer, and writes its own. If
-    /// false, the depths may hold anything. Shaders then read and write them only to distinguish
-    /// objects ([`PreparedFrame::reads_depths`](crate::gpu::PreparedFrame::reads_depths)).
-    pub depths: bool,
-}
-
-impl ComputeTarget {
-    /// The second word of a pixel of this linear colour, if only colour is drawn.
-    #[must_use]
-    pub fn color_word(linear: [f32; 4]) -> u32 {
-        pack_srgb(linear)
-    }
-}
 
 /// The images of an off-screen frame.
 pub(crate) struct Target {
@@ -75,7 +48,7 @@ enum Part<'a> {
 /// Returns an error for more pixels than the device draws, or than fit into a buffer at two words
 /// per pixel.
 fn check_size(device: &Shared, (width, height): (u32, u32), needs_words: bool) -> Result<()> {
-    let limits = &device.limits;
+    let limits = device.limits();
     let side = limits.max_image_dimension2_d;
     let most_x = limits.max_framebuffer_width.min(side);
     let most_y = limits.max_framebuffer_height.min(side);
@@ -84,7 +57,7 @@ fn check_size(device: &Shared, (width, height): (u32, u32), needs_words: bool) -
     if width <= most_x && height <= most_y && (words_fit || !needs_words) {
         return Ok(());
     }
-    let name = &device.report.name;
+    let name = &device.chosen.report.name;
     let message = format!(
         "{width}x{height} pixels are more than {name} takes ({most_x}x{most_y}, and {most_words} in all for this kind of picture); make it smaller"
     );
@@ -158,10 +131,13 @@ impl Target {
             target.depth = Some(depth);
         }
         if needs_words {
-            use vk::BufferUsageFlags as B;
-            let usage = B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC;
             let pixels = u64::from(width) * u64::from(height);
-            target.words = Some(device_local(device, "pixel words", 8 * pixels, usage)?);
+            target.words = Some(Buffer::for_use(
+                device,
+                Use::Pixels,
+                "pixel words",
+                8 * pixels,
+            )?);
         }
         Ok(target)
     }
@@ -198,16 +174,10 @@ impl Target {
         if let Some(words) = &self.words {
             let half = 4 * u64::from(self.width) * u64::from(self.height);
             let second = match self.planes {
-                Planes::Color => pack_srgb(background),
+                Planes::Color => ComputeTarget::color_word(background),
                 Planes::Depth { .. } | Planes::All => 0,
             };
-            buffer_barrier(
-                &self.device,
-                cmd,
-                words,
-                Usage::TransferRead,
-                Usage::TransferWrite,
-            );
+            words.barrier(cmd, Usage::TransferRead, Usage::TransferWrite);
             // SAFETY: `cmd` is recording and both ranges are within the buffer.
             unsafe {
                 if depths {
@@ -215,7 +185,7 @@ impl Target {
                 }
                 raw.cmd_fill_buffer(cmd, words.raw, half, half, second);
             }
-            buffer_barrier(&self.device, cmd, words, Usage::TransferWrite, next);
+            words.barrier(cmd, Usage::TransferWrite, next);
         }
         if self.stage == DrawStage::Compute {
             for (image, value) in self
@@ -223,13 +193,7 @@ impl Target {
                 .iter()
                 .zip(clear_values(self.planes, background))
             {
-                image_barrier(
-                    &self.device,
-                    cmd,
-                    image,
-                    Usage::Nothing,
-                    Usage::TransferWrite,
-                );
+                image.barrier(cmd, Usage::Nothing, Usage::TransferWrite);
                 // SAFETY: as above; the image was made for transfers.
                 unsafe {
                     raw.cmd_clear_color_image(
@@ -240,7 +204,7 @@ impl Target {
                         &[image.kind.range()],
                     );
                 }
-                image_barrier(&self.device, cmd, image, Usage::TransferWrite, next);
+                image.barrier(cmd, Usage::TransferWrite, next);
             }
         }
     }
@@ -326,7 +290,7 @@ impl Target {
         let sizes: Vec<u64> = parts.iter().map(bytes).collect();
         let host = match kept {
             Some(host) => host,
-            None => read_back(&self.device, "read back", sizes.iter().sum())?,
+            None => Buffer::for_use(&self.device, Use::ReadBack, "read back", sizes.iter().sum())?,
         };
         commands.run(|cmd| {
             let mut at = 0;
@@ -335,7 +299,7 @@ impl Target {
                 at += size;
             }
             let (from, to) = (Usage::TransferWrite, Usage::HostRead);
-            buffer_barrier(&self.device, cmd, &host, from, to);
+            host.barrier(cmd, from, to);
         })?;
         drop(parts);
         let mut rest: &[u8] = self.host.insert(host).mapped()?;
@@ -356,7 +320,7 @@ impl Target {
                 let in_compute = self.stage == DrawStage::Compute;
                 if in_compute {
                     let (from, to) = (Usage::ComputeWrite, Usage::TransferRead);
-                    image_barrier(&self.device, cmd, image, from, to);
+                    image.barrier(cmd, from, to);
                 }
                 let region = vk::BufferImageCopy::default()
                     .buffer_offset(at)
@@ -382,12 +346,12 @@ impl Target {
                 }
                 if in_compute {
                     let (from, to) = (Usage::TransferRead, Usage::ComputeWrite);
-                    image_barrier(&self.device, cmd, image, from, to);
+                    image.barrier(cmd, from, to);
                 }
             }
             Part::Words(words, from) => {
                 let (used, to) = (self.shader_use(), Usage::TransferRead);
-                buffer_barrier(&self.device, cmd, words, used, to);
+                words.barrier(cmd, used, to);
                 let region = vk::BufferCopy::default()
                     .src_offset(*from)
                     .dst_offset(at)

@@ -1,77 +1,14 @@
-//! The output of a renderer: formats and conventions, set once.
+//! Checks of an output: what the device draws into, and the memory that compute writes to.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
-use crate::gpu::frame::target::ComputeTarget;
 use crate::gpu::vk::call::kind_of;
+use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::color_formats;
-use crate::plan::DepthOrder;
 use crate::settings::{Planes, Solver};
 use ash::vk;
 
-/// The destination of a renderer's work, fixed when the renderer is made.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Output {
-    /// Fragments, in a render pass or dynamic rendering that the host begins.
-    Pass(PassFormats),
-    /// Pixels that a compute shader traces and writes to a [`ComputeTarget`](crate::gpu::ComputeTarget).
-    Compute(Planes),
-}
-
-/// The pass in which fragments are drawn.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct PassFormats {
-    /// Kind of pass: a render pass or dynamic rendering.
-    pub begun: PassKind,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres at any sample
-    /// count.
-    pub samples: u32,
-    /// The end of the depth range that is near.
-    pub depth: DepthOrder,
-    /// The planes that the fragment shader writes, one per attachment.
-    pub planes: Planes,
-}
-
-/// Kind of pass that the host begins.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum PassKind {
-    /// A subpass of a render pass. The host may begin any compatible pass instead.
-    RenderPass {
-        /// The pass, which must live as long as the renderer.
-        pass: vk::RenderPass,
-        /// The subpass, which has the colour attachments of the planes and a depth attachment.
-        subpass: u32,
-    },
-    /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
-    Dynamic {
-        /// Formats of the colour attachments in order; empty if only depth is drawn.
-        color: Vec<vk::Format>,
-        /// Format of the depth attachment.
-        depth: vk::Format,
-        /// Format of the stencil attachment; `UNDEFINED` if there is none.
-        stencil: vk::Format,
-    },
-}
-
 impl Output {
-    /// The planes that are drawn.
-    #[must_use]
-    pub fn planes(&self) -> Planes {
-        match self {
-            Self::Pass(pass) => pass.planes,
-            Self::Compute(planes) => *planes,
-        }
-    }
-
-    /// The end of the depth range that is near.
-    #[must_use]
-    pub fn depth_order(&self) -> DepthOrder {
-        match self {
-            Self::Pass(pass) => pass.depth,
-            Self::Compute(_) => DepthOrder::Normal,
-        }
-    }
-
     /// Returns an error for an output that the device or the solver cannot draw.
     pub(crate) fn check(&self, device: &Shared, solver: Solver) -> Result<()> {
         let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
@@ -84,7 +21,9 @@ impl Output {
         let Self::Pass(pass) = self else {
             return Ok(());
         };
-        if pass.planes == Planes::All && !device.fragment_stores {
+        if pass.planes == Planes::All
+            && device.chosen.features.fragment_stores_and_atomics == vk::FALSE
+        {
             return Err(Error::new(
                 ErrorKind::Unsupported,
                 "all planes in a pass need the feature fragmentStoresAndAtomics; enable it",
@@ -142,7 +81,7 @@ impl PassFormats {
         if raw == vk::RenderPass::null() {
             return Err(usage("pass", "the render pass is null; give one".into()));
         }
-        let limits = &device.limits;
+        let limits = device.limits();
         let colors = limits.framebuffer_color_sample_counts;
         self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
     }
@@ -199,7 +138,7 @@ impl PassFormats {
             device
                 .functions
                 .get_physical_device_image_format_properties(
-                    device.physical,
+                    device.chosen.physical,
                     format,
                     vk::ImageType::TYPE_2D,
                     vk::ImageTiling::OPTIMAL,
@@ -208,7 +147,7 @@ impl PassFormats {
                 )
         };
         let found = found.map_err(|code| {
-            let name = &device.report.name;
+            let name = &device.chosen.report.name;
             let message = format!("{name} does not draw into {format:?} ({code:?})");
             Error::new(kind_of(code), message)
         })?;
@@ -219,7 +158,7 @@ impl PassFormats {
         if counts.contains(vk::SampleCountFlags::from_raw(self.samples)) {
             return Ok(());
         }
-        let name = &device.report.name;
+        let name = &device.chosen.report.name;
         let message = format!("{name} has no {} samples; it has {counts:?}", self.samples);
         Err(Error::new(ErrorKind::Unsupported, message).at_key("samples"))
     }

@@ -1,16 +1,17 @@
 //! Pipelines compiled before they are needed.
 
+use super::Renderer;
+use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
 use crate::gpu::content::entry::Entry;
-use crate::gpu::content::planned::PlannedObject;
 use crate::gpu::content::refresh::FALLBACK;
+use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
-use crate::gpu::frame::output::Output;
-use crate::gpu::frame::prepare::PreparedFrame;
-use crate::gpu::renderer::Renderer;
-use crate::plan::{PlanObject, Pushed, variants};
+use crate::gpu::vk::output::Output;
+use crate::plan::{PlanObject, variants};
 use crate::settings::Solver;
+use crate::shader::Pushed;
 use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::sync::Arc;
@@ -57,8 +58,9 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
-        let view = self.content.planned.as_ref().map(|p| p.view);
-        self.content.refresh(view.as_ref())?;
+        let view = self.content.plan.as_ref().map(|p| p.view);
+        self.content.refresh()?;
+        self.content.with_surfaces(view.as_ref())?;
         Ok(Prewarm {
             wanted: self
                 .content
@@ -139,19 +141,19 @@ impl Content {
                 self.casters,
             )
         };
-        let prepared: Vec<_> = (self.objects.ordered())
+        let derived: Vec<_> = (self.objects.ordered())
             .filter_map(|(number, entry)| {
-                let prepared = entry.prepared.as_ref()?;
+                let derived = entry.derived.as_ref()?;
                 let planned = PlannedObject {
                     number,
                     level: 0,
-                    surface: prepared.levels.first().map(|l| l.1.clone()),
+                    surface: derived.levels.first().map(|l| l.1.clone()),
                 };
-                Some((entry, prepared.textures.set, planned))
+                Some((entry, derived.textures.set, planned))
             })
             .collect();
         // The list includes objects that fall back, because their contour may close again.
-        let own: Vec<PlanObject> = prepared
+        let own: Vec<PlanObject> = derived
             .iter()
             .filter_map(|(entry, _, planned)| {
                 Some(PlanObject {
@@ -163,7 +165,7 @@ impl Content {
         let falls_back = matches!(solver, Solver::Quadric | Solver::Exact);
         let mut all: Vec<(Variant, Kind, vk::DescriptorSet)> = Vec::new();
         for ((entry, set, _), (object, variant)) in
-            prepared.iter().zip(own.iter().zip(variants(&own, &with)))
+            derived.iter().zip(own.iter().zip(variants(&own, &with)))
         {
             let fallback = falls_back.then(|| PlanObject {
                 variant: of(FALLBACK, entry),
@@ -174,7 +176,7 @@ impl Content {
             let mut reachable = with.reachable(object, variant);
             for object in fallback.iter() {
                 let variant = Variant {
-                    one_solid: variant.one_solid,
+                    one_object: variant.one_object,
                     one_instance: variant.one_instance,
                     ..object.variant
                 };

@@ -1,16 +1,16 @@
-//! Preparation of a frame before it is recorded: plan, places of tables, pipelines, blocks. While a
+//! Preparation of a frame before it is recorded: plan, tables, pipelines, blocks. While a
 //! slot's view and the content stand still, it writes the frame block alone. Any change plans all
 //! objects anew.
 
+use super::Renderer;
+use super::slot::{BoundPlan, BoundStep};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::content::planned::Planned;
-use crate::gpu::frame::slot::{Bound, BoundStep};
-use crate::gpu::renderer::Renderer;
+use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{frame_block, instance_block};
-use crate::gpu::resources::blocks::{SOLID_STRIDE, SolidBlock};
 use crate::plan::View;
 use crate::scene::Shadow;
 use crate::shader::Kind;
+use crate::shader::{OBJECT_STRIDE, ObjectBlock};
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`].
     pub fn plan(&mut self, view: &View) -> Result<()> {
-        self.content.planned(view, None).map(|_| ())
+        self.content.plan(view, None).map(|_| ())
     }
 
     /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
@@ -70,20 +70,20 @@ impl Renderer {
         view: &View,
     ) -> Result<PreparedFrame> {
         self.check(slot, view)?;
-        let known = self.slots[slot].bound.as_ref().map(|bound| &bound.planned);
-        let planned = self.content.planned(view, known)?;
+        let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
+        let plan = self.content.plan(view, known)?;
         self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
         let anew = {
             let bound = self.slots[slot].bound.as_ref();
-            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.planned, &planned))
+            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.plan, &plan))
         };
         if anew {
             self.slots[slot].bound = None;
-            let bound = self.bind(&planned)?;
-            self.write(slot, view, &planned)?;
+            let bound = self.bind(&plan)?;
+            self.write(slot, view, &plan)?;
             let to = &mut self.slots[slot];
             let target = self.target.as_ref().map(|(t, n)| (t, *n));
-            to.name(&bound.placed.tables, target);
+            to.name(&bound.buffers.tables, target);
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
@@ -93,7 +93,7 @@ impl Renderer {
             renderer: self.content.objects.renderer,
             slot,
             serial: to.serial,
-            reads_depths: planned.plan.compares_depths,
+            reads_depths: plan.frame.compares_depths,
         })
     }
 
@@ -115,19 +115,19 @@ impl Renderer {
             .check_target(self.target.as_ref().map(|t| &t.0))
     }
 
-    /// Places the tables of a plan, and finds the bindings of its steps.
-    fn bind(&self, planned: &Arc<Planned>) -> Result<Bound> {
-        let plan = &planned.plan;
-        let parts = planned.objects.iter().zip(&plan.parts);
+    /// Stores the tables of a plan, and finds the bindings of its steps.
+    fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
+        let frame = &plan.frame;
+        let parts = plan.objects.iter().zip(&frame.parts);
         let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
-        let placed = self.content.geometry.lock()?.place(read)?;
+        let buffers = self.content.geometry.lock()?.store(read)?;
         let pipelines = self.device.pipelines()?;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
-        let mut steps = Vec::with_capacity(plan.steps.len());
-        for step in &plan.steps {
-            let object = &planned.objects[step.object as usize];
+        let mut steps = Vec::with_capacity(frame.steps.len());
+        for step in &frame.steps {
+            let object = &plan.objects[step.object as usize];
             let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
-            let prepared = entry.prepared.as_ref().ok_or_else(gone)?;
+            let derived = entry.derived.as_ref().ok_or_else(gone)?;
             let tables = object
                 .surface
                 .as_ref()
@@ -144,31 +144,31 @@ impl Renderer {
                     &self.content.output,
                     self.owner,
                 )?,
-                textures: prepared.textures.clone(),
-                offsets: [16 * begin, object.number * SOLID_STRIDE],
+                textures: derived.textures.clone(),
+                offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
         }
-        Ok(Bound {
-            planned: planned.clone(),
+        Ok(BoundPlan {
+            plan: plan.clone(),
             steps,
-            placed,
+            buffers,
         })
     }
 
     /// Writes blocks of a slot that are older than the renderer, or of another view.
-    fn write(&mut self, slot: usize, view: &View, planned: &Planned) -> Result<()> {
+    fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
         let casts = self.content.lighting.shadow != Shadow::Off;
         let to = &mut self.slots[slot];
         to.fit(
-            self.content.objects.places(),
+            self.content.objects.number_count(),
             self.content.objects.instances(),
         )?;
-        to.write_plan(&planned.plan)?;
+        to.write_plan(&plan.frame)?;
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
         let known = known.map_or(0, |(_, version)| version);
-        let mut throwing: Vec<SolidBlock> = Vec::new();
-        for (object, copies) in planned.objects.iter().zip(&planned.plan.copies) {
+        let mut throwing: Vec<ObjectBlock> = Vec::new();
+        for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
             let number = object.number;
             let Some(entry) = self.content.objects.at(number) else {
                 continue;
@@ -179,7 +179,7 @@ impl Renderer {
                 continue;
             };
             let placements = entry.drawn().placements();
-            to.write_solid(number, &block)?;
+            to.write_object(number, &block)?;
             if casts {
                 throwing.push(block);
             }
@@ -199,7 +199,7 @@ impl Renderer {
         if casts {
             to.write_shadows(&throwing)?;
         }
-        to.written = Some((*view, planned.version));
+        to.written = Some((*view, plan.version));
         Ok(())
     }
 }

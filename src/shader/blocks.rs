@@ -1,6 +1,6 @@
 //! Data that the CPU passes to the GPU. A test compares the layouts with `blocks.glsl`.
 
-use crate::shader::generated::{MAX_LIGHTS, MAX_SHADOW_BATCHES};
+use super::generated::{MAX_LIGHTS, MAX_SHADOW_OBJECTS};
 use bytemuck::{Pod, Zeroable};
 
 /// `Light` of `blocks.glsl`.
@@ -54,14 +54,15 @@ pub struct InstanceBlock {
     /// Origin of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's
     /// middle.
     pub origin: [f32; 4],
-    /// Number of the instance's solid; bits of the distance from its position that its box reaches.
-    pub solid: [u32; 4],
+    /// Number of the instance's object; bits of the distance from its position that its box
+    /// reaches.
+    pub object: [u32; 4],
 }
 
-/// `Solid` of `blocks.glsl`.
+/// `Object` of `blocks.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct SolidBlock {
+pub struct ObjectBlock {
     /// Columns, rows, texel in object units, factor from stored to object units.
     pub map: [f32; 4],
     /// `R`, clip radius about the axis, clip z low and high.
@@ -87,19 +88,39 @@ pub struct SolidBlock {
     pub patches: [u32; 4],
     /// First frustum of the cells; unused; first vector of the patches that are listed; first row
     /// of the box's sides.
-    pub hull: [u32; 4],
+    pub parts: [u32; 4],
 }
 
-/// Bytes from one solid to the next: the largest alignment of offsets in a uniform buffer that a
+/// Bytes from one object to the next: the largest alignment of offsets in a uniform buffer that a
 /// device may have.
-pub const SOLID_STRIDE: u32 = 256;
+pub const OBJECT_STRIDE: u32 = 256;
 
 /// `ShadowBlock` of `blocks.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ShadowBlock {
-    /// First: number of solids.
-    pub shadow_batches: [u32; 4],
-    /// Only the first `shadow_batches[0]` solids count.
-    pub shadow_solids: [SolidBlock; MAX_SHADOW_BATCHES as usize],
+    /// First: number of objects.
+    pub shadow_count: [u32; 4],
+    /// Only the first `shadow_count[0]` objects count.
+    pub shadow_objects: [ObjectBlock; MAX_SHADOW_OBJECTS as usize],
+}
+
+/// `Pushed` of `compute.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Pushed {
+    /// Number of the first record.
+    pub first: u32,
+    /// Number of records.
+    pub count: u32,
+    /// Word of the heads of their bins.
+    pub heads: u32,
+    /// Word at which the records of their bins begin.
+    pub records: u32,
+    /// Number of the bin that is read.
+    pub bin: u32,
+    /// Number of the only object.
+    pub object: u32,
+    /// Number of the only instance.
+    pub instance: u32,
 }

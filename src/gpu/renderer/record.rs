@@ -1,12 +1,13 @@
 //! The commands of a frame, translated from the steps of its plan. The number of commands follows
 //! the pipelines and texture sets in use, and the size of the picture.
 
+use super::Renderer;
+use super::prepare::PreparedFrame;
+use super::slot::{BoundPlan, BoundStep, FrameSlot};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::frame::prepare::PreparedFrame;
-use crate::gpu::frame::slot::{Bound, BoundStep, FrameSlot};
-use crate::gpu::renderer::Renderer;
-use crate::gpu::vk::usage::{Usage, buffer_barrier};
-use crate::plan::{Call, IndexedDraw, Pushed, Step};
+use crate::gpu::vk::usage::Usage;
+use crate::plan::{Call, IndexedDraw, Step};
+use crate::shader::Pushed;
 use ash::vk;
 
 /// Bytes of one indirect draw.
@@ -32,14 +33,14 @@ impl Renderer {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
         let point = vk::PipelineBindPoint::GRAPHICS;
-        let large_points = self.device.constants.large_points;
+        let large_points = self.device.chosen.constants().large_points;
         let vertices = if large_points { 1 } else { 6 };
         // SAFETY: `cmd` is recording within a render pass; all bound objects live as long as the
         // caller promised.
         unsafe {
-            let indices = bound.placed.indices.raw;
+            let indices = bound.buffers.indices.raw;
             raw.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
-            for (n, step) in bound.planned.plan.steps.iter().enumerate() {
+            for (n, step) in bound.plan.frame.steps.iter().enumerate() {
                 self.bind_step(cmd, point, slot, bound, n)?;
                 match &step.call {
                     Call::Draws(range) => self.draw(cmd, slot, bound, range.start, range.end),
@@ -76,12 +77,12 @@ impl Renderer {
     ) -> Result<()> {
         let (slot, bound) = self.frame(frame)?;
         let raw = &self.device.raw;
-        let plan = &bound.planned.plan;
-        let barrier = |from, to| buffer_barrier(&self.device, cmd, &slot.lists, from, to);
-        if plan.list_heads > 0 {
-            let bytes = 4 * u64::from(plan.list_heads);
+        let plan = &bound.plan.frame;
+        let barrier = |from, to| slot.bins.barrier(cmd, from, to);
+        if plan.bin_head_words > 0 {
+            let bytes = 4 * u64::from(plan.bin_head_words);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
-            unsafe { raw.cmd_fill_buffer(cmd, slot.lists.raw, 0, bytes, 0) };
+            unsafe { raw.cmd_fill_buffer(cmd, slot.bins.raw, 0, bytes, 0) };
             barrier(Usage::TransferWrite, Usage::ComputeWrite);
         }
         let mut phase = plan.steps.first().map_or(0, |step| step.phase);
@@ -103,7 +104,7 @@ impl Renderer {
     }
 
     /// The slot of a frame, and its bindings.
-    pub(in crate::gpu) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &Bound)> {
+    pub(in crate::gpu) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &BoundPlan)> {
         let slot = self.slots.get(frame.slot);
         let own = |slot: &&FrameSlot| {
             frame.renderer == self.content.objects.renderer && slot.serial == frame.serial
@@ -123,14 +124,14 @@ impl Renderer {
         &self,
         cmd: vk::CommandBuffer,
         slot: &FrameSlot,
-        bound: &Bound,
+        bound: &BoundPlan,
         first: u32,
         end: u32,
     ) {
         let raw = &self.device.raw;
-        let most = self.device.most_draws;
+        let most = self.device.chosen.most_draws();
         if most == 0 {
-            let draws = &bound.planned.plan.draws[first as usize..end as usize];
+            let draws = &bound.plan.frame.draws[first as usize..end as usize];
             for &[indices, instances, first, _, instance] in draws {
                 // SAFETY: as the caller promised.
                 unsafe { raw.cmd_draw_indexed(cmd, indices, instances, first, 0, instance) };
@@ -158,7 +159,7 @@ impl Renderer {
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);
-                    raw.cmd_dispatch_indirect(cmd, slot.lists.raw, 4 * u64::from(*head));
+                    raw.cmd_dispatch_indirect(cmd, slot.bins.raw, 4 * u64::from(*head));
                 }
                 Call::Draws(_) | Call::Quads(_) => {}
             }
@@ -197,7 +198,7 @@ impl Renderer {
         cmd: vk::CommandBuffer,
         point: vk::PipelineBindPoint,
         slot: &FrameSlot,
-        bound: &Bound,
+        bound: &BoundPlan,
         step: usize,
     ) -> Result<()> {
         let BoundStep {

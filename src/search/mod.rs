@@ -26,7 +26,6 @@
 
 mod module;
 
-pub use crate::shader::unpacked;
 pub use module::{Features, Output, Pass, SearchModule};
 
 use crate::error::Result;
@@ -76,6 +75,24 @@ impl Words {
     }
 }
 
+/// Unpacks words that `build.rs` packed. The bytes are deflated. A byte holds seven bits of a word,
+/// the lowest first; the eighth bit is set if more bytes follow.
+#[must_use]
+pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
+    let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
+    let mut words = Vec::with_capacity(bytes.len() / 2);
+    let (mut word, mut shift) = (0u32, 0);
+    for byte in bytes {
+        word |= u32::from(byte & 127).checked_shl(shift)?;
+        shift += 7;
+        if byte & 128 == 0 {
+            words.push(word);
+            (word, shift) = (0, 0);
+        }
+    }
+    Some(words)
+}
+
 /// The data that a search reads.
 pub enum Reads {
     /// The shape map.
@@ -123,7 +140,7 @@ impl Steps {
 pub struct SearchTable {
     /// The results of `patch_vector(0)` and so on in GLSL.
     pub vectors: Vec<[u32; 4]>,
-    /// The value of `solid.patches.yzw` in GLSL.
+    /// The value of `object.patches.yzw` in GLSL.
     pub facts: [u32; 3],
 }
 

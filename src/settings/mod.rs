@@ -3,6 +3,7 @@
 
 mod tolerance;
 
+pub use crate::names::name_of;
 pub use tolerance::Tolerance;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -32,13 +33,6 @@ impl DrawStage {
     }
 }
 
-/// The name of a value among these; the last, if it has several.
-#[must_use]
-pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: &T) -> &'static str {
-    let found = names.iter().rev().find(|(_, known)| known == value);
-    found.map_or("unknown", |(name, _)| name)
-}
-
 /// The search for the first hit along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {
@@ -49,7 +43,7 @@ pub enum Solver {
     /// parameters change.
     Quadric,
     /// The patches of [`Quadric`](Self::Quadric), found by the fastest method of each stage: the
-    /// rasteriser finds them by proxies in the fragment stage, and tile lists in compute. Objects
+    /// rasteriser finds them by proxies in the fragment stage, lists of tiles in compute. Objects
     /// without either are searched as by [`Quadric`](Self::Quadric). Scripts may use the name
     /// `hull`.
     Exact,

@@ -8,7 +8,7 @@ use crate::scene::CameraFrame;
 use crate::settings::{Planes, Settings};
 use crate::shader::generated::EXHAUSTED_BIT;
 
-/// Makes a frame of `planes`, which [`Target::read`](crate::gpu::frame::target::Target::read)
+/// Makes a frame of `planes`, which [`Target::read`](crate::gpu::offscreen::target::Target::read)
 /// returns.
 pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]]) -> Result<Frame> {
     let mut frame = Frame::new(settings.width, settings.height, background)?;

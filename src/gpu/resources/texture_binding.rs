@@ -1,10 +1,11 @@
-//! Samplers.
+//! The binding of textures: samplers, and the descriptor sets that are handed out.
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::Call;
+use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
 use ash::vk;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A sampler that clamps to the edge.
 pub(crate) struct Sampler {
@@ -49,7 +50,7 @@ impl Sampler {
             info = info
                 .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
                 .max_lod(vk::LOD_CLAMP_NONE);
-            if let Some(most) = device.anisotropy {
+            if let Some(most) = device.chosen.anisotropy() {
                 info = info.anisotropy_enable(true).max_anisotropy(most.min(8.0));
             }
         }
@@ -66,5 +67,66 @@ impl Drop for Sampler {
     fn drop(&mut self) {
         // SAFETY: every submission was waited for.
         unsafe { self.device.raw.destroy_sampler(self.raw, None) };
+    }
+}
+
+/// Descriptor sets of textures. New pools are made as sets are needed, and returned sets are used
+/// again.
+pub(crate) struct SetPool {
+    state: Mutex<Sets>,
+    device: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Sets {
+    pools: Vec<vk::DescriptorPool>,
+    free: Vec<vk::DescriptorSet>,
+}
+
+/// Number of sets in one pool.
+const SETS: u32 = 64;
+
+impl SetPool {
+    pub fn new(device: &Arc<Shared>) -> Self {
+        Self {
+            state: Mutex::default(),
+            device: device.clone(),
+        }
+    }
+
+    pub fn take(&self) -> Result<vk::DescriptorSet> {
+        let mut state = self
+            .state
+            .lock()
+            .map_err(|_| Error::new(ErrorKind::Other, "the pool of textures is poisoned"))?;
+        if let Some(set) = state.free.pop() {
+            return Ok(set);
+        }
+        let layouts = &self.device.pipelines()?.set_layouts;
+        let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
+        state.pools.push(pool);
+        state.free = sets;
+        state
+            .free
+            .pop()
+            .ok_or_else(|| Error::new(ErrorKind::Other, "a pool of textures gave no set"))
+    }
+
+    pub fn give_back(&self, set: vk::DescriptorSet) {
+        if let Ok(mut state) = self.state.lock() {
+            state.free.push(set);
+        }
+    }
+}
+
+impl Drop for SetPool {
+    fn drop(&mut self) {
+        let Ok(state) = self.state.get_mut() else {
+            return;
+        };
+        for pool in state.pools.drain(..) {
+            // SAFETY: the renderer's frames are done; the pool frees its sets.
+            unsafe { self.device.raw.destroy_descriptor_pool(pool, None) };
+        }
     }
 }

@@ -1,17 +1,28 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! `content` holds objects and lights, derives resources from their values and plans a view's frame.
-//! `frame/prepare.rs` prepares a plan for a slot, and `frame/record.rs` records it.
+//! `objects.rs` changes objects and lights, `prepare.rs` prepares the plan of a view for a slot,
+//! `record.rs` records it. `prewarm.rs` compiles pipelines before they are needed, and `costs.rs`
+//! says what objects take.
+
+pub(super) mod costs;
+mod objects;
+mod output_check;
+pub(super) mod prepare;
+pub(super) mod prewarm;
+mod record;
+mod slot;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::Content;
-use crate::gpu::device::{Device, Shared};
-use crate::gpu::frame::output::Output;
-use crate::gpu::frame::slot::FrameSlot;
-use crate::gpu::frame::target::ComputeTarget;
+use crate::gpu::device::Shared;
+use crate::gpu::open::Device;
+use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::vk::output::ComputeTarget;
+use crate::gpu::vk::output::Output;
 use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
+use slot::FrameSlot;
 use std::sync::Arc;
 
 /// Objects on a device, drawn into whatever the host draws into.
@@ -63,6 +74,7 @@ impl Renderer {
         }
         output.check(&device.shared, settings.solver)?;
         settings.check()?;
+        let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();
         Ok(Self {
             slots: (0..slots)
@@ -70,7 +82,7 @@ impl Renderer {
                 .collect::<Result<_>>()?,
             target: None,
             owner: device.pipelines()?.owner(&output),
-            content: Content::new(&device, output, settings)?,
+            content: Content::new(&device, geometry, output, settings)?,
             device,
         })
     }
@@ -96,14 +108,14 @@ impl Renderer {
     /// The draw path of each object in the last planned frame, in order.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
-        let planned = self.content.planned.as_ref();
-        planned.map_or_else(Vec::new, |p| p.plan.paths.clone())
+        let plan = self.content.plan.as_ref();
+        plan.map_or_else(Vec::new, |p| p.frame.paths.clone())
     }
 
     /// The number of surfaces that were made: one for each profile under each offset that no object
     /// had in the previous frame. A moving camera makes surfaces of levels that it needs for the
     /// first time; with [`Tolerance::EXACT`](crate::settings::Tolerance::EXACT) it makes none.
-    /// Searches on the map never make any.
+    /// Searches on the map never make any. A contour that does not close counts as a surface.
     #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         self.content.rebuilds
@@ -115,10 +127,10 @@ impl Renderer {
     pub fn map_bytes(&self) -> [u64; 2] {
         let mut seen = Vec::new();
         let mut shapes = 0;
-        for prepared in (self.content.objects.ordered()).filter_map(|(_, e)| e.prepared.as_ref()) {
+        for derived in (self.content.objects.ordered()).filter_map(|(_, e)| e.derived.as_ref()) {
             let images = [
-                prepared.map.as_ref().map(|m| &m.texture),
-                prepared.arc.as_ref().map(|a| &a.texture),
+                derived.map.as_ref().map(|m| &m.texture),
+                derived.arc.as_ref().map(|a| &a.texture),
             ];
             for image in images.into_iter().flatten() {
                 if !seen.contains(&Arc::as_ptr(image)) {

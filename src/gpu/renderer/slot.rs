@@ -2,19 +2,17 @@
 //! that bind them. The slot also keeps alive all else that its commands read.
 
 use crate::error::Result;
-use crate::gpu::content::planned::Planned;
+use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
-use crate::gpu::frame::target::ComputeTarget;
 use crate::gpu::memory::Buffer;
-use crate::gpu::memory::buffers::{indirect, lists, storage, uniform, write, write_slice};
-use crate::gpu::memory::uploads::Upload;
-use crate::gpu::resources::blocks::{
-    FrameBlock, InstanceBlock, SOLID_STRIDE, ShadowBlock, SolidBlock,
-};
-use crate::gpu::resources::geometry::Placed;
+use crate::gpu::memory::buffers::{Use, write, write_slice};
+use crate::gpu::memory::images::Upload;
+use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
+use crate::gpu::vk::output::ComputeTarget;
 use crate::plan::{FramePlan, View};
+use crate::shader::{FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock, ShadowBlock};
 use ash::vk;
 use std::sync::Arc;
 
@@ -23,17 +21,17 @@ pub(crate) struct FrameSlot {
     pub frame_set: vk::DescriptorSet,
     pub target_set: vk::DescriptorSet,
     frame: Buffer,
-    solids: Buffer,
+    objects: Buffer,
     instances: Buffer,
     shadows: Buffer,
     tiles: Buffer,
-    pub lists: Buffer,
+    pub bins: Buffer,
     pub draws: Buffer,
-    /// The plan and bindings to record; `None` before the slot is prepared.
-    pub bound: Option<Bound>,
+    /// The plan and bindings to record; `None` before the slot is derived.
+    pub bound: Option<BoundPlan>,
     /// Counts the slot's frames. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The view and the renderer's version that solids and instances were written for. `None` if
+    /// The view and the renderer's version that objects and instances were written for. `None` if
     /// all must be written.
     pub written: Option<(View, u64)>,
     /// Copies that the frame's commands make.
@@ -45,11 +43,11 @@ pub(crate) struct FrameSlot {
 }
 
 /// A plan with all objects that its commands bind.
-pub(crate) struct Bound {
-    pub planned: Arc<Planned>,
+pub(crate) struct BoundPlan {
+    pub plan: Arc<ViewPlan>,
     /// One per step.
     pub steps: Vec<BoundStep>,
-    pub placed: Placed,
+    pub buffers: TableBuffers,
 }
 
 /// The bindings of a step.
@@ -63,16 +61,21 @@ pub(crate) struct BoundStep {
 
 impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
+        let buffer = |to, name, bytes| Buffer::for_use(device, to, name, bytes);
         let mut slot = Self {
             frame_set: vk::DescriptorSet::null(),
             target_set: vk::DescriptorSet::null(),
-            frame: uniform(device, "frame block", size_of::<FrameBlock>() as u64)?,
-            solids: storage(device, "objects", u64::from(SOLID_STRIDE))?,
-            instances: storage(device, "instances", 0)?,
-            shadows: uniform(device, "shadow block", size_of::<ShadowBlock>() as u64)?,
-            tiles: storage(device, "tiles", 0)?,
-            lists: lists(device, 0)?,
-            draws: indirect(device, 0)?,
+            frame: buffer(Use::Uniform, "frame block", size_of::<FrameBlock>() as u64)?,
+            objects: buffer(Use::Storage, "objects", u64::from(OBJECT_STRIDE))?,
+            instances: buffer(Use::Storage, "instances", 0)?,
+            shadows: buffer(
+                Use::Uniform,
+                "shadow block",
+                size_of::<ShadowBlock>() as u64,
+            )?,
+            tiles: buffer(Use::Storage, "tiles", 0)?,
+            bins: buffer(Use::Bins, "bins of tiles", 0)?,
+            draws: buffer(Use::Draws, "draws", 0)?,
             bound: None,
             serial: 0,
             written: None,
@@ -90,13 +93,13 @@ impl FrameSlot {
         Ok(slot)
     }
 
-    /// Makes room for this many solids and instances. The caller must ensure that no frame reads
+    /// Makes room for this many objects and instances. The caller must ensure that no frame reads
     /// the buffers.
-    pub fn fit(&mut self, solids: usize, instances: u32) -> Result<()> {
-        let solids = solids as u64 * u64::from(SOLID_STRIDE);
+    pub fn fit(&mut self, objects: usize, instances: u32) -> Result<()> {
+        let objects = objects as u64 * u64::from(OBJECT_STRIDE);
         let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
         for (buffer, bytes, name) in [
-            (&mut self.solids, solids, "objects"),
+            (&mut self.objects, objects, "objects"),
             (&mut self.instances, instances, "instances"),
         ] {
             if buffer.bytes < bytes {
@@ -112,11 +115,11 @@ impl FrameSlot {
     pub fn bytes(&self) -> u64 {
         let all = [
             &self.frame,
-            &self.solids,
+            &self.objects,
             &self.instances,
             &self.shadows,
             &self.tiles,
-            &self.lists,
+            &self.bins,
             &self.draws,
         ];
         all.iter().map(|buffer| buffer.bytes).sum()
@@ -126,9 +129,9 @@ impl FrameSlot {
         write(&mut self.frame, 0, block)
     }
 
-    pub fn write_solid(&mut self, number: u32, block: &SolidBlock) -> Result<()> {
-        let at = number as usize * SOLID_STRIDE as usize;
-        write(&mut self.solids, at, block)
+    pub fn write_object(&mut self, number: u32, block: &ObjectBlock) -> Result<()> {
+        let at = number as usize * OBJECT_STRIDE as usize;
+        write(&mut self.objects, at, block)
     }
 
     pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
@@ -136,30 +139,32 @@ impl FrameSlot {
         write(&mut self.instances, at, instance)
     }
 
-    pub fn write_shadows(&mut self, blocks: &[SolidBlock]) -> Result<()> {
+    pub fn write_shadows(&mut self, blocks: &[ObjectBlock]) -> Result<()> {
         let mut all: ShadowBlock = bytemuck::Zeroable::zeroed();
-        all.shadow_batches[0] = u32::try_from(blocks.len()).unwrap_or(0);
-        for (to, block) in all.shadow_solids.iter_mut().zip(blocks) {
+        all.shadow_count[0] = u32::try_from(blocks.len()).unwrap_or(0);
+        for (to, block) in all.shadow_objects.iter_mut().zip(blocks) {
             *to = *block;
         }
         write(&mut self.shadows, 0, &all)
     }
 
-    /// Writes a plan's tiles and draws, and makes room for its lists.
+    /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
         let words = 4 * plan.words.len() as u64;
         if self.tiles.bytes < words {
             self.tiles = roomy(&self.device, "tiles", words)?;
             self.named = None;
         }
-        let listed = 4 * u64::from(plan.list_words);
-        if self.lists.bytes < listed {
-            self.lists = lists(&self.device, listed + listed / 2)?;
+        let bins_bytes = 4 * u64::from(plan.bin_words);
+        if self.bins.bytes < bins_bytes {
+            let bytes = bins_bytes + bins_bytes / 2;
+            self.bins = Buffer::for_use(&self.device, Use::Bins, "bins of tiles", bytes)?;
             self.named = None;
         }
         let draws = size_of_val(plan.draws.as_slice()) as u64;
         if self.draws.bytes < draws {
-            self.draws = indirect(&self.device, draws.next_power_of_two())?;
+            let bytes = draws.next_power_of_two();
+            self.draws = Buffer::for_use(&self.device, Use::Draws, "draws", bytes)?;
         }
         write_slice(&mut self.tiles, &plan.words)?;
         write_slice(&mut self.draws, &plan.draws)
@@ -172,18 +177,18 @@ impl FrameSlot {
             return;
         }
         let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
-        let window = 16 * u64::from(self.device.constants.own_vectors);
+        let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
         let frame = [
             whole(&self.frame),
-            whole(&self.solids),
+            whole(&self.objects),
             whole(&self.instances),
             whole(&self.shadows),
             whole(tables),
             Resource::Buffer(tables.raw, window),
-            Resource::Buffer(self.solids.raw, size_of::<SolidBlock>() as u64),
+            Resource::Buffer(self.objects.raw, size_of::<ObjectBlock>() as u64),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.lists))];
+        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.bins))];
         if let Some((target, _)) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));
@@ -203,8 +208,9 @@ impl FrameSlot {
 /// Makes a storage buffer with half as much again to spare, because moving objects grow it in small
 /// steps.
 fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let limit = u64::from(device.limits.max_storage_buffer_range);
-    storage(device, name, bytes.max((bytes + bytes / 2).min(limit)))
+    let limit = u64::from(device.limits().max_storage_buffer_range);
+    let bytes = bytes.max((bytes + bytes / 2).min(limit));
+    Buffer::for_use(device, Use::Storage, name, bytes)
 }
 
 impl Drop for FrameSlot {

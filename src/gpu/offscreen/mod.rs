@@ -1,18 +1,21 @@
 //! Frames without a host: a target, commands, and reading back. The first user of [`Renderer`].
 
+mod commands;
+mod read_back;
+mod target;
+
 use crate::antialias::Solids;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::Frame;
-use crate::gpu::content::costs::ObjectCost;
-use crate::gpu::content::object_id::ObjectId;
-use crate::gpu::device::{Device, Shared};
-use crate::gpu::frame::output::{Output, PassFormats, PassKind};
-use crate::gpu::frame::read_back;
-use crate::gpu::frame::target::Target;
+use crate::gpu::content::objects::ObjectId;
+use crate::gpu::device::Shared;
+use crate::gpu::offscreen::commands::Clock;
+use crate::gpu::offscreen::commands::Commands;
+use crate::gpu::offscreen::target::Target;
+use crate::gpu::open::Device;
 use crate::gpu::renderer::Renderer;
-use crate::gpu::scene_view::view_of;
-use crate::gpu::vk::clock::Clock;
-use crate::gpu::vk::commands::Commands;
+use crate::gpu::renderer::costs::ObjectCost;
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::plan::{DepthOrder, DrawPath, View};
 use crate::scene::{CameraFrame, Object, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
@@ -131,7 +134,7 @@ impl Offscreen {
             return Err(Error::new(ErrorKind::Usage, message));
         }
         let size = (settings.width, settings.height);
-        let view = view_of(scene, size)?;
+        let view = View::of_scene(scene, size)?;
         // All planes include distances.
         let keeps_depths = settings.antialias && settings.planes == Planes::Color;
         let shared = device.shared.clone();
@@ -196,7 +199,7 @@ impl Offscreen {
     /// still be drawn. Errors of Vulkan calls; nothing is drawn then before an update succeeds.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         scene.check()?;
-        let view = view_of(scene, (self.settings.width, self.settings.height))?;
+        let view = View::of_scene(scene, (self.settings.width, self.settings.height))?;
         self.apply(scene, &view)?;
         self.view = view;
         self.background = scene.background;

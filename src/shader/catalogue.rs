@@ -1,5 +1,5 @@
-//! The list of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
-//! `build.rs` compiles this list, and pipelines find modules in it. The file therefore names GLSL
+//! The catalogue of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
+//! `build.rs` compiles them, and pipelines find modules in it. The file therefore names GLSL
 //! macros and has no dependencies.
 
 /// An entry file of `shaders-glsl/`.
@@ -59,7 +59,7 @@ pub enum Search {
     /// No search: vertices, lists of patches.
     None,
     /// A search of another crate, which has its own modules. Only the vertices for a search with a
-    /// table and a bound on steps are in this list.
+    /// table and a bound on steps are in the catalogue.
     External,
     /// The search for live parameters.
     Live,
@@ -119,15 +119,14 @@ impl Module {
         }
     }
 
-    /// The least general listed module that can replace this one. `listed`: true for modules of the
-    /// list.
+    /// The least general module that can replace this one, of those for which `is_there` is true.
     #[must_use]
-    pub fn covered_by(self, listed: impl Fn(&Self) -> bool) -> Option<Self> {
+    pub fn covered_by(self, is_there: impl Fn(&Self) -> bool) -> Option<Self> {
         [Features::Plain, Features::Textured, Features::Full]
             .into_iter()
             .filter(|features| *features >= self.features)
             .map(|features| Self { features, ..self })
-            .find(listed)
+            .find(is_there)
     }
 
     /// The module of vertices `entry` that pass exactly the inputs of these fragments.

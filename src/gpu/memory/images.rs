@@ -1,0 +1,228 @@
+//! Images with their memory, and uploads to them: bytes are written to staging buffers at once, and
+//! copied by the next commands that are prepared.
+
+use super::buffers::{Buffer, Use};
+use super::{allocate, bound, free};
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::Shared;
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::usage::{self, Usage};
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
+use std::sync::Arc;
+
+/// The parameters of an image; always 2D, one layer.
+#[derive(Clone, Copy)]
+pub(crate) struct ImageKind {
+    pub format: vk::Format,
+    pub width: u32,
+    pub height: u32,
+    pub mips: u32,
+    pub samples: vk::SampleCountFlags,
+    pub usage: vk::ImageUsageFlags,
+}
+
+impl ImageKind {
+    pub fn aspect(&self) -> vk::ImageAspectFlags {
+        if self.format == vk::Format::D32_SFLOAT {
+            vk::ImageAspectFlags::DEPTH
+        } else {
+            vk::ImageAspectFlags::COLOR
+        }
+    }
+
+    pub fn range(&self) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange::default()
+            .aspect_mask(self.aspect())
+            .level_count(self.mips)
+            .layer_count(1)
+    }
+}
+
+pub(crate) struct Image {
+    pub raw: vk::Image,
+    pub view: vk::ImageView,
+    pub kind: ImageKind,
+    allocation: Option<Allocation>,
+    device: Arc<Shared>,
+}
+
+impl Image {
+    pub fn new(device: &Arc<Shared>, name: &str, kind: ImageKind) -> Result<Self> {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(kind.format)
+            .extent(vk::Extent3D {
+                width: kind.width,
+                height: kind.height,
+                depth: 1,
+            })
+            .mip_levels(kind.mips)
+            .array_layers(1)
+            .samples(kind.samples)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(kind.usage);
+        // SAFETY: a plain creation; the handle is destroyed in Drop.
+        let raw = unsafe { device.raw.create_image(&info, None) }.call("vkCreateImage")?;
+        let mut image = Self {
+            raw,
+            view: vk::ImageView::null(),
+            kind,
+            allocation: None,
+            device: device.clone(),
+        };
+        // SAFETY: the image is live.
+        let requirements = unsafe { device.raw.get_image_memory_requirements(raw) };
+        let allocation = allocate(device, name, requirements, MemoryLocation::GpuOnly, false)?;
+        let (memory, offset) = bound(&mut image.allocation, allocation);
+        // SAFETY: the allocation meets the image's requirements and is bound once.
+        unsafe { device.raw.bind_image_memory(raw, memory, offset) }.call("vkBindImageMemory")?;
+        let view = vk::ImageViewCreateInfo::default()
+            .image(raw)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(kind.format)
+            .subresource_range(kind.range());
+        // SAFETY: the image has its memory.
+        image.view =
+            unsafe { device.raw.create_image_view(&view, None) }.call("vkCreateImageView")?;
+        Ok(image)
+    }
+
+    /// Bytes of memory that the image takes.
+    pub fn bytes(&self) -> u64 {
+        self.allocation.as_ref().map_or(0, Allocation::size)
+    }
+
+    /// Records a barrier between two uses of the image.
+    pub fn barrier(&self, cmd: vk::CommandBuffer, from: Usage, to: Usage) {
+        let barrier = vk::ImageMemoryBarrier::default()
+            .src_access_mask(from.access())
+            .dst_access_mask(to.access())
+            .old_layout(from.layout())
+            .new_layout(to.layout())
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(self.raw)
+            .subresource_range(self.kind.range());
+        usage::wait(&self.device.raw, cmd, (from, to), &[], &[barrier]);
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: users wait for the GPU before they drop an image; a null view may be destroyed.
+        unsafe {
+            self.device.raw.destroy_image_view(self.view, None);
+            self.device.raw.destroy_image(self.raw, None);
+        }
+        free(&self.device, self.allocation.take());
+    }
+}
+
+/// Copies that wait for a renderer's commands.
+pub(crate) struct Uploads {
+    waiting: Vec<Upload>,
+    owner: u32,
+}
+
+/// The copy of one image.
+pub(crate) struct Upload {
+    staging: Buffer,
+    image: Arc<Image>,
+    regions: Vec<vk::BufferImageCopy>,
+}
+
+impl Uploads {
+    /// No copies yet, for the renderer of this identity.
+    pub fn of(owner: u32) -> Self {
+        Self {
+            waiting: Vec::new(),
+            owner,
+        }
+    }
+
+    /// The renderer's identity.
+    pub fn owner(&self) -> u32 {
+        self.owner
+    }
+
+    /// Makes a sampled image of `levels`: the bytes of each mip level, the largest first.
+    pub fn image(
+        &mut self,
+        device: &Arc<Shared>,
+        name: &str,
+        format: vk::Format,
+        (width, height): (u32, u32),
+        levels: &[&[u8]],
+    ) -> Result<Arc<Image>> {
+        let limit = device.limits().max_image_dimension2_d;
+        if width > limit || height > limit {
+            return Err(Error::new(
+                ErrorKind::TooLarge,
+                format!(
+                    "{name}: {width} x {height} texels, and the device takes {limit} a side; use fewer map rows"
+                ),
+            ));
+        }
+        let kind = ImageKind {
+            format,
+            width,
+            height,
+            mips: u32::try_from(levels.len()).unwrap_or(1),
+            samples: vk::SampleCountFlags::TYPE_1,
+            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+        };
+        let image = Arc::new(Image::new(device, name, kind)?);
+        let total: usize = levels.iter().map(|l| l.len().next_multiple_of(16)).sum();
+        let mut staging = Buffer::for_use(device, Use::Upload, "staging", total as u64)?;
+        let mut regions = Vec::new();
+        let mut at = 0;
+        for (level, bytes) in (0u32..).zip(levels) {
+            staging.mapped()?[at..at + bytes.len()].copy_from_slice(bytes);
+            let layers = vk::ImageSubresourceLayers::default()
+                .aspect_mask(vk::ImageAspectFlags::COLOR)
+                .mip_level(level)
+                .layer_count(1);
+            regions.push(
+                vk::BufferImageCopy::default()
+                    .buffer_offset(at as u64)
+                    .image_subresource(layers)
+                    .image_extent(vk::Extent3D {
+                        width: (width >> level).max(1),
+                        height: (height >> level).max(1),
+                        depth: 1,
+                    }),
+            );
+            at += bytes.len().next_multiple_of(16);
+        }
+        self.waiting.push(Upload {
+            staging,
+            image: image.clone(),
+            regions,
+        });
+        Ok(image)
+    }
+
+    /// Records all copies. The returned values must live until the copies have run.
+    #[must_use]
+    pub fn record(&mut self, device: &Shared, cmd: vk::CommandBuffer) -> Vec<Upload> {
+        for upload in &self.waiting {
+            let image = &upload.image;
+            image.barrier(cmd, Usage::Nothing, Usage::TransferWrite);
+            // SAFETY: `cmd` is recording, outside a render pass; the regions are within buffer and
+            // image.
+            unsafe {
+                device.raw.cmd_copy_buffer_to_image(
+                    cmd,
+                    upload.staging.raw,
+                    image.raw,
+                    vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                    &upload.regions,
+                );
+            }
+            image.barrier(cmd, Usage::TransferWrite, Usage::Sampled);
+        }
+        std::mem::take(&mut self.waiting)
+    }
+}

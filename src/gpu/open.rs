@@ -1,0 +1,352 @@
+//! A device to draw on: opened here, or borrowed from a host.
+
+use crate::error::{Error, ErrorKind, Result};
+#[cfg(feature = "other-shaders")]
+use crate::gpu::device::budget::MemoryBudget;
+use crate::gpu::device::budget::MemoryUse;
+use crate::gpu::device::instance::{API_VERSION, Instance, Messages};
+use crate::gpu::device::report::{DeviceReport, candidates, choose, inspect, refuse, variable};
+use crate::gpu::device::{Shared, create};
+use crate::gpu::memory::Buffer;
+use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::vk::pipelines::Pipelines;
+#[cfg(feature = "other-shaders")]
+use crate::gpu::vk::pipelines::ShaderSource;
+use ash::vk;
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
+use std::sync::{Arc, Mutex, Weak};
+
+/// A Vulkan device, with memory and pipelines that all its renderers share. Clones share them, too.
+#[derive(Clone)]
+pub struct Device {
+    pub(crate) shared: Arc<Shared>,
+    /// The geometry that renderers share, while there are any.
+    pub(crate) geometry: Arc<Mutex<Weak<Geometry>>>,
+}
+
+impl From<Shared> for Device {
+    fn from(shared: Shared) -> Self {
+        Self {
+            shared: Arc::new(shared),
+            geometry: Arc::default(),
+        }
+    }
+}
+
+/// A host's device, to be borrowed.
+#[derive(Clone)]
+pub struct HostDevice<'a> {
+    /// The instance that the device belongs to.
+    pub instance: &'a ash::Instance,
+    /// The physical device.
+    pub physical: vk::PhysicalDevice,
+    /// The device, opened with everything that [`Requirements`](crate::gpu::Requirements) lists.
+    pub device: &'a ash::Device,
+    /// The family of the queues to which recorded commands are submitted.
+    pub queue_family: u32,
+    /// A queue for [`Offscreen`](crate::gpu::Offscreen), which submits by itself; renderers need none.
+    pub queue: Option<vk::Queue>,
+    /// The features that the device was opened with.
+    pub features: vk::PhysicalDeviceFeatures,
+    /// The host's allocator; without one a renderer makes its own.
+    pub allocator: Option<Arc<Mutex<Allocator>>>,
+    /// The host's pipeline cache; without one a renderer makes its own.
+    pub pipeline_cache: Option<vk::PipelineCache>,
+}
+
+impl Device {
+    /// Opens the device chosen by `choice` (index, or part of a name), else by the environment
+    /// variable `REVMAP_DEVICE`, else the first by kind: discrete, integrated, virtual, CPU. With
+    /// `REVMAP_VALIDATION=1` in the environment the validation layers check every call.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unsupported`] if there is no device, or if the device lacks a requirement.
+    pub fn open(choice: Option<&str>) -> Result<Self> {
+        Self::on(Instance::from_environment()?, choice)
+    }
+
+    /// Same as [`Device::open`], with the validation layers on whatever the environment says: core
+    /// checks and synchronization.
+    ///
+    /// # Errors
+    /// Same as [`Device::open`], and [`ErrorKind::Unsupported`] if the layer is not installed.
+    pub fn open_validated(choice: Option<&str>) -> Result<Self> {
+        Self::on(Instance::new(true)?, choice)
+    }
+
+    /// Borrows a host's device.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unsupported`] if the device lacks a requirement; errors of Vulkan calls.
+    ///
+    /// # Safety
+    /// The call makes layouts. An allocator and a pipeline cache are made if the host gives none.
+    /// All are destroyed with the last of: this value, its clones, and everything that was made
+    /// with them.
+    ///
+    /// The caller must ensure that
+    /// * all handles belong together and stay valid until that destruction;
+    /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or
+    ///   later;
+    /// * `host.queue`, if given, is used by nothing else while an `Offscreen` submits.
+    pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
+        let mut candidate = inspect(host.instance, 0, host.physical);
+        refuse(&candidate)?;
+        candidate.features = host.features;
+        candidate.family = host.queue_family;
+        let memory = match &host.allocator {
+            Some(shared) => shared.clone(),
+            None => allocator(host.instance, host.physical, host.device)?,
+        };
+        let (raw, cache) = (host.device.clone(), host.pipeline_cache);
+        let shared = Shared::new(host.instance, candidate, raw, host.queue, memory, cache)?;
+        Ok(shared.into())
+    }
+
+    /// Same as [`Device::borrow`], with pipelines made of the SPIR-V that `shaders` returns. Use it
+    /// to work on shaders while a program runs.
+    ///
+    /// # Errors
+    /// Same as [`Device::borrow`].
+    ///
+    /// # Safety
+    /// Same as [`Device::borrow`]. The SPIR-V of `shaders` must be valid and have the interface of
+    /// this version's shaders: their bindings, blocks and specialisation constants.
+    #[cfg(feature = "other-shaders")]
+    pub unsafe fn borrow_with_shaders(
+        host: &HostDevice<'_>,
+        shaders: ShaderSource,
+    ) -> Result<Self> {
+        // SAFETY: as the caller promised.
+        let mut device = unsafe { Self::borrow(host) }?;
+        let shared = Arc::get_mut(&mut device.shared);
+        if let Some(pipelines) = shared.and_then(|shared| shared.pipelines.as_mut()) {
+            pipelines.source = Some(shaders);
+        }
+        Ok(device)
+    }
+
+    /// Returns the same device with its own pipelines, made of the SPIR-V that `shaders` returns.
+    /// The new value keeps this value alive.
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls.
+    ///
+    /// # Safety
+    /// Same as [`Device::borrow_with_shaders`], for `shaders`.
+    #[cfg(feature = "other-shaders")]
+    pub unsafe fn with_shaders(&self, shaders: ShaderSource) -> Result<Self> {
+        let shared = &self.shared;
+        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.chosen.constants())?;
+        pipelines.source = Some(shaders);
+        let own = Shared {
+            allocator: shared.allocator.clone(),
+            pipelines: Some(pipelines),
+            raw: shared.raw.clone(),
+            queue: shared.queue.clone(),
+            functions: shared.functions.clone(),
+            chosen: shared.chosen.clone(),
+            budget: MemoryBudget::default(),
+            host_types: shared.host_types,
+            instance: None,
+            opened: Some(shared.clone()),
+        };
+        Ok(own.into())
+    }
+
+    /// Limits the bytes of all buffers and images on the device, including those of pictures.
+    /// `None` allows as many as the device has. Earlier allocations count. Only an allocation that
+    /// exceeds the budget fails.
+    pub fn set_memory_budget(&self, bytes: Option<u64>) {
+        self.shared.budget.set(bytes);
+    }
+
+    /// The memory that all buffers and images on the device take.
+    #[must_use]
+    pub fn memory_use(&self) -> MemoryUse {
+        self.shared.budget.memory_use()
+    }
+
+    fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
+        let variable = variable();
+        let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
+        let raw = create(&instance, &chosen, &[], None)?;
+        // SAFETY: the queue was requested when the device was made.
+        let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
+        let made = allocator(&instance.raw, chosen.physical, &raw).and_then(|memory| {
+            Shared::new(
+                &instance.raw,
+                chosen,
+                raw.clone(),
+                Some(queue),
+                memory,
+                None,
+            )
+        });
+        match made {
+            Ok(mut shared) => {
+                shared.instance = Some(instance);
+                Ok(shared.into())
+            }
+            Err(error) => {
+                // SAFETY: everything that was made on the device is gone again.
+                unsafe { raw.destroy_device(None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// The description of the device.
+    #[must_use]
+    pub fn report(&self) -> &DeviceReport {
+        &self.shared.chosen.report
+    }
+
+    /// The number of pipelines that were compiled on the device.
+    #[must_use]
+    pub fn pipelines_compiled(&self) -> u64 {
+        self.shared.pipelines().map_or(0, Pipelines::compiled)
+    }
+
+    /// Adds the data that [`Device::pipeline_cache_data`] returned in another process. Pipelines
+    /// that were compiled there are found instead of compiled. Data of another driver is ignored.
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls.
+    pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
+        self.shared.pipelines()?.add_cache(data)
+    }
+
+    /// The driver's compiled pipelines, to be saved for [`Device::add_pipeline_cache`].
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls.
+    pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
+        self.shared.pipelines()?.cache_data()
+    }
+
+    /// The device's functions and handle, for other drawing on the device.
+    #[must_use]
+    pub fn raw(&self) -> &ash::Device {
+        &self.shared.raw
+    }
+
+    /// The source of device memory, for other drawing on the device.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Other`] while the device is being closed.
+    pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
+        let closed = || Error::new(ErrorKind::Other, "the device is being closed");
+        self.shared.allocator.clone().ok_or_else(closed)
+    }
+
+    /// Makes a buffer for other drawing on the device, called `name` in messages. The buffer counts
+    /// in the memory budget.
+    ///
+    /// # Errors
+    /// Errors of Vulkan calls; [`ErrorKind::OutOfDeviceMemory`] also beyond the budget.
+    pub fn buffer(
+        &self,
+        name: &str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Buffer> {
+        Buffer::new(&self.shared, name, bytes, usage, location, u32::MAX)
+    }
+
+    /// Takes the validation layers' messages since the last call. The list is always empty without
+    /// the layers, and for a borrowed device.
+    #[must_use]
+    pub fn take_messages(&self) -> Vec<String> {
+        self.messages().map(Messages::take).unwrap_or_default()
+    }
+
+    fn messages(&self) -> Option<&Messages> {
+        self.shared.instance.as_ref()?.messages.as_ref()
+    }
+
+    /// Returns an error if the validation layers have sent any message since the last call.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Other`] with the first message and the number of them.
+    pub fn check(&self) -> Result<()> {
+        let messages = self.take_messages();
+        match messages.first() {
+            None => Ok(()),
+            Some(first) => Err(Error::new(
+                ErrorKind::Other,
+                format!(
+                    "{} messages of the validation layers, the first: {}",
+                    messages.len(),
+                    first.replace('\n', " ")
+                ),
+            )),
+        }
+    }
+
+    /// Returns true if the validation layers are on.
+    #[must_use]
+    pub fn validated(&self) -> bool {
+        self.messages().is_some()
+    }
+}
+
+/// The settings with which a host opens a device that a renderer borrows.
+#[derive(Clone, Debug)]
+pub struct Requirements {
+    /// Lowest Vulkan version, of the instance and of the device.
+    pub api_version: u32,
+    /// Features to enable. [`Planes::Color`](crate::settings::Planes::Color) in a pass needs none
+    /// of them. The host may enable more.
+    pub features: vk::PhysicalDeviceFeatures,
+    /// The first queue family on which everything works: graphics and compute.
+    pub queue_family: u32,
+    /// Names of device extensions; none in this version. A host that uses dynamic rendering enables
+    /// it itself.
+    pub extensions: Vec<&'static std::ffi::CStr>,
+}
+
+impl Requirements {
+    /// The requirements on one physical device.
+    ///
+    /// # Errors
+    /// [`Unsupported`](crate::error::ErrorKind::Unsupported) if the device lacks a requirement; the
+    /// message lists all that it lacks.
+    ///
+    /// # Safety
+    /// The call only makes queries of `physical`. The caller must ensure that `physical` belongs to
+    /// `instance`, and that the instance lives until the call returns.
+    pub unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Result<Self> {
+        let candidate = inspect(instance, 0, physical);
+        refuse(&candidate)?;
+        Ok(Self {
+            api_version: API_VERSION,
+            features: candidate.wanted_features(),
+            queue_family: candidate.family,
+            extensions: Vec::new(),
+        })
+    }
+}
+
+/// An allocator for devices whose host gives none.
+fn allocator(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: &ash::Device,
+) -> Result<Arc<Mutex<Allocator>>> {
+    const MIB: u64 = 1 << 20;
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings: AllocatorDebugSettings::default(),
+        buffer_device_address: false,
+        allocation_sizes: AllocationSizes::new(8 * MIB, 4 * MIB)
+            .with_max_device_memblock_size(128 * MIB)
+            .with_max_host_memblock_size(64 * MIB),
+    })
+    .map(|allocator| Arc::new(Mutex::new(allocator)))
+    .map_err(|e| Error::new(ErrorKind::Other, format!("no memory allocator: {e}")))
+}

@@ -1,0 +1,136 @@
+//! Changes of a renderer's objects and lights.
+
+use super::Renderer;
+use crate::error::Result;
+use crate::gpu::content::objects::ObjectId;
+use crate::gpu::resources::block::check_lights;
+use crate::scene::{Copies, Lighting, Object, Offset, Placement};
+
+impl Renderer {
+    /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::TooLarge`] for
+    /// more than 2^31 instances or 2^24 objects.
+    pub fn add(&mut self, object: Object) -> Result<ObjectId> {
+        object.check()?;
+        self.content.version += 1;
+        let id = self.content.objects.add(object, self.content.version)?;
+        self.content.changed.push(id.number);
+        Ok(id)
+    }
+
+    /// Removes an object. Frames that were prepared earlier keep it until they are done.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for an object that does not exist.
+    pub fn remove(&mut self, id: ObjectId) -> Result<()> {
+        self.content.entry(id)?;
+        self.content.objects.remove(id);
+        self.content.version += 1;
+        Ok(())
+    }
+
+    /// The values of an object that were set last.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for an object that does not exist.
+    pub fn object(&self, id: ObjectId) -> Result<&Object> {
+        Ok(self.content.entry(id)?.latest())
+    }
+
+    /// Sets all values of an object. Equal values cost nothing.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for values out of range, with the key; [`ErrorKind::Usage`] for an
+    /// object that does not exist.
+    pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
+        object.check()?;
+        let latest = self.content.entry(id)?.latest();
+        if latest.same_look(&object) {
+            if latest.instances != object.instances {
+                self.set_instances(id, object.instances)?;
+            }
+            return self.set_placement(id, object.placement);
+        }
+        self.content.resize(id, object.placements().len())?;
+        self.content.change(id)?.wanted = Some(object);
+        self.content.changed.push(id.number);
+        Ok(())
+    }
+
+    /// Moves the surface of an object.
+    ///
+    /// # Errors
+    /// Same as [`Renderer::set`].
+    pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
+        offset.check()?;
+        if self.content.entry(id)?.latest().offset == offset {
+            return Ok(());
+        }
+        let entry = self.content.change(id)?;
+        let (wanted, object) = (&mut entry.wanted, &entry.object);
+        wanted.get_or_insert_with(|| object.clone()).offset = offset;
+        self.content.changed.push(id.number);
+        Ok(())
+    }
+
+    /// Moves an object that has one copy.
+    ///
+    /// # Errors
+    /// Same as [`Renderer::set`].
+    pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
+        placement.check()?;
+        if self.content.entry(id)?.latest().placement == placement {
+            return Ok(());
+        }
+        let entry = self.content.change(id)?;
+        entry.object.placement = placement;
+        if let Some(wanted) = &mut entry.wanted {
+            wanted.placement = placement;
+        }
+        if let Some(grown) = &mut entry.grown {
+            grown.object.placement = grown.growth.placement(&placement);
+        }
+        Ok(())
+    }
+
+    /// Sets the copies of an object. An empty list gives one copy, at the object's placement.
+    ///
+    /// # Errors
+    /// Same as [`Renderer::set`].
+    pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
+        let instances = instances.into();
+        instances.check(|all| all.iter().try_for_each(Placement::check))?;
+        self.content.resize(id, instances.len().max(1))?;
+        let entry = self.content.change(id)?;
+        if let Some(wanted) = &mut entry.wanted {
+            wanted.instances.clone_from(&instances);
+        }
+        if let Some(grown) = &mut entry.grown {
+            let all = instances.iter().map(|p| grown.growth.placement(p));
+            grown.object.instances = all.collect();
+        }
+        entry.object.instances = instances;
+        Ok(())
+    }
+
+    /// Sets lights and shadows for all objects.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for values out of range, with the key.
+    pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
+        lighting.check()?;
+        check_lights(lighting)?;
+        let codes = |l: &Lighting| (l.lights.len(), l.shadow);
+        if codes(lighting) != codes(&self.content.lighting) {
+            self.content.changed.extend(self.content.objects.numbers());
+            self.content.version += 1;
+        }
+        if codes(lighting) == codes(&self.content.lit) {
+            self.content.lit = lighting.clone();
+        }
+        self.content.lighting = lighting.clone();
+        Ok(())
+    }
+}

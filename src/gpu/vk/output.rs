@@ -1,0 +1,101 @@
+//! The output of a renderer: formats and conventions, set once, and the memory that compute writes
+//! to.
+
+use crate::frame::srgb_from_linear;
+use crate::plan::DepthOrder;
+use crate::settings::Planes;
+use ash::vk;
+
+/// The destination of a renderer's work, fixed when the renderer is made.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Output {
+    /// Fragments, in a render pass or dynamic rendering that the host begins.
+    Pass(PassFormats),
+    /// Pixels that a compute shader traces and writes to a [`ComputeTarget`](crate::gpu::ComputeTarget).
+    Compute(Planes),
+}
+
+/// The pass in which fragments are drawn.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PassFormats {
+    /// Kind of pass: a render pass or dynamic rendering.
+    pub begun: PassKind,
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres at any sample
+    /// count.
+    pub samples: u32,
+    /// The end of the depth range that is near.
+    pub depth: DepthOrder,
+    /// The planes that the fragment shader writes, one per attachment.
+    pub planes: Planes,
+}
+
+/// Kind of pass that the host begins.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum PassKind {
+    /// A subpass of a render pass. The host may begin any compatible pass instead.
+    RenderPass {
+        /// The pass, which must live as long as the renderer.
+        pass: vk::RenderPass,
+        /// The subpass, which has the colour attachments of the planes and a depth attachment.
+        subpass: u32,
+    },
+    /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
+    Dynamic {
+        /// Formats of the colour attachments in order; empty if only depth is drawn.
+        color: Vec<vk::Format>,
+        /// Format of the depth attachment.
+        depth: vk::Format,
+        /// Format of the stencil attachment; `UNDEFINED` if there is none.
+        stencil: vk::Format,
+    },
+}
+
+impl Output {
+    /// The planes that are drawn.
+    #[must_use]
+    pub fn planes(&self) -> Planes {
+        match self {
+            Self::Pass(pass) => pass.planes,
+            Self::Compute(planes) => *planes,
+        }
+    }
+
+    /// The end of the depth range that is near.
+    #[must_use]
+    pub fn depth_order(&self) -> DepthOrder {
+        match self {
+            Self::Pass(pass) => pass.depth,
+            Self::Compute(_) => DepthOrder::Normal,
+        }
+    }
+}
+
+/// Memory that compute shaders write to. Fragment shaders that draw all planes write to it besides
+/// their attachments.
+#[derive(Clone, Debug)]
+pub struct ComputeTarget {
+    /// A storage buffer of two 32-bit words per pixel, row by row from the top. The first half
+    /// holds the depths of all pixels, as bits of floats. The second half holds a second word of
+    /// each pixel. This word is the colour, packed as `R8G8B8A8_SRGB`, if only colour is drawn,
+    /// else a count of look-ups. Before a frame the host clears depths to 1.0 and colours to its
+    /// background, or fills in what is already drawn.
+    pub words: vk::Buffer,
+    /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`. Empty if only
+    /// colour is drawn, or if fragments draw.
+    pub images: Vec<vk::ImageView>,
+    /// True if depths count: compute compares with the depths in the buffer, and writes its own. If
+    /// false, the depths may hold anything. Shaders then read and write them only to distinguish
+    /// objects ([`PreparedFrame::reads_depths`](crate::gpu::PreparedFrame::reads_depths)).
+    pub depths: bool,
+}
+
+impl ComputeTarget {
+    /// The second word of a pixel of this linear colour, if only colour is drawn: the same sRGB word
+    /// as `pack_srgb` of `stores.glsl` gives.
+    #[must_use]
+    pub fn color_word(linear: [f32; 4]) -> u32 {
+        let byte = |v: f64| (v.clamp(0.0, 1.0) * 255.0).round() as u32;
+        let [r, g, b] = [0, 1, 2].map(|i| byte(srgb_from_linear(f64::from(linear[i]))));
+        r | g << 8 | b << 16 | byte(f64::from(linear[3])) << 24
+    }
+}
