@@ -5,7 +5,9 @@
 use ash::vk;
 use divan::Bencher;
 use glam::DVec3;
-use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{
+    DepthOrder, DepthTest, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View,
+};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement};
 use revmap::settings::{Planes, SearchSettings};
@@ -48,6 +50,7 @@ impl Crowd {
             },
             samples: 1,
             depth: DepthOrder::Normal,
+            depth_test: DepthTest::default(),
             planes: Planes::Color,
         });
         let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 2).unwrap();

@@ -87,7 +87,7 @@
 //! }) }?;
 //! let output = Output::Pass(PassFormats {
 //!     begun: PassKind::Dynamic { color: vec![color], depth, stencil: ash::vk::Format::UNDEFINED },
-//!     samples: 1, depth: DepthOrder::Reversed, planes: Planes::Color,
+//!     samples: 1, depth: DepthOrder::Reversed, depth_test: DepthTest::default(), planes: Planes::Color,
 //! });
 //! let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2)?;
 //! let pawn = renderer.add(pawn)?;

@@ -10,7 +10,8 @@ mod host;
 use glam::{DQuat, DVec3, Vec3};
 use host::{Fallible, Host, Mesh, Options, Stage};
 use revmap::gpu::{
-    self, DepthOrder, HostDevice, Output, PassFormats, PassKind, Requirements, View, Viewport,
+    self, DepthOrder, DepthTest, HostDevice, Output, PassFormats, PassKind, Requirements, View,
+    Viewport,
 };
 use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
@@ -63,6 +64,7 @@ fn main() -> Fallible<()> {
         },
         samples: options.samples,
         depth: DepthOrder::Reversed,
+        depth_test: DepthTest::default(),
         planes: Planes::Color,
     });
     let mut renderer =

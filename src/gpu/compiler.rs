@@ -10,7 +10,7 @@ use crate::gpu::device::create;
 use crate::gpu::device::instance::Instance;
 use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::output::{Output, PassFormats, PassKind};
+use crate::gpu::vk::output::{DepthTest, Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
@@ -193,6 +193,7 @@ impl PipelineCompiler {
                 },
                 samples: 1,
                 depth: DepthOrder::Normal,
+                depth_test: DepthTest::default(),
                 planes,
             }),
         })

@@ -33,7 +33,7 @@ pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
 pub use renderer::prepare::PreparedFrame;
 pub use renderer::prewarm::Prewarm;
 pub use vk::call::{allocation_error, vulkan_error};
-pub use vk::output::{ComputeTarget, Output, PassFormats, PassKind};
+pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;
 

@@ -49,6 +49,7 @@ pub struct View {
     pub(crate) order: DepthOrder,
     pub(crate) viewport: Viewport,
     pub(crate) parallel: bool,
+    pub(crate) mask: u32,
 }
 
 impl View {
@@ -93,6 +94,7 @@ impl View {
             near,
             order: DepthOrder::Normal,
             parallel: false,
+            mask: u32::MAX,
             viewport: Viewport {
                 x: 0.0,
                 y: 0.0,
@@ -100,6 +102,12 @@ impl View {
                 height: f64::from(size.1),
             },
         })
+    }
+
+    /// The same view of the objects whose mask shares a bit with `mask`. A new view shows all.
+    #[must_use]
+    pub fn with_mask(self, mask: u32) -> Self {
+        Self { mask, ..self }
     }
 
     /// The view of a host's matrices, which act on column vectors. `projection * view` takes a
@@ -180,6 +188,7 @@ impl View {
             order,
             viewport,
             parallel: false,
+            mask: u32::MAX,
         })
     }
 
@@ -228,6 +237,7 @@ impl View {
             order,
             viewport,
             parallel: true,
+            mask: u32::MAX,
         })
     }
 

@@ -9,7 +9,8 @@ use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
+    ComputeTarget, DepthOrder, DepthTest, Device, DrawPath, Offscreen, Output, PassFormats,
+    Renderer, View,
 };
 use revmap::scene::{Clip, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
@@ -67,6 +68,7 @@ fn depth_pass(planes: Planes) -> Output {
         begun: dynamic(&[]),
         samples: 1,
         depth: DepthOrder::Normal,
+        depth_test: DepthTest::default(),
         planes,
     })
 }

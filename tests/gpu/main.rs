@@ -18,6 +18,7 @@ mod crowds;
 mod embedding;
 mod embedding_crowds;
 mod embedding_outputs;
+mod embedding_visibility;
 mod exhausted;
 mod extremes;
 mod fallback;

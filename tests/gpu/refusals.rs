@@ -11,8 +11,8 @@ use ash::vk::Handle as _;
 use glam::DVec3;
 use revmap::error::ErrorKind::{self, Unsupported, Usage};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, HostDevice, ObjectId, Output, PassFormats, PassKind,
-    Renderer, View,
+    ComputeTarget, DepthOrder, DepthTest, Device, HostDevice, ObjectId, Output, PassFormats,
+    PassKind, Renderer, View,
 };
 use revmap::scene::{Camera, Lighting, Object, Shadow};
 use revmap::settings::{Planes, SearchSettings};
@@ -29,6 +29,7 @@ fn pass(begun: PassKind, samples: u32, planes: Planes) -> Output {
         begun,
         samples,
         depth: DepthOrder::Normal,
+        depth_test: DepthTest::default(),
         planes,
     })
 }

@@ -12,7 +12,9 @@ use crate::handle::{Handle, alone, create, handle};
 use crate::pointers::{described, list, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
-use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, Renderer};
+use revmap::gpu::{
+    ComputeTarget, DepthTest, Output, PassFormats, PassKind, PreparedFrame, Renderer,
+};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -103,6 +105,7 @@ impl RevmapPass {
             begun,
             samples: self.samples,
             depth: enums::depth_order(self.depth_order)?,
+            depth_test: DepthTest::default(),
             planes: enums::planes(self.planes)?,
         })
     }

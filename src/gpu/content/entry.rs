@@ -24,6 +24,8 @@ pub(in crate::gpu) struct Entry {
     /// `None` before the first refresh, and if that failed.
     pub derived: Option<Derived>,
     pub instances: Range<u32>,
+    /// Views whose mask shares no bit with it do not show the object.
+    pub mask: u32,
     /// The renderer's version at the last change.
     pub version: u64,
 }
@@ -58,6 +60,7 @@ impl Entry {
             grown: None,
             derived: None,
             instances,
+            mask: u32::MAX,
             version,
         }
     }

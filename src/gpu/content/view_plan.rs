@@ -127,7 +127,10 @@ impl Content {
                 surface: None,
             })
         };
-        let mut found: Vec<_> = self.objects.ordered().filter_map(planned).collect();
+        let mask = view.map_or(u32::MAX, |view| view.mask);
+        let shown = |(_, entry): &(u32, &Entry)| entry.mask & mask != 0;
+        let objects = self.objects.ordered().filter(shown);
+        let mut found: Vec<_> = objects.filter_map(planned).collect();
         if casts {
             let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
             found.iter_mut().for_each(|f| f.level = finest);

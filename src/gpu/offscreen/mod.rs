@@ -18,7 +18,7 @@ use crate::gpu::offscreen::target::Target;
 use crate::gpu::open::Device;
 use crate::gpu::renderer::Renderer;
 use crate::gpu::renderer::costs::ObjectCost;
-use crate::gpu::vk::output::{Output, PassFormats, PassKind};
+use crate::gpu::vk::output::{DepthTest, Output, PassFormats, PassKind};
 use crate::plan::{DepthOrder, DrawPath, View};
 use crate::scene::{CameraFrame, Object, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
@@ -136,6 +136,7 @@ impl Offscreen {
                 },
                 samples,
                 depth: DepthOrder::Normal,
+                depth_test: DepthTest::default(),
                 planes: settings.planes,
             }),
         };

@@ -23,6 +23,7 @@ use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
 use slot::FrameSlot;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Objects on a device, drawn into whatever the host draws into.
@@ -108,8 +109,13 @@ impl Renderer {
     /// The draw path of each object in the last planned frame, in order.
     #[must_use]
     pub fn draw_paths(&self) -> Vec<DrawPath> {
-        let plan = self.content.plan.as_ref();
-        plan.map_or_else(Vec::new, |p| p.frame.paths.clone())
+        let Some(plan) = &self.content.plan else {
+            return Vec::new();
+        };
+        let drawn = plan.objects.iter().map(|object| object.number);
+        let paths: HashMap<u32, DrawPath> = drawn.zip(plan.frame.paths.iter().copied()).collect();
+        let path = |(number, _)| paths.get(&number).copied().unwrap_or(DrawPath::Nothing);
+        self.content.objects.ordered().map(path).collect()
     }
 
     /// The number of surfaces that were made: one for each profile under each offset that no object

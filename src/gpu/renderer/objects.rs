@@ -59,6 +59,19 @@ impl Renderer {
         Ok(())
     }
 
+    /// Sets which views show an object: those whose [mask](crate::gpu::View::with_mask) shares a bit
+    /// with `mask`. With 0 no view shows it. A hidden object throws no shadow. New objects are in all
+    /// masks.
+    ///
+    /// # Errors
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
+    pub fn set_mask(&mut self, id: ObjectId, mask: u32) -> Result<()> {
+        if self.content.entry(id)?.mask != mask {
+            self.content.change(id)?.mask = mask;
+        }
+        Ok(())
+    }
+
     /// Moves the surface of an object.
     ///
     /// # Errors

@@ -25,8 +25,32 @@ pub struct PassFormats {
     pub samples: u32,
     /// The end of the depth range that is near.
     pub depth: DepthOrder,
+    /// The depth test of every draw.
+    pub depth_test: DepthTest,
     /// The planes that the fragment shader writes, one per attachment.
     pub planes: Planes,
+}
+
+/// The depth test of a pass's draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DepthTest {
+    /// The comparison of a fragment's depth with the attachment's; `None` keeps the nearer one.
+    ///
+    /// After a prepass of the same objects and view give `EQUAL` or `LESS_OR_EQUAL`
+    /// (`GREATER_OR_EQUAL` in reversed depth). The two passes compute equal depths if both take the
+    /// same [`DrawPath`](crate::gpu::DrawPath) and solver.
+    pub compare: Option<vk::CompareOp>,
+    /// True if depths are written.
+    pub write: bool,
+}
+
+impl Default for DepthTest {
+    fn default() -> Self {
+        Self {
+            compare: None,
+            write: true,
+        }
+    }
 }
 
 /// Kind of pass that the host begins.

@@ -127,11 +127,11 @@ impl Pipelines {
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
-            .depth_write_enable(true)
-            .depth_compare_op(match pass.depth {
+            .depth_write_enable(pass.depth_test.write)
+            .depth_compare_op(pass.depth_test.compare.unwrap_or(match pass.depth {
                 DepthOrder::Normal => vk::CompareOp::LESS,
                 DepthOrder::Reversed => vk::CompareOp::GREATER,
-            });
+            }));
         let blends = vec![
             vk::PipelineColorBlendAttachmentState::default()
                 .color_write_mask(vk::ColorComponentFlags::RGBA);

@@ -1,0 +1,137 @@
+//! What a host shows: views with masks, and depth tests after a prepass.
+#![allow(unsafe_code)]
+
+use crate::common::host::{self, Host, Options, Stage, borrow, dynamic, frame, open, order};
+use crate::embedding::{drawn, options, three};
+use ash::vk;
+use glam::{DMat4, Vec3};
+use revmap::gpu::{DepthTest, Device, DrawPath, Output, PassFormats, Renderer, View};
+use revmap::scene::Scene;
+use revmap::settings::{Planes, SearchSettings};
+
+const DEPTHS: [f64; 2] = [0.1, 50.0];
+
+fn view(scene: &Scene, options: &Options) -> View {
+    View::from_camera(&scene.camera, (options.width, options.height), DEPTHS).unwrap()
+}
+
+fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
+    let output = Output::Pass(PassFormats {
+        begun: dynamic(&[host::COLOR]),
+        samples: 1,
+        depth: order(options),
+        depth_test,
+        planes: Planes::Color,
+    });
+    let search = SearchSettings::exact();
+    let mut renderer = Renderer::new(device, output, &search, host::FRAMES).unwrap();
+    renderer.set_lighting(&scene.lighting()).unwrap();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    renderer
+}
+
+/// A view shows the objects of its mask, as if there were no others.
+#[test]
+fn a_view_shows_the_objects_of_its_mask() {
+    let host = open();
+    let device = borrow(&host);
+    let (scene, options) = (three(), options());
+    let view = view(&scene, &options);
+    let mut stage = Stage::new(&host, options).unwrap();
+    let mut some = crate::embedding::renderer(&device, &stage);
+    some.set_lighting(&scene.lighting()).unwrap();
+    let ids: Vec<_> = scene
+        .objects
+        .iter()
+        .map(|o| some.add(o.clone()).unwrap())
+        .collect();
+    some.set_mask(ids[0], 1).unwrap();
+    some.set_mask(ids[1], 2).unwrap();
+    some.set_mask(ids[2], 0).unwrap();
+    for (mask, shown) in [(1, 0), (2, 1), (1, 0)] {
+        for _ in 0..2 {
+            frame(
+                &mut stage,
+                &mut some,
+                &view.with_mask(mask),
+                DMat4::IDENTITY,
+                &[],
+            );
+        }
+        let mut alone = scene.clone();
+        alone.objects = vec![scene.objects[shown].clone()];
+        let wanted = drawn(&host, &device, options, &alone, &view);
+        assert!(stage.read().unwrap() == wanted, "mask {mask}");
+        let paths = some.draw_paths();
+        let hidden = |n: &usize| paths[*n] == DrawPath::Nothing;
+        assert_eq!((0..3).filter(hidden).count(), 2, "{paths:?}");
+    }
+    some.set_mask(ids[2], 4).unwrap();
+    frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);
+    frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);
+    assert!(stage.read().unwrap() == drawn(&host, &device, options, &scene, &view));
+}
+
+/// Draws two renderers in one pass.
+fn two(
+    host: &Host,
+    options: Options,
+    view: &View,
+    both: &mut [Renderer; 2],
+) -> (Vec<u8>, Vec<f32>) {
+    let mut stage = Stage::new(host, options).unwrap();
+    let both = std::cell::RefCell::new(both);
+    for _ in 0..2 {
+        let drawn = stage.frame(
+            DMat4::IDENTITY,
+            Vec3::Z,
+            &[],
+            |cmd, slot| {
+                let mut both = both.borrow_mut();
+                // SAFETY: the stage has waited for the slot; `cmd` records outside of its pass.
+                let [a, b] = both
+                    .each_mut()
+                    .map(|r| unsafe { r.prepare(cmd, slot, view) });
+                Ok((a?, b?))
+            },
+            |cmd, (a, b)| {
+                let both = both.borrow();
+                // SAFETY: the frames were prepared, the pass has the outputs' formats.
+                unsafe { both[0].record(cmd, a) }?;
+                // SAFETY: as above.
+                Ok(unsafe { both[1].record(cmd, b) }?)
+            },
+        );
+        drawn.unwrap();
+    }
+    stage.read().unwrap()
+}
+
+/// After a prepass of the same depths, `EQUAL` draws every pixel, and the default draws none.
+#[test]
+fn equal_depths_pass_after_a_prepass() {
+    let host = open();
+    let device = borrow(&host);
+    let options = options();
+    let dark = three();
+    let mut bright = dark.clone();
+    for object in &mut bright.objects {
+        object.color = [0.9, 0.8, 0.1];
+    }
+    let view = view(&dark, &options);
+    let equal = DepthTest {
+        compare: Some(vk::CompareOp::EQUAL),
+        write: false,
+    };
+    for (test, shows) in [(equal, &bright), (DepthTest::default(), &dark)] {
+        let mut both = [
+            renderer(&device, &options, DepthTest::default(), &dark),
+            renderer(&device, &options, test, &bright),
+        ];
+        let found = two(&host, options, &view, &mut both);
+        let wanted = drawn(&host, &device, options, shows, &view);
+        assert!(found == wanted, "{test:?}");
+    }
+}
