@@ -6,9 +6,9 @@
 //! [`FitOptions::tolerance`].
 //!
 //! ```
-//! use glam::{DVec2, DVec3};
+//! use glam::DVec3;
 //! use revmap::{cast::RayCaster, profile::Profile, scene::Object};
-//! let corners = [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]].map(DVec2::from);
+//! let corners = [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]];
 //! let cylinder = Object::new("cylinder", Profile::polygon(&corners, 0.5)?.into());
 //! let hit = RayCaster::new(&cylinder)?.cast(DVec3::new(2.0, 0.0, 0.5), -DVec3::X);
 //! assert!((hit.unwrap().t - 1.5).abs() < 1e-9);
