@@ -5,7 +5,7 @@ use crate::mesh::{MeshLayer, MeshPipelines};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, ObjectCost, Offscreen, OffscreenOptions, Times};
+use revmap::gpu::{Device, Guest, ObjectCost, Offscreen, OffscreenOptions, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::{Arc, OnceLock};
@@ -147,7 +147,7 @@ impl MethodRenderer {
     /// # Errors
     /// Of drawing.
     pub fn draw(&mut self) -> Result<Times> {
-        let guest = self.meshes.as_ref().map(|meshes| meshes.guest());
+        let guest = self.meshes.as_deref().map(|meshes| meshes as &dyn Guest);
         let times = self.offscreen.draw_with(guest)?;
         self.meshes.iter_mut().for_each(|m| m.drop_staging());
         Ok(times)

@@ -3,6 +3,7 @@
 use super::{
     CompareOptions, PIXELS_PER_DEGREE, check, depth_error, flip, normal_error, silhouette,
 };
+use crate::mosaic::tiled;
 use revmap::Result;
 use revmap::frame::{Frame, pixel_count};
 use revmap_files::Picture;
@@ -137,48 +138,32 @@ pub fn heat_map(
 /// when the sheet, six times the frame, is too large for a picture.
 pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Picture> {
     check(reference, frame, options)?;
-    let (w, h) = (frame.width, frame.height);
-    let (width, height) = (w.saturating_mul(3), h.saturating_mul(2));
-    let pixels = pixel_count(width, height)?;
-    let mut sheet = Picture {
-        width,
-        height,
-        rgba: vec![[0; 4]; pixels],
-    };
-    let mut place = |tile: usize, pixel: &dyn Fn(usize) -> [u8; 4]| {
-        let (left, top) = (tile % 3 * w as usize, tile / 3 * h as usize);
-        for y in 0..h as usize {
-            for x in 0..w as usize {
-                sheet.rgba[(top + y) * width as usize + left + x] = pixel(y * w as usize + x);
-            }
-        }
-    };
-    for (tile, kind) in Heat::ALL.into_iter().enumerate() {
-        let map = heat_map(reference, frame, options, kind)?;
-        place(tile, &|k| map.rgba[k]);
-    }
-    let drawn = Picture::of(frame);
-    place(Heat::ALL.len(), &|k| drawn.rgba[k]);
-    Ok(sheet)
+    pixel_count(
+        frame.width.saturating_mul(3),
+        frame.height.saturating_mul(2),
+    )?;
+    let maps = Heat::ALL.map(|kind| heat_map(reference, frame, options, kind));
+    let mut tiles: Vec<Picture> = maps.into_iter().collect::<Result<_>>()?;
+    tiles.push(Picture::of(frame));
+    Ok(tiled(&tiles, 3, 0))
 }
 
 /// Colours of the silhouettes' pixels, by the way to the other silhouette.
 fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
-    let rims = [reference, frame].map(silhouette::silhouette);
-    let ways =
-        [&rims[0], &rims[1]].map(|rim| silhouette::squares_to(rim, reference.width as usize));
-    let hits: Vec<bool> = (0..reference.pixels())
-        .map(|k| reference.hits(k) || frame.hits(k))
-        .collect();
-    move |k| {
-        let way = match (rims[0][k], rims[1][k]) {
-            (true, false) => ways[1][k],
-            (false, true) => ways[0][k],
-            (true, true) => 0.0,
-            (false, false) => return if hits[k] { BOTH } else { EMPTY },
-        };
-        ramp(way.sqrt() / 8.0)
+    let [a, b] = [reference, frame].map(silhouette::silhouette);
+    let width = reference.width as usize;
+    let hit = |k| reference.hits(k) || frame.hits(k);
+    let ground = |k| if hit(k) { BOTH } else { EMPTY };
+    let mut colors: Vec<[u8; 3]> = (0..a.len()).map(ground).collect();
+    let both = (0..a.len()).filter(|&k| a[k] && b[k]).map(|k| (k, 0.0));
+    let apart = [
+        silhouette::ways(&a, &b, width),
+        silhouette::ways(&b, &a, width),
+    ];
+    for (k, way) in apart.concat().into_iter().chain(both) {
+        colors[k] = ramp(way / 8.0);
     }
+    move |k| colors[k]
 }
 
 /// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour

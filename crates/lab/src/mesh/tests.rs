@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use super::drawer::pipelines::{generated as g, shader};
+use super::layer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
 use super::{MeshLayer, MeshPipelines};
 use crate::compare::{CompareOptions, compare};
@@ -217,7 +217,7 @@ fn meshes_and_searches_hide_each_other() {
     let options = CompareOptions::default();
     offscreen.draw().unwrap();
     let alone = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
-    offscreen.draw_with(Some(meshes.guest())).unwrap();
+    offscreen.draw_with(Some(&meshes)).unwrap();
     let both = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
     assert!(both.wrong() < 2e-3, "{both}");
     assert!(both.depth.unwrap().p99 < 0.3, "{both}");

@@ -315,16 +315,12 @@ fn glance(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
         let picture = Picture::of(&drawn.frame);
         (Spot::worst(&picture, &reference), picture, drawn)
     });
-    let Some((spot, picture, drawn)) = spots.max_by_key(|(spot, ..)| spot.seen) else {
+    let Some((spot, picture, drawn)) = spots.max_by(|a, b| a.0.seen.total_cmp(&b.0.seen)) else {
         return Ok(None);
     };
     let strip = spot.strip(&picture, &reference, &truth.heat(&drawn.frame)?);
-    let nothing = if spot.seen == 0 {
-        ", nothing is seen"
-    } else {
-        ""
-    };
+    let nothing = [", nothing is seen", ""][usize::from(spot.seen > 0.0)];
     let ((solver, stage), value) = (drawn.method, number(drawn.value, 6));
     let caption = format!("{solver}, {}, at {value}{nothing}", stage.name());
-    Ok(Some((spot.seen as f64, vec![(strip, caption)])))
+    Ok(Some((spot.seen, vec![(strip, caption)])))
 }

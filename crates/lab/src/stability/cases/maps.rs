@@ -1,6 +1,7 @@
 //! Maps: rows, bits, sources, budgets; and the pictures that cover solids.
 
 use super::{MIDDLE, Scene, ball, eye, spindle};
+use crate::mosaic::painted;
 use crate::stability::case::Step;
 use revmap::maps::MapFormat;
 use revmap::settings::Settings;
@@ -9,25 +10,13 @@ use revmap_files::Picture;
 /// A picture whose colour changes slowly and without a jump, but differs from place to place: a
 /// texel more or less does not show, a coarser level does.
 pub(super) fn waves() -> Picture {
-    let (width, height) = (128u32, 64u32);
-    let wave = |place: u32, all: u32, turns: f64| {
-        let angle = std::f64::consts::TAU * turns * (f64::from(place) + 0.5) / f64::from(all);
+    let wave = |place: usize, all: u32, turns: f64| {
+        let angle = std::f64::consts::TAU * turns * (place as f64 + 0.5) / f64::from(all);
         (160.0 + 90.0 * angle.sin()) as u8
     };
-    let pixel = |k: u32| {
-        let (x, y) = (k % width, k / width);
-        [
-            wave(x, width, 1.0),
-            wave(y, height, 0.5),
-            wave(x, width, 2.0),
-            255,
-        ]
-    };
-    Picture {
-        width,
-        height,
-        rgba: (0..width * height).map(pixel).collect(),
-    }
+    painted([128, 64], |x, y| {
+        [wave(x, 128, 1.0), wave(y, 64, 0.5), wave(x, 128, 2.0), 255]
+    })
 }
 
 /// A scene whose settings are changed.

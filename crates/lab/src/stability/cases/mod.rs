@@ -8,6 +8,7 @@ mod rays;
 mod shapes;
 
 use super::case::{Case, Step};
+use crate::mosaic::painted;
 use crate::report::folder::{make, png, write_bytes};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
@@ -69,15 +70,10 @@ pub fn write_files(folder: &Path) -> Result<()> {
 
 /// A grey picture; `dark` tells which pixels are solid.
 fn silhouette(width: u32, height: u32, dark: impl Fn(u32, u32) -> bool) -> Picture {
-    let pixel = |k: u32| {
-        let shade = if dark(k % width, k / width) { 0 } else { 255 };
+    painted([width as usize, height as usize], |x, y| {
+        let shade = if dark(x as u32, y as u32) { 0 } else { 255 };
         [shade, shade, shade, 255]
-    };
-    Picture {
-        width,
-        height,
-        rgba: (0..width * height).map(pixel).collect(),
-    }
+    })
 }
 
 /// A spindle with a waist: curved, slanting, level and upright parts.
