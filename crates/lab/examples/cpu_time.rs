@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let device = MethodDevice::new(device)?;
     let mut sums = vec![0.0; methods.len()];
     let mut views = if crowds.is_empty() {
-        views(&Extent::All, &[25.0])?
+        views(&Extent::ALL, &[25.0])?
     } else {
         crowds
     };

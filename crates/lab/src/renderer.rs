@@ -5,7 +5,7 @@ use crate::mesh::{MeshLayer, MeshPipelines};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Guest, ObjectCost, Offscreen, OffscreenOptions, Times};
+use revmap::gpu::{Device, Guest, Offscreen, OffscreenOptions, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::{Arc, OnceLock};
@@ -16,23 +16,6 @@ pub struct MethodDevice {
     /// With the floor's shaders, once they are wanted.
     floor: OnceLock<Device>,
     pipelines: Arc<MeshPipelines>,
-}
-
-/// A drawn frame and what it cost.
-#[derive(Clone, Debug)]
-pub struct MethodDrawn {
-    /// The picture.
-    pub frame: Frame,
-    /// What drawing it took, of a second frame: the first waits for the driver's compiler.
-    pub times: Times,
-    /// As [`MethodRenderer::map_bytes`].
-    pub map_bytes: [u64; 2],
-    /// As [`Offscreen::notes`]; none of a mesh.
-    pub notes: Vec<String>,
-    /// As [`Offscreen::object_costs`]; none of a mesh.
-    pub costs: Vec<ObjectCost>,
-    /// As [`MethodRenderer::device_bytes`].
-    pub device_bytes: u64,
 }
 
 impl MethodDevice {
@@ -86,25 +69,17 @@ impl MethodDevice {
         }
     }
 
-    /// Draws a scene once, as [`revmap::gpu::draw`].
+    /// Draws a scene once.
     ///
     /// # Errors
     /// As [`MethodDevice::renderer`]; of drawing.
-    pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodDrawn> {
+    pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<Frame> {
         let mut renderer = self.renderer(scene, settings)?;
         renderer.draw()?;
-        let times = renderer.draw()?;
-        let drawn = MethodDrawn {
-            frame: renderer.read()?,
-            times,
-            map_bytes: renderer.map_bytes(),
-            notes: renderer.notes().to_vec(),
-            costs: renderer.object_costs(),
-            device_bytes: renderer.device_bytes(),
-        };
+        let frame = renderer.read()?;
         drop(renderer);
         self.device.check()?;
-        Ok(drawn)
+        Ok(frame)
     }
 }
 
@@ -112,8 +87,9 @@ impl MethodDevice {
 pub struct MethodRenderer {
     // Dropped first: its frames were waited for.
     meshes: Option<Box<MeshLayer>>,
-    /// Of meshes without the scene's objects.
-    offscreen: Box<Offscreen>,
+    /// What a search is drawn by; it tells notes, costs of objects, and what is compiled ahead. Of
+    /// meshes it has none of the scene's objects.
+    pub offscreen: Box<Offscreen>,
 }
 
 impl MethodRenderer {
@@ -128,17 +104,6 @@ impl MethodRenderer {
                 self.offscreen.update(scene)?;
                 Ok(*self.offscreen.view())
             }),
-        }
-    }
-
-    /// As [`Offscreen::prewarm`]; of a mesh nothing.
-    ///
-    /// # Errors
-    /// Of Vulkan.
-    pub fn prewarm(&mut self) -> Result<()> {
-        match self.meshes {
-            None => self.offscreen.prewarm(),
-            Some(_) => Ok(()),
         }
     }
 
@@ -176,22 +141,10 @@ impl MethodRenderer {
         meshes.unwrap_or_else(|| self.offscreen.map_bytes())
     }
 
-    /// As [`Offscreen::object_costs`]; none of a mesh.
-    #[must_use]
-    pub fn object_costs(&self) -> Vec<ObjectCost> {
-        self.offscreen.object_costs()
-    }
-
     /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
         meshes.unwrap_or_else(|| self.offscreen.device_bytes())
-    }
-
-    /// As [`Offscreen::notes`]; none of a mesh.
-    #[must_use]
-    pub fn notes(&self) -> &[String] {
-        self.offscreen.notes()
     }
 }

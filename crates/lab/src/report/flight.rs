@@ -51,7 +51,7 @@ pub fn fly(
     let mut scene = army(count)?.scene;
     let at = |frame: usize| flight_camera(frame as f64 / frames as f64);
     let mut renderer = device.renderer(&scene, settings)?;
-    renderer.prewarm()?;
+    renderer.offscreen.prewarm()?;
     for _ in 0..WARM {
         renderer.draw()?;
     }
@@ -75,7 +75,7 @@ pub fn fly(
                 planes: Planes::All,
                 ..*settings
             };
-            Ok::<_, revmap::Error>(device.draw(&scene, &all)?.frame)
+            device.draw(&scene, &all)
         };
         let exact = picture(Tolerance::EXACT)?;
         errors.push((

@@ -222,7 +222,7 @@ pub fn write(
     let excluded = excluded(plan, measured).csv();
     write_text(&folder.join("excluded.csv"), &excluded)?;
     let line = |(what, which): &(&str, String)| format!("{what}: {which}\n");
-    let note: String = machine.lines().iter().map(line).collect();
+    let note: String = machine.lines.iter().map(line).collect();
     write_text(&folder.join("machine.txt"), &note)
 }
 

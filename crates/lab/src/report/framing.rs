@@ -208,7 +208,7 @@ mod tests {
                 height,
                 ..MethodSettings::default()
             };
-            for view in views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
+            for view in views(&Extent::ALL, &[0.0, 25.0, 60.0]).unwrap() {
                 let [whole, close] = [Framing::Whole, Framing::Close].map(|framing| {
                     let scene = view.clone().in_framing(framing).scene;
                     let frame = reference::draw(&scene, &(&settings).into(), &|_, _| {});

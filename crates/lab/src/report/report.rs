@@ -86,7 +86,7 @@ impl Run<'_> {
             page.table(&out, &[1, 2, 3, 4]);
         }
         page.chapter("How this was measured");
-        page.facts(&self.machine.lines());
+        page.facts(&self.machine.lines);
         let ends = |of: fn(&Row) -> usize| {
             let all = || measured.rows.iter().map(of);
             (all().min().unwrap_or(0), all().max().unwrap_or(0))

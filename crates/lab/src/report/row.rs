@@ -2,7 +2,7 @@
 
 use super::plan::Case;
 use super::stats::{self, Interval};
-use super::view::{Framing, Technique, View};
+use super::view::{Framing, View};
 use crate::compare::{Comparison, PixelErrors};
 use crate::method::{Method, MethodSettings};
 use revmap::frame::Frame;
@@ -83,7 +83,7 @@ pub struct Row {
     /// How much of the picture its solids take.
     pub framing: Framing,
     /// Form of the offset.
-    pub technique: Technique,
+    pub technique: &'static str,
     /// The offset, where all objects have the same.
     pub offset: Option<Offset>,
     /// How it was drawn.

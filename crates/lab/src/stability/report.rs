@@ -229,7 +229,7 @@ pub fn write(
     let csv = results(cases, outcome, machine).csv();
     write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
-    page.facts(&machine.lines());
+    page.facts(&machine.lines);
     page.text(
         "Each case is a scene in which methods break, swept over the parameter that decides. A fault is a pixel that no solid within the tolerance could have given, a \
          number that is none, a ray out of steps, a colour that the reference does not have there, or a pixel in which both stages differ. The table has the worst \

@@ -21,8 +21,8 @@ fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Fra
         planes,
         ..MethodSettings::default()
     };
-    let drawn = MethodDevice::new(device).unwrap().draw(scene, &settings);
-    drawn.unwrap().frame
+    let device = MethodDevice::new(device).unwrap();
+    device.draw(scene, &settings).unwrap()
 }
 
 /// Each pixel that the search hits is hit, no farther away, without a look-up.

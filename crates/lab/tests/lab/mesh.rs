@@ -42,7 +42,7 @@ pub fn settings(segments: u32, rings: u32) -> MethodSettings {
 
 /// Draws meshes; any message of the layers is a failure.
 pub fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
-    device().1.draw(scene, settings).unwrap().frame
+    device().1.draw(scene, settings).unwrap()
 }
 
 /// Draws by the exact search.

@@ -108,7 +108,7 @@ pub fn distant() -> Result<View> {
 /// `count` copies of ten solids in turn, of equal height, each turned by another angle; seen from
 /// within, over the heads of the first.
 pub fn army(count: u32) -> Result<View> {
-    let views = suite::views(&Extent::All, &[25.0])?;
+    let views = suite::views(&Extent::ALL, &[25.0])?;
     let mut scene = views[0].scene.clone();
     let mut kinds: Vec<Object> = Vec::new();
     kinds.extend(views.into_iter().flat_map(|view| view.scene.objects));
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_field_holds_its_copies_side_by_side() {
-        let one = &suite::views(&Extent::One, &[25.0]).unwrap()[0];
+        let one = &suite::views(&Extent::First(1), &[25.0]).unwrap()[0];
         for count in [1, 10, 100, 1000, 10_000] {
             let view = field(one, count);
             view.scene.check().unwrap();

@@ -229,7 +229,8 @@ pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
 /// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
-    let beveled = view.technique().is_beveled();
+    // The papers take more steps where the offset changes with height.
+    let beveled = ["beveled", "chamfered", "mixed"].contains(&view.technique());
     MethodSettings {
         method: Method::Search(CIRCLE),
         max_steps: Some(if beveled { 25 } else { 20 }),

@@ -53,14 +53,15 @@ const SOURCES: [(&str, Source, [f32; 3]); 8] = [
 #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(try_from = "Names")]
 pub enum Extent {
-    /// One solid.
-    One,
-    /// Three: a polygon with a cavity, a drawing, an image.
-    Three,
-    /// All.
-    All,
+    /// So many of the first. The first three are a polygon with a cavity, a drawing, an image.
+    First(usize),
     /// Those of these names.
     Named(Vec<String>),
+}
+
+impl Extent {
+    /// Every solid.
+    pub const ALL: Self = Self::First(SOURCES.len());
 }
 
 /// The suite's solids in a plan: one word, or a list of names.
@@ -78,13 +79,12 @@ impl TryFrom<Names> for Extent {
         let all = SOURCES.map(|s| s.0);
         match names {
             Names::Word(word) => match word.as_str() {
-                "one" => Ok(Self::One),
-                "three" => Ok(Self::Three),
-                "all" => Ok(Self::All),
-                _ => {
-                    let allowed = "give one, three, all or a list of names";
-                    Err(format!("{word:?} is not known; {allowed}"))
-                }
+                "one" => Ok(Self::First(1)),
+                "three" => Ok(Self::First(3)),
+                "all" => Ok(Self::ALL),
+                _ => Err(format!(
+                    "{word:?} is not known; give one, three, all or a list of names"
+                )),
             },
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
                 Some(name) => {
@@ -101,9 +101,7 @@ impl TryFrom<Names> for Extent {
 /// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
 pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
     let wanted = |place: usize, name: &str| match extent {
-        Extent::One => place < 1,
-        Extent::Three => place < 3,
-        Extent::All => true,
+        Extent::First(count) => place < *count,
         Extent::Named(names) => names.iter().any(|n| n == name),
     };
     let mut views = Vec::new();
@@ -145,12 +143,12 @@ mod tests {
 
     #[test]
     fn the_suite_is_sound_and_named_once() {
-        let all = views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap();
+        let all = views(&Extent::ALL, &[0.0, 25.0, 60.0]).unwrap();
         for (i, view) in all.iter().enumerate() {
             view.scene.check().unwrap();
             assert!(all[..i].iter().all(|v| v.name != view.name));
         }
-        assert_eq!(views(&Extent::One, &[20.0]).unwrap().len(), 1);
+        assert_eq!(views(&Extent::First(1), &[20.0]).unwrap().len(), 1);
         assert_eq!((all.len(), all[1].name.as_str()), (24, "vase@25"));
     }
 }

@@ -41,7 +41,7 @@ impl Default for Views {
     fn default() -> Self {
         Self {
             name: String::new(),
-            solids: Extent::One,
+            solids: Extent::First(1),
             elevations: vec![25.0],
             framings: vec![Framing::Whole],
             arrange: Arrangement::Alone,
