@@ -14,19 +14,6 @@ use revmap::settings::DrawStage;
 use revmap_files::Picture;
 use std::path::{Path, PathBuf};
 
-/// A picture made smaller for a page.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shot {
-    /// Index of the view.
-    pub view: usize,
-    /// Its title.
-    pub caption: String,
-    /// A PNG file's bytes.
-    pub small: Vec<u8>,
-    /// Its width and height.
-    pub size: (u32, u32),
-}
-
 /// The heat map of steps.
 pub const STEPS: Scale = Scale {
     low: 1.0,
@@ -49,8 +36,8 @@ pub struct Album {
     heat_maps: bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
-    /// The pictures.
-    pub shots: Vec<Shot>,
+    /// Pictures made smaller for a page: the view's index, the picture and its caption.
+    pub shots: Vec<(usize, (Picture, String))>,
 }
 
 impl Album {
@@ -115,12 +102,7 @@ impl Album {
         let file = self.folder.join(format!("{}.png", safe(name)));
         write_bytes(&file, &png(picture)?)?;
         let small = reduced(picture, picture.width.div_ceil(widest).max(1));
-        self.shots.push(Shot {
-            view,
-            caption,
-            size: (small.width, small.height),
-            small: png(&small)?,
-        });
+        self.shots.push((view, (small, caption)));
         Ok(())
     }
 }

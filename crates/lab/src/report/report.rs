@@ -161,7 +161,7 @@ impl<'a> Writer<'a> {
         if exhibit.name == "shots" {
             if !self.run.album.shots.is_empty() {
                 self.begin();
-                shots(&mut self.page, self.run.plan, self.run.album);
+                shots(&mut self.page, self.run.plan, self.run.album)?;
             }
             return Ok(());
         }
@@ -261,19 +261,21 @@ impl<'a> Writer<'a> {
 }
 
 /// The pictures of each view: one by itself, then pairs of heat maps in even columns.
-fn shots(page: &mut Page, plan: &Plan, album: &Album) {
+fn shots(page: &mut Page, plan: &Plan, album: &Album) -> Result<()> {
     page.text(&heat_key());
     for (index, view) in plan.views.iter().enumerate() {
-        let shots: Vec<_> = album.shots.iter().filter(|s| s.view == index).collect();
-        if shots.is_empty() {
+        let own = album.shots.iter().filter(|s| s.0 == index);
+        let shots: Vec<_> = own.map(|s| s.1.clone()).collect();
+        let Some((first, rest)) = shots.split_first() else {
             continue;
-        }
+        };
         page.heading(&view.name);
-        let (first, rest) = shots.split_at(1);
-        for shots in [first, rest].into_iter().filter(|s| !s.is_empty()) {
-            page.shots(shots);
+        page.shots(std::slice::from_ref(first))?;
+        if !rest.is_empty() {
+            page.shots(rest)?;
         }
     }
+    Ok(())
 }
 
 /// A heading of words that begin small.
