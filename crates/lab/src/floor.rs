@@ -13,7 +13,6 @@ use revmap::scene::{Scene, Shadow};
 include!(concat!(env!("OUT_DIR"), "/floor.rs"));
 
 /// Whether the program was built with it.
-#[must_use]
 pub fn is_available() -> bool {
     !MODULES.is_empty()
 }

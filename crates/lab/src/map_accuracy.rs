@@ -48,9 +48,6 @@ impl Default for Disc {
 impl Disc {
     /// The disc as a polygon of `corners` corners in a box of radius 1. The polygon's area outside
     /// the disc equals the disc's area outside the polygon.
-    ///
-    /// # Errors
-    /// Discs within the half-plane never fail.
     pub fn polygon(&self, corners: u32) -> Result<Profile> {
         let step = std::f64::consts::TAU / f64::from(corners);
         let radius = self.radius * (step / step.sin()).sqrt();
@@ -61,15 +58,11 @@ impl Disc {
     }
 
     /// Signed distance of a point, object units.
-    #[must_use]
     pub fn distance(&self, p: DVec2) -> f64 {
         p.distance(self.center) - self.radius
     }
 
     /// Bakes the disc from a source and measures the map's errors.
-    ///
-    /// # Errors
-    /// The errors of [`ShapeMap::bake`].
     pub fn errors(&self, source: MapSource, rows: u32) -> Result<MapErrors> {
         let map = ShapeMap::bake(&self.polygon(1 << 16)?, &BakeOptions::new(source, rows))?;
         Ok(self.measure(&map))
@@ -77,7 +70,6 @@ impl Disc {
 
     /// Errors of a map of this disc. A binary map is measured outside only: the papers store no
     /// distances inside.
-    #[must_use]
     pub fn measure(&self, map: &ShapeMap) -> MapErrors {
         let side = f64::from(map.rows);
         let mut distance = Vec::new();

@@ -65,7 +65,6 @@ impl Method {
     }
 
     /// The search; `None` of a mesh and of the floor.
-    #[must_use]
     pub const fn solver(self) -> Option<Solver> {
         match self {
             Self::Search(solver) => Some(solver),
@@ -74,14 +73,12 @@ impl Method {
     }
 
     /// Whether it is a mesh.
-    #[must_use]
     pub const fn is_mesh(self) -> bool {
         matches!(self, Self::Mesh { .. } | Self::MeshLevels)
     }
 
     /// Most quads of one copy of a solid: of a mesh the product of its numbers, of levels those of
     /// the coarsest, of a search none.
-    #[must_use]
     pub const fn quads(self) -> u64 {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
@@ -92,7 +89,6 @@ impl Method {
 
     /// Its name; of a mesh the first part, [`Display`](fmt::Display) gives the whole:
     /// `mesh:64x128`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Search(solver) => solver.name(),
@@ -102,19 +98,16 @@ impl Method {
     }
 
     /// As [`Solver::reads_own_table`]; a mesh does not.
-    #[must_use]
     pub const fn reads_own_table(self) -> bool {
         matches!(self, Self::Search(solver) if solver.reads_own_table())
     }
 
     /// As [`Solver::reads_map`]; a mesh is made from the boundary itself.
-    #[must_use]
     pub const fn reads_map(self) -> bool {
         matches!(self, Self::Search(solver) if solver.reads_map())
     }
 
     /// As [`Solver::follows_tolerance`]; a mesh does not.
-    #[must_use]
     pub const fn follows_tolerance(self) -> bool {
         match self {
             Self::Search(solver) => solver.follows_tolerance(),
@@ -124,13 +117,11 @@ impl Method {
     }
 
     /// As [`Solver::may_run_out`]; a mesh makes no steps.
-    #[must_use]
     pub fn may_run_out(self) -> bool {
         matches!(self, Self::Search(solver) if solver.may_run_out())
     }
 
     /// As [`Solver::default_steps`]; 1 for a mesh, which has none to bound.
-    #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         self.solver().map_or(1, |s| s.default_steps(beveled))
     }
@@ -213,7 +204,6 @@ pub enum Edges {
 
 impl Edges {
     /// Its name in plans and results.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::OneRay => "1 ray".to_owned(),
@@ -224,7 +214,6 @@ impl Edges {
     }
 
     /// Samples of a pixel in one pass.
-    #[must_use]
     pub fn samples(self) -> u32 {
         match self {
             Self::Msaa => 4,

@@ -20,9 +20,6 @@ pub struct MethodDevice {
 
 impl MethodDevice {
     /// Draws on this device.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn new(device: Device) -> Result<Self> {
         let pipelines = MeshPipelines::new(&device)?;
         Ok(Self {
@@ -70,9 +67,6 @@ impl MethodDevice {
     }
 
     /// Draws a scene once.
-    ///
-    /// # Errors
-    /// As [`MethodDevice::renderer`]; of drawing.
     pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<Frame> {
         let mut renderer = self.renderer(scene, settings)?;
         renderer.draw()?;
@@ -94,9 +88,6 @@ pub struct MethodRenderer {
 
 impl MethodRenderer {
     /// Takes over a scene.
-    ///
-    /// # Errors
-    /// As [`Offscreen::update`]; of what a mesh does not draw.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         match &mut self.meshes {
             None => self.offscreen.update(scene),
@@ -108,9 +99,6 @@ impl MethodRenderer {
     }
 
     /// Draws one frame and waits for it.
-    ///
-    /// # Errors
-    /// Of drawing.
     pub fn draw(&mut self) -> Result<Times> {
         let guest = self.meshes.as_deref().map(|meshes| meshes as &dyn Guest);
         let times = self.offscreen.draw_with(guest)?;
@@ -119,15 +107,11 @@ impl MethodRenderer {
     }
 
     /// The frame that was drawn last.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn read(&mut self) -> Result<Frame> {
         self.offscreen.read()
     }
 
     /// As [`Offscreen::rebuild_count`], or how many meshes were made.
-    #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.made_count());
         meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
@@ -135,14 +119,12 @@ impl MethodRenderer {
 
     /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
     /// maps.
-    #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         let meshes = self.meshes.as_ref().map(|meshes| [meshes.bytes(), 0]);
         meshes.unwrap_or_else(|| self.offscreen.map_bytes())
     }
 
     /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
-    #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
         meshes.unwrap_or_else(|| self.offscreen.device_bytes())

@@ -7,9 +7,6 @@ use revmap::scene::Scene;
 /// Draws the scene through the middle of each pixel by `draw`, then, where `count` is above 1, once
 /// for each of so many points, a power of two, and averages the colours of these, linear and
 /// weighted by alpha.
-///
-/// # Errors
-/// Of `draw`.
 pub fn averaged(
     count: u32,
     scene: &Scene,

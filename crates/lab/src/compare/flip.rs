@@ -14,7 +14,6 @@ use std::f64::consts::PI;
 ///
 /// Colours are laid over black, clamped to `[0, 1]` (what a PNG would keep, without its rounding)
 /// and seen at `pixels_per_degree`. The frames must be of one size; else the list is empty.
-#[must_use]
 pub fn flip_map(reference: &Frame, frame: &Frame, pixels_per_degree: f64) -> Vec<f32> {
     Eye::on(reference, pixels_per_degree).flip(frame)
 }

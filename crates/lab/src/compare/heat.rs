@@ -38,7 +38,6 @@ impl Heat {
     ];
 
     /// Its name in options and captions.
-    #[must_use]
     pub fn name(self) -> &'static str {
         ["wrong", "depth", "normal", "silhouette", "flip"][self as usize]
     }
@@ -66,13 +65,11 @@ impl Scale {
     };
 
     /// The place of a value on the scale: 0 at `low`, 1 at `high`.
-    #[must_use]
     pub fn place(self, value: f64) -> f64 {
         (value.max(self.low) / self.low).log2() / (self.high / self.low).log2()
     }
 
     /// The colour of a value.
-    #[must_use]
     pub fn color(self, value: f64) -> [u8; 3] {
         ramp(self.place(value))
     }
@@ -87,9 +84,6 @@ pub const MISSED: [u8; 3] = [0, 255, 255];
 pub const GHOST: [u8; 3] = [0, 255, 0];
 
 /// A picture of one kind of error.
-///
-/// # Errors
-/// Those of [`compare`](super::compare()).
 pub fn heat_map(
     reference: &Frame,
     frame: &Frame,
@@ -168,7 +162,6 @@ fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
 
 /// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
 /// too.
-#[must_use]
 pub fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],

@@ -75,14 +75,12 @@ pub struct Comparison {
 
 impl Comparison {
     /// Missed and ghost pixels as a part of the reference's hits (of 1 where it has none).
-    #[must_use]
     pub fn wrong(&self) -> f64 {
         (self.missed + self.ghost) as f64 / self.hits.max(1) as f64
     }
 
     /// Error of the distance along the ray in h/512: h = 1 world unit is the height of an unscaled
     /// solid.
-    #[must_use]
     pub fn depth_h512(&self) -> Option<Spread> {
         let unit = 512.0 * self.texel;
         self.depth.map(|d| Spread {

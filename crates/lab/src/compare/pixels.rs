@@ -36,9 +36,6 @@ pub struct PixelErrors {
 }
 
 /// Errors of a drawn frame of `scene`.
-///
-/// # Errors
-/// As [`CameraFrame::new`] and [`Reference::new`].
 pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<PixelErrors> {
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height)?;
     let reference = Reference::new(scene)?;

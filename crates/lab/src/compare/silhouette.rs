@@ -9,7 +9,6 @@ use revmap::frame::Frame;
 /// A silhouette is made of the pixels that hit and have a neighbour (left, right, above, below)
 /// that does not; holes have one too, and beyond the picture nothing hits. 0 when neither frame
 /// hits anything, `+inf` when only one does.
-#[must_use]
 pub fn silhouette_hausdorff(a: &Frame, b: &Frame) -> f64 {
     let (edge_a, edge_b) = (silhouette(a), silhouette(b));
     match (edge_a.contains(&true), edge_b.contains(&true)) {

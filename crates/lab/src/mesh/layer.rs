@@ -116,9 +116,6 @@ impl MeshLayer {
 
     /// Takes over a scene. Meshes are made anew where a profile or an offset differs. `view` is
     /// called once it is sure that meshes draw the scene.
-    ///
-    /// # Errors
-    /// Of the scene, of what meshes do not draw, of profiles; of `view`; of Vulkan.
     pub fn update(&mut self, scene: &Scene, view: impl FnOnce() -> Result<View>) -> Result<()> {
         scene.check()?;
         let camera = CameraFrame::new(&scene.camera, self.size.0, self.size.1)?;

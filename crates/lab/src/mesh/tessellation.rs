@@ -56,7 +56,6 @@ pub struct Mesh {
 impl Mesh {
     /// Tessellates a contour in `segments` steps around the axis and at most `rings` along the
     /// meridian; more where the contour has more corners.
-    #[must_use]
     pub fn new(contour: &Contour, segments: u32, rings: u32) -> Self {
         let strands = meridian(contour, rings as usize);
         let points = || contour.chains.iter().flat_map(|c| &c.points);
@@ -100,7 +99,6 @@ impl Mesh {
 
     /// The index at which the band a quarter turn before `azimuth` begins. From there on, what
     /// faces an eye in that direction comes first.
-    #[must_use]
     pub fn start(&self, azimuth: f64) -> u32 {
         let turns = ((azimuth - 0.5 * PI) / TAU).rem_euclid(1.0);
         let segment = (turns * f64::from(self.segments)) as u32;

@@ -26,7 +26,6 @@ pub struct Spot {
 
 impl Spot {
     /// The part in which two pictures of one size differ most.
-    #[must_use]
     pub fn worst(drawn: &Picture, truth: &Picture) -> Self {
         let pairs = drawn.rgba.iter().zip(&truth.rgba);
         let off = pairs.map(|(a, b)| {
@@ -43,7 +42,6 @@ impl Spot {
 
     /// The whole picture with the part framed, and the part as drawn, as the reference has it, and
     /// where the two differ, side by side.
-    #[must_use]
     pub fn strip(&self, drawn: &Picture, truth: &Picture, heat: &Picture) -> Picture {
         let part = |picture: &Picture| {
             let mut part = enlarged(picture, self.corner, PART, ZOOM, GROUND);

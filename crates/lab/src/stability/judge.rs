@@ -84,7 +84,6 @@ impl Faults {
     ///
     /// Pixels that are right in both frames follow the reference to within the tolerance, so their
     /// changes are the reference's.
-    #[must_use]
     pub fn flicker(&self, next: &Self) -> usize {
         let bound = self.tolerance + next.tolerance;
         let pairs = self.pixels.iter().zip(&next.pixels);
@@ -99,25 +98,21 @@ impl Faults {
 
 impl Judged {
     /// The faults that count: none in a case that passes.
-    #[must_use]
     pub fn faults(&self) -> usize {
         self.wrong + self.not_finite + self.exhausted + self.color + self.stages
     }
 
     /// Faults as a part of the pixels that the reference hits.
-    #[must_use]
     pub fn share(&self) -> f64 {
         self.faults() as f64 / self.hits.max(1) as f64
     }
 
     /// Pixels that flicker as a part of those that the reference hits.
-    #[must_use]
     pub fn flicker_share(&self) -> Option<f64> {
         Some(self.flicker? as f64 / self.hits.max(1) as f64)
     }
 
     /// Whether the picture passes with at most so many faults.
-    #[must_use]
     pub fn passes(&self, limit: usize) -> bool {
         let flickers = self.flicker.unwrap_or(0) > limit;
         self.not_finite == 0 && self.faults() <= limit && !flickers
@@ -168,9 +163,6 @@ pub struct Truth<'a> {
 
 impl<'a> Truth<'a> {
     /// Draws the reference of a step's scene.
-    ///
-    /// # Errors
-    /// As [`revmap_reference::draw`].
     pub fn new(scene: &'a Scene, step: &Step) -> Result<Self> {
         let frame = revmap_reference::draw(scene, &step.settings, &|_, _| {})?;
         let reference = Reference::new(scene)?;
@@ -219,18 +211,12 @@ impl<'a> Truth<'a> {
     }
 
     /// Where a frame's depths are wrong.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
     pub fn heat(&self, frame: &Frame) -> Result<Picture> {
         heat_map(&self.frame, frame, &self.options(), Heat::Depth)
     }
 
     /// Judges a frame, with the faults of each pixel; `other` is the same picture by the other
     /// stage.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
     pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
         let errors = compare(&self.frame, frame, &self.options())?;
         let wrong: Vec<bool> = (0..frame.pixels())

@@ -181,7 +181,6 @@ impl Random {
 
 impl Draft {
     /// The scene of a seed.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
         let r = &mut random;
@@ -229,7 +228,6 @@ impl Draft {
     }
 
     /// The scene as TOML.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
         for line in &self.lines {
@@ -287,9 +285,6 @@ impl Draft {
 
     /// What the default fails in this scene, in either stage; `None` where it passes, or where the
     /// scene is refused.
-    ///
-    /// # Errors
-    /// Of files, and of the device's validation.
     pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
         for (name, rows) in self.instance_files() {
             write_text(&folder.join(name), &rows)?;
@@ -317,9 +312,6 @@ impl Draft {
     }
 
     /// The smallest scene that still fails, taking away one part at a time.
-    ///
-    /// # Errors
-    /// As [`Draft::fails`].
     pub fn reduced(&self, device: &Device, folder: &Path) -> Result<Self> {
         let mut now = self.clone();
         'again: loop {
@@ -336,9 +328,6 @@ impl Draft {
 
 /// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
 /// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
-///
-/// # Errors
-/// As [`Draft::fails`].
 pub fn run(
     device: &Device,
     (seed, count): (u64, u64),

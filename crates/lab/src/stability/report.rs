@@ -55,7 +55,6 @@ fn drawn(cases: &[Case], outcome: &Outcome) -> Vec<usize> {
 }
 
 /// The table of cases and searches: the worst share of faults in each, and the verdict.
-#[must_use]
 pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
     let header = ["case", "swept over"].into_iter();
     let record = |k: usize| {
@@ -70,7 +69,6 @@ pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
 
 /// The table of flicker: of each motion and search the worst share of pixels that flicker from one
 /// frame to the next, percent of the hit pixels. None where no motion was drawn.
-#[must_use]
 pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<Table> {
     let share = |k: usize, solver: Solver| {
         let judged = of(outcome, k, solver).filter_map(|t| t.judged.as_ref().ok());
@@ -88,7 +86,6 @@ pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<
 }
 
 /// What the default fails, a line for each.
-#[must_use]
 pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     let is_failure = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
     let line = |t: &Trial| {
@@ -103,7 +100,6 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
 }
 
 /// `results.csv`: a record for each trial.
-#[must_use]
 pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
     let judged =
         |of: fn(&Judged) -> String| move |t: &Trial| t.judged.as_ref().map(of).unwrap_or_default();
@@ -177,9 +173,6 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
 }
 
 /// Writes `results.csv`, `report.html`, the charts and the pictures.
-///
-/// # Errors
-/// When a file cannot be written.
 pub fn write(
     folder: &Path,
     cases: &[Case],

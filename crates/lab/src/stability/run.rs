@@ -35,7 +35,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// As tables have it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -199,9 +198,6 @@ pub(super) struct Attempt {
 }
 
 /// A scene by a search in both stages, each judged; the second is compared with the first.
-///
-/// # Errors
-/// As [`Truth::judge`]. Errors of drawing are part of what is returned.
 pub(super) fn both_stages(
     device: &Device,
     step: &Step,

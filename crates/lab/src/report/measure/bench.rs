@@ -12,9 +12,6 @@ use std::sync::atomic::AtomicBool;
 /// A way of drawing a view, ready to be timed.
 pub trait TimedRenderer {
     /// Draws one frame and waits for it.
-    ///
-    /// # Errors
-    /// Drawing fails.
     fn sample(&mut self) -> Result<Sample>;
 }
 
@@ -33,15 +30,9 @@ pub trait Bench {
     ) -> Result<Box<dyn TimedRenderer>>;
 
     /// One frame with all planes, and the bytes of its maps.
-    ///
-    /// # Errors
-    /// See [`Bench::timed_renderer`].
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
     /// The truth.
-    ///
-    /// # Errors
-    /// The scene is wrong.
     fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
 }
 

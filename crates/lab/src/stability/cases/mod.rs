@@ -55,9 +55,6 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
 }
 
 /// Writes the pictures that cases name into `folder`.
-///
-/// # Errors
-/// When a file cannot be written.
 pub fn write_files(folder: &Path) -> Result<()> {
     make(folder)?;
     for side in shapes::PICTURE_ROWS {
