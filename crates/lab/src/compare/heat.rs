@@ -259,8 +259,8 @@ mod tests {
         assert_eq!((sheet.width, sheet.height), (120, 40));
         for (tile, kind) in Heat::ALL.into_iter().enumerate() {
             let map = heat_map(&base(), &frame, &options, kind).unwrap();
-            let row = (tile / 3 * 20) * 120 + tile % 3 * 40;
-            assert_eq!(sheet.rgba[row..row + 40], map.rgba[..40], "{}", kind.name());
+            let first = tile / 3 * 20 * 120 + tile % 3 * 40;
+            assert_eq!(sheet.rgba[first..first + 40], map.rgba[..40], "{kind:?}");
         }
         assert_eq!(sheet.rgba[20 * 120 + 80], [188, 188, 188, 255]);
         assert!(heat_sheet(&base(), &Frame::new(1, 1, [0.0; 4]).unwrap(), &options).is_err());

@@ -92,30 +92,20 @@ mod tests {
 
     #[test]
     fn the_worst_part_is_framed_and_shown() {
-        let truth = Picture {
-            width: 160,
-            height: 120,
-            rgba: vec![[100, 100, 100, 255]; 160 * 120],
-        };
-        let mut drawn = truth.clone();
-        for (x, y) in [(100, 70), (102, 71), (104, 72)] {
-            drawn.rgba[y * 160 + x] = [0, 0, 0, 0];
-        }
-        // Too little to be seen.
-        drawn.rgba[0] = [110, 100, 100, 255];
+        let truth = painted([160, 120], |_, _| [100, 100, 100, 255]);
+        // Too little to be seen at the first pixel; nothing is hit at three.
+        let drawn = painted([160, 120], |x, y| match (x, y) {
+            (0, 0) => [110, 100, 100, 255],
+            (100, 70) | (102, 71) | (104, 72) => [0; 4],
+            _ => [100, 100, 100, 255],
+        });
         let spot = Spot::worst(&drawn, &truth);
-        assert!(spot.seen > 0.0);
-        let within = |v: usize, from: usize, part: usize| v >= from && v < from + part;
-        assert!(within(100, spot.corner[0], PART[0]) && within(104, spot.corner[0], PART[0]));
-        assert!(within(70, spot.corner[1], PART[1]) && within(72, spot.corner[1], PART[1]));
+        let [x, y] = [102 - spot.corner[0], 71 - spot.corner[1]];
+        assert!(spot.seen > 0.0 && (2..PART[0] - 2).contains(&x) && (1..PART[1] - 1).contains(&y));
         let strip = spot.strip(&drawn, &truth, &truth);
         assert_eq!((strip.width, strip.height), (652, 120));
-        let place = |x: usize, y: usize| {
-            let (x, y) = (ZOOM * (x - spot.corner[0]), ZOOM * (y - spot.corner[1]));
-            y * 652 + 164 + x
-        };
-        assert_eq!(strip.rgba[place(102, 71)], GROUND);
-        assert_eq!(strip.rgba[place(102, 71) + 164], [100, 100, 100, 255]);
+        let at = |panel: usize| pixel(&strip, 164 * panel + ZOOM * x, ZOOM * y);
+        assert_eq!((at(1), at(2)), (Some(GROUND), Some([100, 100, 100, 255])));
         assert!(strip.rgba.contains(&FRAME));
         assert_eq!(Spot::worst(&truth, &truth).seen, 0.0);
     }

@@ -89,36 +89,6 @@ fn a_slower_machine_is_told_from_a_slower_search() {
 }
 
 #[test]
-fn two_machines_are_named() {
-    let rows = [timed([10.0; 4], DrawStage::Fragment)];
-    let (old, new) = (run(&rows), run(&rows));
-    let note = |folder: &tempfile::TempDir, processor: &str| {
-        let text = format!("device: d\nprocessor: {processor}\n");
-        write_text(&folder.path().join("machine.txt"), &text).unwrap();
-    };
-    note(&old, "Xeon, 2 threads");
-    let warnings = || compare(old.path(), new.path()).unwrap().warnings;
-    // A run without the note: nothing is known to differ.
-    assert_eq!(warnings(), [""; 0]);
-    note(&new, "Xeon, 2 threads");
-    assert_eq!(warnings(), [""; 0]);
-    note(&new, "EPYC, 2 threads");
-    let said = warnings();
-    assert_eq!(said.len(), 1);
-    for word in ["processor", "Xeon, 2 threads", "EPYC, 2 threads"] {
-        assert!(said[0].contains(word), "{said:?}");
-    }
-    let other = csv_of(&rows, "another device", "another driver");
-    write_text(&new.path().join("results.csv"), &other.csv()).unwrap();
-    let said = warnings();
-    assert_eq!(said.len(), 3);
-    for name in ["device, with a comma", "another device"] {
-        assert!(said[0].contains(name), "{said:?}");
-    }
-    assert!(said[1].contains("another driver"));
-}
-
-#[test]
 fn a_rejected_clock_gives_no_verdict() {
     let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
     let mut lies = timed([10.0; 4], DrawStage::Fragment);
