@@ -25,8 +25,7 @@ pub fn device(device: &Device) -> Result<Device> {
     if !is_available() {
         return refused("this program was built without the feature `shaderc`, which compiles it");
     }
-    // SAFETY: the shaders are built on the renderer's own includes, so their interface is that of
-    // the shaders that they stand for.
+    // SAFETY: the shaders have the renderer's own includes, so their interface is the same.
     #[allow(unsafe_code)]
     unsafe {
         device.with_shaders(Box::new(words))

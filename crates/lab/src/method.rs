@@ -18,20 +18,17 @@ pub enum Method {
         /// Most steps along the meridian; fewer where fewer follow it exactly.
         rings: u32,
     },
-    /// Triangles, each copy of a solid by one of [`Method::MESH_LEVELS`], and copies beside the
-    /// picture left out.
+    /// Triangles, each copy by one of [`Method::MESH_LEVELS`], without copies beside the picture.
     MeshLevels,
     /// The default search's frame without the search: each pixel returns its first possible point.
     Floor,
 }
 
 impl Method {
-    /// The meshes of [`Method::MeshLevels`]: segments, rings, and the height on the screen in
-    /// pixels from which on a copy is drawn by it.
+    /// The meshes of [`Method::MeshLevels`]: segments, rings, least height on the screen in pixels.
     pub const MESH_LEVELS: [(u32, u32, f64); 3] = [(16, 32, 0.0), (32, 64, 40.0), (64, 128, 160.0)];
 
-    /// Every search, in the order in which reports list them. Meshes are as many as there are
-    /// numbers of segments and rings, and not among them.
+    /// Every search, in the order in which reports list them. Meshes are not among them.
     pub const ALL: [Self; revmap_searches::ALL.len()] = {
         let mut all = [Self::DEFAULT; revmap_searches::ALL.len()];
         let mut i = 0;
@@ -77,8 +74,7 @@ impl Method {
         matches!(self, Self::Mesh { .. } | Self::MeshLevels)
     }
 
-    /// Most quads of one copy of a solid: of a mesh the product of its numbers, of levels those of
-    /// the coarsest, of a search none.
+    /// Most quads of one copy of a solid; of levels those of the coarsest, of a search none.
     pub const fn quads(self) -> u64 {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
@@ -87,8 +83,7 @@ impl Method {
         }
     }
 
-    /// Its name; of a mesh the first part, [`Display`](fmt::Display) gives the whole:
-    /// `mesh:64x128`.
+    /// Its name; of a mesh the first part of [`Display`](fmt::Display)'s `mesh:64x128`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Search(solver) => solver.name(),
@@ -284,8 +279,7 @@ impl Default for MethodSettings {
     }
 }
 
-/// The renderer's settings. A mesh leaves the default search, for a picture without objects; so does
-/// the floor, whose frame is that search's.
+/// The renderer's settings: for a mesh and for the floor those of the default search.
 impl From<&MethodSettings> for Settings {
     fn from(settings: &MethodSettings) -> Self {
         Self {

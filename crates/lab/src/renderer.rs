@@ -81,8 +81,7 @@ impl MethodDevice {
 pub struct MethodRenderer {
     // Dropped first: its frames were waited for.
     meshes: Option<Box<MeshLayer>>,
-    /// What a search is drawn by; it tells notes, costs of objects, and what is compiled ahead. Of
-    /// meshes it has none of the scene's objects.
+    /// What draws a search, and tells of it; of meshes it has none of the scene's objects.
     pub offscreen: Box<Offscreen>,
 }
 
@@ -117,8 +116,7 @@ impl MethodRenderer {
         meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
     }
 
-    /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
-    /// maps.
+    /// Bytes on the device: of shape maps and tables, or of meshes; of colours and displacements.
     pub fn map_bytes(&self) -> [u64; 2] {
         let meshes = self.meshes.as_ref().map(|meshes| [meshes.bytes(), 0]);
         meshes.unwrap_or_else(|| self.offscreen.map_bytes())

@@ -18,8 +18,7 @@ pub fn flip_map(reference: &Frame, frame: &Frame, pixels_per_degree: f64) -> Vec
     Eye::on(reference, pixels_per_degree).flip(frame)
 }
 
-/// An eye on a reference: what it takes in of that is found once, for any number of frames to be
-/// flipped to.
+/// An eye on a reference, which it takes in once for any number of frames.
 pub(super) struct Eye {
     colors: Colors,
     sight: Sight,
@@ -167,8 +166,7 @@ impl Sight {
             let n = radius as i64;
             (-n..=n).map(|x| f(x as f64)).collect()
         };
-        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees; the widest sets
-        // the radius for all.
+        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees.
         let radius = (3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * ppd).ceil();
         let contrast = [
             vec![(1.0, 0.0047)],
@@ -190,8 +188,7 @@ impl Sight {
             parts.iter_mut().for_each(|(w, _)| *w /= total);
             parts
         });
-        // Edges and points: derivatives of a Gaussian as wide as an edge that the eye takes for
-        // one.
+        // Edges and points: derivatives of a Gaussian as wide as what the eye takes for an edge.
         let sigma = 0.5 * 0.082 * ppd;
         let radius = (3.0 * sigma).ceil();
         let bell = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();

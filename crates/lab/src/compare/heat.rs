@@ -8,20 +8,16 @@ use revmap::Result;
 use revmap::frame::{Frame, pixel_count};
 use revmap_files::Picture;
 
-/// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in
-/// both frames is grey.
+/// What a heat map shows. Missed pixels are cyan, ghosts green, what is empty in both frames grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heat {
     /// Missed and ghost pixels alone; what both hit is a lighter grey.
     Wrong,
-    /// Depth error, from dark blue at 0.001 texel and below to pale yellow at 10 texels, a decade a
-    /// step.
+    /// Depth error, from dark blue at 0.001 texel to pale yellow at 10 texels, a decade a step.
     Depth,
-    /// Angle between the normals, from dark blue at 0.01 degrees and below to pale yellow at 100
-    /// degrees.
+    /// Angle between the normals, from dark blue at 0.01 degrees to pale yellow at 100 degrees.
     Normal,
-    /// The pixels of both silhouettes, by their distance to the other's silhouette: from 0 to 8
-    /// pixels.
+    /// The pixels of both silhouettes, by their distance to the other's: from 0 to 8 pixels.
     Silhouette,
     /// FLIP, from 0 to 1, on every pixel.
     Flip,
@@ -160,8 +156,7 @@ fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
     move |k| colors[k]
 }
 
-/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
-/// too.
+/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly.
 pub fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],

@@ -14,8 +14,7 @@ use rayon::prelude::*;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 
-/// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels,
-/// seen from 0.7 m.
+/// Pixels per degree of FLIP's authors: 3840 pixels on 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
 /// What the comparison must know beyond the two frames.
@@ -79,8 +78,7 @@ impl Comparison {
         (self.missed + self.ghost) as f64 / self.hits.max(1) as f64
     }
 
-    /// Error of the distance along the ray in h/512: h = 1 world unit is the height of an unscaled
-    /// solid.
+    /// Error of the distance along the ray in h/512, h being the height of an unscaled solid.
     pub fn depth_h512(&self) -> Option<Spread> {
         let unit = 512.0 * self.texel;
         self.depth.map(|d| Spread {

@@ -19,8 +19,7 @@ use revmap::settings::{DrawStage, Planes};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The meshes of a scene on a device, a guest of an [`Offscreen`] for guests. Every frame is waited
-/// for before the next call.
+/// A scene's meshes on a device, a guest of an [`Offscreen`]. Every frame is waited for.
 pub(crate) struct MeshLayer {
     meshes: SceneMeshes,
     size: (u32, u32),
@@ -125,8 +124,7 @@ impl MeshLayer {
         self.take(&frame, lighting.lights.len(), &placed)
     }
 
-    /// Takes over a frame's block and its objects, in the order in which they are drawn. Nothing
-    /// changes where it fails.
+    /// Takes over a frame's block and its objects in order. Nothing changes where it fails.
     fn take(&mut self, frame: &FrameBlock, lights: usize, placed: &[PlacedMesh]) -> Result<()> {
         let device = self.pipelines.device().clone();
         let mut staged: Vec<(Arc<DeviceMesh>, Buffer)> = Vec::new();
@@ -298,7 +296,6 @@ struct DeviceMesh {
 
 impl DeviceMesh {
     /// Buffers for `mesh`, and one of vertices, then indices, from which the next frame copies.
-    /// Indices have 16 bits where these hold them.
     fn new(device: &Device, mesh: &Arc<Mesh>) -> Result<(Self, Buffer)> {
         let short: Option<Vec<u16>> = mesh.indices.iter().map(|i| (*i).try_into().ok()).collect();
         let (kind, indices): (_, &[u8]) = match &short {

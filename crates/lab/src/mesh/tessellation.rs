@@ -54,8 +54,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Tessellates a contour in `segments` steps around the axis and at most `rings` along the
-    /// meridian; more where the contour has more corners.
+    /// A contour in `segments` steps around and at most `rings` along, more if it has more corners.
     pub fn new(contour: &Contour, segments: u32, rings: u32) -> Self {
         let strands = meridian(contour, rings as usize);
         let points = || contour.chains.iter().flat_map(|c| &c.points);
@@ -97,8 +96,7 @@ impl Mesh {
         self.vertices = sorted;
     }
 
-    /// The index at which the band a quarter turn before `azimuth` begins. From there on, what
-    /// faces an eye in that direction comes first.
+    /// The index of the band from which on what faces an eye at `azimuth` comes first.
     pub fn start(&self, azimuth: f64) -> u32 {
         let turns = ((azimuth - 0.5 * PI) / TAU).rem_euclid(1.0);
         let segment = (turns * f64::from(self.segments)) as u32;
@@ -150,8 +148,7 @@ impl Builder {
                 self.set(ring.point, after)
             });
         }
-        // A smooth closed strand ends on the vertices that it begins with. `in_order_of_use` drops
-        // those that are then unused.
+        // A smooth closed strand ends on its first vertices; `in_order_of_use` drops the others.
         let smooth = strand
             .rings
             .first()

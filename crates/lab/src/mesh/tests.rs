@@ -99,14 +99,12 @@ fn meshes_are_closed_and_hold_the_volume() {
     }
 }
 
-/// Straight walls are one frustum each, and creases stay sharp: the cup needs no more rings than
-/// its outline has sides.
+/// Straight walls are one frustum each, and creases stay sharp.
 #[test]
 fn no_ring_is_wasted_and_no_corner_lost() {
     let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 24, 100);
     assert_eq!(mesh.rings, 5);
-    // All but the two poles have a vertex on either side of the crease, and nothing is kept that no
-    // triangle names.
+    // All but the two poles have a vertex on either side of the crease; no other is kept.
     assert_eq!(mesh.vertices.len(), 4 * 2 * 24 + 2);
     let coarse = Mesh::new(&contour(&CUP, &Offset::default()), 24, 2);
     assert_eq!(coarse.rings, 5);
@@ -163,8 +161,7 @@ fn straight_walls_keep_their_normals() {
     assert_eq!(upright.count(), 2 * 16);
 }
 
-/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing
-/// on them.
+/// A wall jagged by a tenth of a pixel has no corners.
 #[test]
 fn jags_are_no_corners() {
     let mut jagged = vec![[0.0, 0.1], [0.2, 0.1]];
@@ -229,8 +226,7 @@ fn meshes_and_searches_hide_each_other() {
     device.check().unwrap();
 }
 
-/// Stored SPIR-V was made from today's sources, and is equal word for word if the same compiler is
-/// used here.
+/// Stored SPIR-V was made from today's sources; by the same compiler word for word.
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/spirv");

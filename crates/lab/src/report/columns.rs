@@ -1,5 +1,4 @@
-//! The one description of every column: its name in files, its heading on pages, its meaning, and the
-//! cell of a row.
+//! The one description of every column: name in files, heading, meaning, and the cell of a row.
 
 use super::machine::Machine;
 use super::names::{number, percent, range};

@@ -53,8 +53,7 @@ impl TimedRenderer for Ready {
                 }
             }
             Drawer::Smoothed([smoothed, plain]) => {
-                // Reading a picture takes the same for all but what smoothing adds, which is never
-                // less than nothing, whatever else the machine does.
+                // Reading takes the same for all but what smoothing adds, which is not negative.
                 plain.draw()?;
                 let usual = read_ms(plain)?;
                 frame_ms = smoothed.draw()?.frame_ms;

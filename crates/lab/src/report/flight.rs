@@ -106,8 +106,7 @@ impl FlightTimes {
         stats::median(&all).unwrap_or(f64::NAN)
     }
 
-    /// The largest error over the pictures that were compared, pixels: of 99.9 % of the pixels,
-    /// and of contours.
+    /// The largest error over the pictures, pixels: of 99.9 % of the pixels, and of contours.
     pub fn worst(&self) -> [f64; 2] {
         let most =
             |of: fn(&PixelErrors) -> f64| self.errors.iter().map(|e| of(&e.1)).fold(0.0, f64::max);

@@ -8,8 +8,7 @@ use super::view::{Framing, View};
 use glam::{DQuat, DVec3};
 use revmap::scene::{Camera, Light};
 
-/// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of
-/// 4:3, whichever is less.
+/// Close up, the boxes' rectangle is so many times as wide or high as a picture of 4:3.
 pub const OVERFILL: f64 = 1.25;
 
 /// The part of the picture's height that the boxes fill when seen whole.
@@ -132,8 +131,7 @@ mod tests {
     use super::*;
     use revmap::scene::CameraFrame;
 
-    /// How far the boxes reach past the middle of the picture, as parts of half its width and
-    /// height: the most, and the mean of both sides.
+    /// How far the boxes reach, as parts of half the picture: the most, and the mean of both sides.
     fn reach(view: &View) -> [(f64, f64); 2] {
         let frame = CameraFrame::new(&view.scene.camera, 400, 300).unwrap();
         [(frame.right, 200.0), (frame.up, 150.0)].map(|(axis, half)| {

@@ -49,8 +49,7 @@ impl Machine {
         }
     }
 
-    /// A name for a folder of results, after day, device and the driver's version:
-    /// `2026-01-31-lavapipe-22.3.6`.
+    /// A folder's name after day, device and the driver's version: `2026-01-31-lavapipe-22.3.6`.
     pub fn folder(&self) -> String {
         let device = self.device.to_lowercase();
         let words = device.split(|c: char| !c.is_ascii_alphanumeric());

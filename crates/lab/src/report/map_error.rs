@@ -32,8 +32,7 @@ pub struct MapError {
 /// Samples along a ray are at most this many texels apart where the surface is near.
 const STRIDE: f64 = 0.25;
 
-/// Distances of the reference, kept while a plan is measured: the reference is slow, and no picture
-/// is drawn with it twice.
+/// Distances of the reference, which is slow: no picture is drawn with it twice.
 #[derive(Clone, Debug, Default)]
 pub struct Truths {
     known: Vec<(usize, (u32, u32), Vec<f32>)>,
@@ -172,8 +171,7 @@ fn hit(
         let w = offset.extend + offset.bevel * (1.0 - p.z).clamp(0.0, offset.chamfer.max(0.0));
         map.distance_at(p.x.hypot(p.y), p.z) - w
     };
-    // The map's distances change by at most the length of the way and a texel's interpolation; a
-    // bevel adds its slope.
+    // Distances change by at most the way and a texel's interpolation; a bevel adds its slope.
     let slope = (std::f64::consts::SQRT_2 + offset.bevel.abs()) * v.length();
     let stride = STRIDE * map.texel() / v.length();
     let mut t = start;

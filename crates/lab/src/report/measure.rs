@@ -94,8 +94,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// All passes: as many as the plan means to take, then more over the groups with a time that is
-    /// not resolved, until all are or the limit is reached.
+    /// The plan's passes, then more over groups that are not resolved, until the limit.
     fn passes(&mut self, observer: &mut Observer) -> Result<()> {
         let (plan, budget) = (self.plan, self.budget);
         let groups = plan.groups();
@@ -199,8 +198,7 @@ impl Run<'_> {
         };
         let reference = compare::Reference::new(&truth, &options)?;
         let mut own: Option<(Method, Frame)> = None;
-        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing
-        // is timed meanwhile.
+        // While a frame is compared the next is made ready: drivers compile on one thread.
         std::thread::scope(|scope| {
             let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
             for &index in group {
@@ -361,8 +359,7 @@ fn settled(samples: &[Sample], precision: f64) -> bool {
         return false;
     };
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // The standard error of a normal distribution's median is 1.25 sigma / sqrt n, sigma is 1.48
-    // median deviations.
+    // A normal distribution's median errs by 1.25 sigma / sqrt n, sigma is 1.48 median deviations.
     let deviation = super::stats::median(&off).unwrap_or(0.0);
     let error = 1.25 * 1.48 * deviation / (times.len() as f64).sqrt();
     times.len() >= 5 && 1.96 * error <= precision * middle

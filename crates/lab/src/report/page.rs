@@ -1,5 +1,4 @@
-//! A page that needs nothing beside itself: text, tables, charts and pictures in one HTML file,
-//! without scripts, for screens of any width and for print.
+//! A page that needs nothing beside itself, without scripts, for any screen and for print.
 
 use super::chart::Figure;
 use super::chart::letters::{FAMILY, FONT};

@@ -23,8 +23,7 @@ pub const STEPS: Scale = Scale {
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
-/// Beyond so many views, heat maps are of the first alone, and each view has a smaller
-/// picture.
+/// Beyond so many views, heat maps are of the first alone, and pictures are smaller.
 const MANY_VIEWS: usize = 12;
 /// Pictures of many views are at most this wide.
 const NARROW: u32 = 200;
@@ -107,8 +106,7 @@ impl Album {
     }
 }
 
-/// True if a way of drawing is worth a heat map: in a sweep only searches as they are drawn by
-/// default, and at one middling bound on steps.
+/// True if a way of drawing is worth a heat map: in a sweep only the usual ones.
 fn worth(s: &MethodSettings) -> bool {
     let plain = s.map_rows.is_none()
         && s.map_source.is_none()

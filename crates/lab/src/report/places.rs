@@ -1,5 +1,4 @@
-//! The groups of rows that have tables and charts of their own: all of a run, those of a picture, a
-//! framing, a stage or a size.
+//! The groups of rows that have tables and charts of their own.
 
 use super::columns::Context;
 use super::exhibit::{Exhibit, Per};

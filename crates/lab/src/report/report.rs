@@ -39,8 +39,7 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Writes the page, the charts and the tables that are files; returns the text of the tables
-    /// that are printed.
+    /// Writes page, charts and tables; returns the text of the tables that are printed.
     pub fn write(&self, folder: &Path) -> Result<String> {
         let rows: Vec<&Row> = self.measured.rows.iter().collect();
         let resolved = self.file.time.resolved;

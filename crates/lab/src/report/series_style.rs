@@ -1,5 +1,4 @@
-//! Which way of drawing looks how: a search has one colour, marker and dash in every chart of every
-//! report.
+//! Which way of drawing looks how, in every chart of every report.
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::chart::xy::Guide;
@@ -47,8 +46,7 @@ pub fn style(s: &MethodSettings) -> Style {
     look
 }
 
-/// The line of the floor's time in a chart over times: solid in the fragment stage, dotted in
-/// compute.
+/// The line of the floor's time: solid in the fragment stage, dotted in compute.
 pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
     // Over every axis of errors.
     let points = vec![(time, 1e-12), (time, 1e12)];

@@ -100,8 +100,7 @@ pub fn geometric(observations: &[f64]) -> Option<Interval> {
     Some(Interval::new(value, low, high))
 }
 
-/// The mean of observations with Student's interval; a single one has an interval that excludes
-/// nothing. `None` of nothing.
+/// The mean with Student's interval, which excludes nothing for one value; `None` of nothing.
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {
         let alone = |&value| Interval::new(value, f64::NEG_INFINITY, f64::INFINITY);
@@ -111,8 +110,7 @@ pub fn mean(observations: &[f64]) -> Option<Interval> {
     Some(Interval::new(value, value - reach, value + reach))
 }
 
-/// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's
-/// interval.
+/// The ratio `a / b` of geometric means of independent observations, with Welch's interval.
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
     let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();

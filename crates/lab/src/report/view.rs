@@ -23,8 +23,7 @@ pub struct View {
 /// How much of the picture is solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framing {
-    /// The scene's own camera: for the program's own solids nine tenths of the picture's height, or of
-    /// its width in a picture of 4:3.
+    /// The scene's own camera: the program's solids fill nine tenths of the height or width.
     Whole,
     /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
     /// `OVERFILL` in `framing.rs`; a wider one may show their sides.

@@ -130,6 +130,5 @@ impl Step {
     }
 }
 
-/// The searches that the catalogue compares: the RBM baseline, the map search, the exact search,
-/// the default.
+/// The searches compared: the RBM baseline, the map search, the exact search, the default.
 pub const SOLVERS: [Solver; 4] = [CIRCLE, Solver::Live, Solver::Quadric, Solver::DEFAULT];

@@ -40,8 +40,7 @@ impl Spot {
         Self { seen, corner }
     }
 
-    /// The whole picture with the part framed, and the part as drawn, as the reference has it, and
-    /// where the two differ, side by side.
+    /// The picture with the part framed; the part as drawn, as it should be, and the difference.
     pub fn strip(&self, drawn: &Picture, truth: &Picture, heat: &Picture) -> Picture {
         let part = |picture: &Picture| {
             let mut part = enlarged(picture, self.corner, PART, ZOOM, GROUND);

@@ -63,16 +63,14 @@ pub struct Judged {
     pub color: usize,
     /// Pixels whose colour in the other stage is a fault; 0 in the first stage that is judged.
     pub stages: usize,
-    /// Pixels that flicker: those whose fault is another one than in the frame before; `None` in a
-    /// frame that has none before it.
+    /// Pixels whose fault is another one than in the frame before; `None` without one.
     pub flicker: Option<usize>,
 }
 
 /// The faults of a frame, pixel by pixel.
 #[derive(Clone, Debug)]
 pub struct Faults {
-    /// Of each faulty pixel the error of its distance, world units: infinite for a ghost or a miss,
-    /// 0 where the colour alone is wrong.
+    /// The error of each faulty pixel's distance, world units: infinite, or 0 for a colour alone.
     pixels: Vec<Option<f64>>,
     /// What errors may differ by: each of two is known to within this.
     tolerance: f64,
@@ -215,8 +213,7 @@ impl<'a> Truth<'a> {
         heat_map(&self.frame, frame, &self.options(), Heat::Depth)
     }
 
-    /// Judges a frame, with the faults of each pixel; `other` is the same picture by the other
-    /// stage.
+    /// Judges a frame, with the faults of each pixel; `other` is the other stage's.
     pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
         let errors = compare(&self.frame, frame, &self.options())?;
         let wrong: Vec<bool> = (0..frame.pixels())
@@ -307,8 +304,7 @@ impl<'a> Truth<'a> {
         let [silhouette, tolerance] = self.tolerance;
         let fine = 0.05 * silhouette;
         if drawn {
-            // A hit on a face between cells may be rounded into the cell beyond, which need not be
-            // solid there.
+            // A hit on a face between cells may be rounded into a cell that is not solid there.
             let about = [z * (1.0 - 4.0 * ROUNDING), z * (1.0 + 4.0 * ROUNDING)];
             if !self.reference.goes_deeper(ray, about, -tolerance, fine) {
                 return true;

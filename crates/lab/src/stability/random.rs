@@ -1,5 +1,4 @@
-//! Random scenes, held to the reference; one that fails is reduced to the smallest that still
-//! fails.
+//! Random scenes, held to the reference, and reduced to the smallest that still fail.
 
 use super::case::Step;
 use super::judge::Truth;
@@ -283,8 +282,7 @@ impl Draft {
         all
     }
 
-    /// What the default fails in this scene, in either stage; `None` where it passes, or where the
-    /// scene is refused.
+    /// What the default fails in this scene; `None` where it passes, or the scene is refused.
     pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
         for (name, rows) in self.instance_files() {
             write_text(&folder.join(name), &rows)?;

@@ -84,11 +84,9 @@ pub struct Exhibit {
 pub struct Outcome {
     /// Every picture that was judged.
     pub trials: Vec<Trial>,
-    /// The worst scene: the reference, the default, and the search that fails most, each with
-    /// where it is wrong.
+    /// The worst scene: the reference, the default, and the search that fails most.
     pub sheets: Vec<Exhibit>,
-    /// The failure that is seen best: the whole picture, and a part of it as drawn, as the
-    /// reference has it, and the difference.
+    /// The failure that is seen best, as [`Spot::strip`] shows it.
     pub glances: Vec<Exhibit>,
 }
 
@@ -124,8 +122,7 @@ pub fn run(
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
         let mut shown: [Option<Exhibit>; 2] = [None, None];
-        // The faults of each search and stage in the frame before, where frames are those of a
-        // motion.
+        // The faults of each search and stage in the frame before, of motions.
         let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
         for value in chosen(case) {
             if !progress(&case.name, done, total) {
@@ -282,8 +279,7 @@ fn most_faults(drawn: &[Drawn], own: bool) -> Option<&Drawn> {
 /// A score, and pictures with captions.
 type Scored = Option<(f64, Vec<(Picture, String)>)>;
 
-/// The pictures of a scene: scenes in which the default fares worst come first, then those in which
-/// any does.
+/// The pictures of a scene, scored: failures of the default come first.
 fn sheet(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
     let (own, others) = (most_faults(drawn, true), most_faults(drawn, false));
     let Some(first) = own.or(others) else {

@@ -11,8 +11,7 @@ use revmap::settings::Planes;
 use revmap_lab::method::MethodSettings;
 use std::sync::Arc;
 
-/// What of a frame is wrong in more pixels than silhouettes, creases and texture's edges have:
-/// planes by name.
+/// Names of planes that are wrong in more pixels than edges have.
 pub fn wrong_planes(truth: &Frame, frame: &Frame) -> Vec<&'static str> {
     let both: Vec<usize> = (0..truth.pixels())
         .filter(|&k| truth.hits(k) && frame.hits(k))
@@ -80,8 +79,7 @@ fn every_plane_is_the_reference_s() {
     }
 }
 
-/// A cone's normals are the same on both: so are its colours, under any number of lights, as colour
-/// alone and among all planes.
+/// A cone's normals are the same on both: so are its colours, under any number of lights.
 #[test]
 fn shading_is_the_renderer_s() {
     let mut scene = scene_of(shapes::cone(), eye(30.0, 1.6));

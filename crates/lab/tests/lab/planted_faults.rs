@@ -78,8 +78,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
     }
-    // In the chart its marker stands further right: marks in order of series, the markers of the
-    // plot before those of the legend.
+    // In the chart its marker stands further right; the plot's markers come before the legend's.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let plan = plan();

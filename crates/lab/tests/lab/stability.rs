@@ -1,5 +1,4 @@
-//! The catalogue of cases in which methods fail: what the default passes, what is known, and that
-//! the judge can fail.
+//! The catalogue of cases: what the default passes, what is known, and that the judge can fail.
 
 use glam::DVec3;
 use revmap::frame::Frame;

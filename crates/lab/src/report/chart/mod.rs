@@ -148,8 +148,7 @@ impl Figure {
         words.collect()
     }
 
-    /// Pairs of words that cover each other, and words that reach past the figure: none in a good
-    /// figure.
+    /// Words that cover each other or reach past the figure: none in a good figure.
     pub fn faults(&self) -> Vec<String> {
         let words = self.words();
         let mut faults = Vec::new();

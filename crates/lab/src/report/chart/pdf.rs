@@ -91,8 +91,7 @@ fn embed(file: &mut Pdf, [font, glyphs, descriptor, data, letters]: [Ref; 5]) {
     let packed = miniz_oxide::deflate::compress_to_vec_zlib(FONT, 6);
     file.stream(data, &packed).filter(Filter::FlateDecode);
     let mut map = UnicodeCmap::<u16>::new(Name(b"Letters"), GLYPHS);
-    // The planes in which the charts' signs are: Latin, punctuation, sub- and superscripts, arrows,
-    // mathematics.
+    // The charts' signs: Latin, punctuation, sub- and superscripts, arrows, mathematics.
     for letter in (0x20..0x2300).filter_map(char::from_u32) {
         if let Some(glyph) = face.glyph_index(letter) {
             map.pair(glyph.0, letter);

@@ -1,5 +1,4 @@
-//! Figures as pixels, drawn from their SVG with the charts' own font: the same on every machine,
-//! whatever fonts it has.
+//! Figures as pixels, drawn from their SVG with the charts' own font, the same on every machine.
 
 use super::Figure;
 use super::letters::FONT;

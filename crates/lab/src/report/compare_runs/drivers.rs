@@ -13,8 +13,7 @@ const TECHNIQUES: [&str; 5] = ["revolution", "extended", "beveled", "chamfered",
 /// The technique that no offset shows.
 const TEXTURED: &str = "textured";
 
-/// The technique of a record: what its view is named after, else that of its offset; whether the box
-/// cuts it.
+/// The technique of a record: its view's, else its offset's; whether the box cuts it.
 fn technique_of(scene: &str, technique: &str) -> String {
     let scene = scene.trim_end_matches(":close");
     if scene.ends_with(TEXTURED) {

@@ -56,8 +56,7 @@ fn planted_changes_are_found() {
     assert_eq!(back.pairs[0].better.len(), 1);
 }
 
-/// One run had a machine of half the speed: the RBM baseline, in both, tells so, and nothing counts
-/// as slower but what is.
+/// One run had a machine of half the speed: the RBM baseline tells so.
 #[test]
 fn a_slower_machine_is_told_from_a_slower_search() {
     let papers = |times| {

@@ -73,8 +73,7 @@ pub(in crate::report) fn unresolved(context: &Context) -> Option<String> {
     })
 }
 
-/// The answer for each way of drawing by the default search; for other searches where the plan has
-/// it not.
+/// The answer for each way of the default search, or of others where the plan lacks it.
 fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
     let mut ratios = over(rows.iter().copied(), Over::Fragment);
     let default = |r: &Ratio| r.settings.method == Method::DEFAULT;
@@ -280,8 +279,7 @@ mod tests {
         told(Question::Stages, rows)
     }
 
-    /// Compute takes half the time of the fragment stage, over two pictures, while the machine
-    /// slows down between passes.
+    /// Compute takes half the fragment stage's time, while the machine slows down between passes.
     #[test]
     fn a_planted_ratio_of_stages_is_answered_in_one_sentence() {
         use DrawStage::{Compute, Fragment};

@@ -15,8 +15,7 @@ pub trait TimedRenderer {
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// A source of renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
-/// itself.
+/// A source of renderers and pictures: a Vulkan device, or a stand-in of tests.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///

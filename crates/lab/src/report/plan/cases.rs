@@ -18,8 +18,7 @@ pub struct Case {
     pub view: usize,
     /// How it is drawn.
     pub settings: MethodSettings,
-    /// The entries of the plan that it belongs to: bits, by the places of their names in
-    /// [`Plan::sweeps`].
+    /// The plan's entries that it belongs to: bits, by their places in [`Plan::sweeps`].
     pub sweeps: u64,
 }
 
@@ -48,8 +47,7 @@ pub struct Plan {
     pub cases: Vec<Case>,
     /// Names of the entries, each once.
     pub sweeps: Vec<String>,
-    /// True if views are compared with each other: then all views of one size are drawn in turn,
-    /// not each view by itself.
+    /// True if all views of one size are drawn in turn, not each view by itself.
     pub mixed: bool,
     /// The picture that others are compared with.
     pub truth: Truth,
@@ -128,8 +126,7 @@ impl Plan {
         }
     }
 
-    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size
-    /// in a mixed plan.
+    /// What is measured in turn, A B A B: one view and size, or one size in a mixed plan.
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let key = |k: &usize| {
             let (view, width, height) = self.cases[*k].picture();

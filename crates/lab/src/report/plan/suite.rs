@@ -1,5 +1,4 @@
-//! The solids that are measured when no scene is named: carried within the program, so that it
-//! needs no files.
+//! The solids that are measured when no scene is named, carried within the program.
 
 use crate::report::names::number;
 use crate::report::view::View;
@@ -36,8 +35,7 @@ macro_rules! asset {
 /// The colour of chessmen.
 const WOOD: [f32; 3] = [0.72, 0.52, 0.3];
 
-/// Name, source, colour of every solid of the suite; drawings, an image, and polygons with
-/// cavities.
+/// Name, source, colour of every solid: drawings, an image, polygons with cavities.
 const SOURCES: [(&str, Source, [f32; 3]); 8] = [
     ("vase", asset!(text "vase.toml"), [0.55, 0.16, 0.08]),
     ("pawn", asset!("pawn.svg"), WOOD),

@@ -60,8 +60,7 @@ impl TimeBudget {
         self.passes.0 == self.passes.1
     }
 
-    /// True if another pass as long as the `last` would end beyond the limit after `gone`, however
-    /// few the `passes` were.
+    /// True if another pass as long as the `last` would end beyond the limit after `gone`.
     pub(in crate::report) fn would_overrun(
         &self,
         passes: usize,

@@ -5,8 +5,7 @@ use crate::stability::case::Step;
 
 pub(super) const SCENES: &[Scene] = &[
     ("eye-in-replicas", |n| {
-        // Wider than its cell and as high: replicas are joined through the borders of their
-        // cells, but for holes in them.
+        // Wider than its cell and as high: replicas are joined through borders, but for holes.
         let polygon = [
             [0.0, 0.0],
             [0.8, 0.0],

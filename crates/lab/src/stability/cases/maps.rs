@@ -7,8 +7,7 @@ use revmap::maps::MapFormat;
 use revmap::settings::Settings;
 use revmap_files::Picture;
 
-/// A picture whose colour changes slowly and without a jump, but differs from place to place: a
-/// texel more or less does not show, a coarser level does.
+/// A picture without jumps in which a texel more does not show, but a coarser level does.
 pub(super) fn waves() -> Picture {
     let wave = |place: usize, all: u32, turns: f64| {
         let angle = std::f64::consts::TAU * turns * (place as f64 + 0.5) / f64::from(all);

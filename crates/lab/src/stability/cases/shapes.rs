@@ -39,8 +39,7 @@ pub(super) const SCENES: &[Scene] = &[
         Step::seen(eye(25.0, 1.8), MIDDLE).object(&keys)
     }),
     ("cone-tip", |elevation| {
-        // Numbers that 32 bits hold exactly, in a picture with a middle pixel: its ray goes
-        // through the tip to the last bit.
+        // Numbers that 32 bits hold exactly: the middle pixel's ray goes through the tip.
         let cone = [[0.0, 0.25], [0.25, 0.25], [0.0, 0.75]];
         let (s, c) = elevation.to_radians().sin_cos();
         let eye = match elevation {
