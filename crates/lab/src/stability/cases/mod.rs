@@ -1,11 +1,7 @@
 //! The catalogue.
 
-mod boxes;
-mod light;
-mod maps;
-mod placement;
-mod rays;
-mod shapes;
+mod solids;
+mod views;
 
 use super::case::{Case, Step};
 use crate::mosaic::painted;
@@ -30,19 +26,11 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
         |why: &dyn std::fmt::Display| Error::new(ErrorKind::Other, format!("cases.toml: {why}"));
     let catalogue = toml::from_str(include_str!("../cases.toml"));
     let Catalogue { case: mut all } = catalogue.map_err(|error| broken(&error))?;
-    let groups = [
-        placement::SCENES,
-        shapes::SCENES,
-        rays::SCENES,
-        boxes::SCENES,
-        light::SCENES,
-        maps::SCENES,
-    ];
     for case in &mut all {
-        let scene = groups.iter().copied().flatten().find(|s| s.0 == case.name);
-        case.scene = scene
-            .ok_or_else(|| broken(&format!("{} has no scene", case.name)))?
-            .1;
+        let mut scenes = views::SCENES.iter().chain(solids::SCENES);
+        let scene = scenes.find(|s| s.0 == case.name);
+        let none = || broken(&format!("{} has no scene", case.name));
+        case.scene = scene.ok_or_else(none)?.1;
     }
     let is_known = |name: &&String| all.iter().any(|case| case.name == **name);
     if let Some(name) = names.iter().find(|name| !is_known(name)) {
@@ -57,12 +45,12 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
 /// Writes the pictures that cases name into `folder`.
 pub fn write_files(folder: &Path) -> Result<()> {
     make(folder)?;
-    for side in shapes::PICTURE_ROWS {
-        let (border, ball) = (shapes::bordered(side), shapes::binary_ball(side));
+    for side in solids::PICTURE_ROWS {
+        let (border, ball) = (solids::bordered(side), solids::binary_ball(side));
         write_bytes(&folder.join(format!("border-{side}.png")), &png(&border)?)?;
         write_bytes(&folder.join(format!("ball-{side}.png")), &png(&ball)?)?;
     }
-    write_bytes(&folder.join("waves.png"), &png(&maps::waves())?)
+    write_bytes(&folder.join("waves.png"), &png(&solids::waves())?)
 }
 
 /// A grey picture; `dark` tells which pixels are solid.
