@@ -88,16 +88,12 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
 /// observation has an interval that excludes nothing; `None` of nothing, or of what is not
 /// positive.
 pub fn geometric(observations: &[f64]) -> Option<Interval> {
-    if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
+    if !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
         return None;
     }
     let logs: Vec<f64> = observations.iter().map(|v| v.ln()).collect();
-    let Some((mean, error)) = mean_and_error(&logs) else {
-        return Some(Interval::new(observations[0], 0.0, f64::INFINITY));
-    };
-    let reach = student(logs.len() as f64 - 1.0) * error;
-    let [value, low, high] = [mean, mean - reach, mean + reach].map(f64::exp);
-    Some(Interval::new(value, low, high))
+    let Interval { value, low, high } = mean(&logs)?;
+    Some(Interval::new(value.exp(), low.exp(), high.exp()))
 }
 
 /// The mean with Student's interval, which excludes nothing for one value; `None` of nothing.
@@ -113,9 +109,8 @@ pub fn mean(observations: &[f64]) -> Option<Interval> {
 /// The ratio `a / b` of geometric means of independent observations, with Welch's interval.
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
-    let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();
-    let (Some((_, ea)), Some((_, eb))) = (mean_and_error(&logs(a)), mean_and_error(&logs(b)))
-    else {
+    let error = |v: &[f64]| mean_and_error(&v.iter().map(|x| x.ln()).collect::<Vec<_>>());
+    let (Some((_, ea)), Some((_, eb))) = (error(a), error(b)) else {
         return Some(Interval::new(value, 0.0, f64::INFINITY));
     };
     let (va, vb) = (ea * ea, eb * eb);

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use super::super::{Case, Lists, embedded, is_rbm_baseline};
+use super::super::{Case, Lists, embedded, is_rbm_baseline, suite};
 use super::*;
 use crate::method::MethodSettings;
 use crate::report::view::Framing;
@@ -48,6 +48,9 @@ fn every_plan_of_the_program_is_sound() {
         }
         assert!(text.starts_with("about = "), "{name}");
     }
+    let elevations = [0.0, 25.0, 60.0];
+    let all = suite::views(&suite::Extent::ALL, &elevations).unwrap();
+    assert_eq!((all.len(), all[1].name.as_str()), (24, "vase@25"));
 }
 
 /// Every column and entry that exhibits name is there; no exhibit is without a plan.
