@@ -59,11 +59,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let settings = if view.solids() > 1 {
             flight::settings(stage)
         } else {
-            MethodSettings {
-                stage,
-                planes: Planes::Color,
-                ..MethodSettings::default()
-            }
+            let settings = MethodSettings::default().in_stage(stage);
+            settings.storing(Planes::Color)
         };
         let mut ways = vec![rbm_baseline(&view, &settings)];
         ways.extend(methods.iter().map(|&method| MethodSettings {

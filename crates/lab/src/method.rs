@@ -259,6 +259,32 @@ pub struct MethodSettings {
     pub edges: Edges,
 }
 
+impl MethodSettings {
+    /// The same by another method.
+    pub fn by(mut self, method: impl Into<Method>) -> Self {
+        self.method = method.into();
+        self
+    }
+
+    /// The same in another stage.
+    pub fn in_stage(mut self, stage: DrawStage) -> Self {
+        self.stage = stage;
+        self
+    }
+
+    /// The same with so many pixels across and down.
+    pub fn sized(mut self, width: u32, height: u32) -> Self {
+        (self.width, self.height) = (width, height);
+        self
+    }
+
+    /// The same with other planes.
+    pub fn storing(mut self, planes: Planes) -> Self {
+        self.planes = planes;
+        self
+    }
+}
+
 impl Default for MethodSettings {
     /// As [`Settings::exact`].
     fn default() -> Self {

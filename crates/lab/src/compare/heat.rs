@@ -201,10 +201,7 @@ mod tests {
     fn at(kind: Heat, change: impl Fn(&mut Frame), x: usize, y: usize) -> [u8; 3] {
         let mut frame = base();
         change(&mut frame);
-        let options = CompareOptions {
-            texel: 0.01,
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(0.01);
         let map = heat_map(&base(), &frame, &options, kind).unwrap();
         let [r, g, b, a] = map.rgba[y * 40 + x];
         assert_eq!((map.width, map.height, a), (40, 20, 255));

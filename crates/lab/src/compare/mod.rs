@@ -38,6 +38,16 @@ impl Default for CompareOptions {
     }
 }
 
+impl CompareOptions {
+    /// With this world length of a texel.
+    pub fn of(texel: f64) -> Self {
+        Self {
+            texel,
+            ..Self::default()
+        }
+    }
+}
+
 /// Root mean square, 99th percentile (nearest rank) and maximum of a set of errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
@@ -286,10 +296,7 @@ mod tests {
         let solid: Vec<usize> = (0..base.pixels()).filter(|&k| base.hits(k)).collect();
         let mut other = base.clone();
         change(&mut other, &solid);
-        let options = CompareOptions {
-            texel: 0.01,
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(0.01);
         compare(&base, &other, &options).unwrap()
     }
 

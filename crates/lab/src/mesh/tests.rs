@@ -198,12 +198,8 @@ fn meshes_and_searches_hide_each_other() {
     let mut theirs = all.clone();
     theirs.objects = vec![meshed];
 
-    let settings = MethodSettings {
-        width: 240,
-        height: 180,
-        method: Method::mesh(256, 512).unwrap(),
-        ..MethodSettings::default()
-    };
+    let mesh = Method::mesh(256, 512).unwrap();
+    let settings = MethodSettings::default().by(mesh).sized(240, 180);
     let own = Settings::from(&settings);
     let mut offscreen = Offscreen::new(&device, &ours, &own).unwrap();
     let pipelines = MeshPipelines::new(&device).unwrap();

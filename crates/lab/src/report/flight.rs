@@ -17,14 +17,9 @@ const WARM: usize = 10;
 
 /// The default search with a tolerance, as crowds are drawn.
 pub fn settings(stage: DrawStage) -> MethodSettings {
-    MethodSettings {
-        stage,
-        width: 1366,
-        height: 706,
-        planes: Planes::Color,
-        tolerance: Tolerance::DEFAULT,
-        ..MethodSettings::default()
-    }
+    let mut settings = MethodSettings::default().in_stage(stage).sized(1366, 706);
+    settings.tolerance = Tolerance::DEFAULT;
+    settings.storing(Planes::Color)
 }
 
 /// A flight.

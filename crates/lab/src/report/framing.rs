@@ -201,11 +201,7 @@ mod tests {
         use crate::method::MethodSettings;
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
-            let settings = MethodSettings {
-                width,
-                height,
-                ..MethodSettings::default()
-            };
+            let settings = MethodSettings::default().sized(width, height);
             for view in views(&Extent::ALL, &[0.0, 25.0, 60.0]).unwrap() {
                 let [whole, close] = [Framing::Whole, Framing::Close].map(|framing| {
                     let scene = view.clone().in_framing(framing).scene;

@@ -88,11 +88,7 @@ pub fn measure(
     }
     let mut all = Vec::new();
     let mut truth: Option<(usize, Frame)> = None;
-    let settings = MethodSettings {
-        width: size.0,
-        height: size.1,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().sized(size.0, size.1);
     for (number, &(view, source, rows)) in wanted.iter().enumerate() {
         progress(number, wanted.len());
         let seen = &plan.views[view];
@@ -101,10 +97,7 @@ pub fn measure(
         }
         let Some((_, truth)) = &truth else { continue };
         let frame = draw(&seen.scene, size, source, rows)?;
-        let options = CompareOptions {
-            texel: seen.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(seen.texel());
         all.push(MapError {
             view,
             source,
@@ -212,17 +205,10 @@ mod tests {
 
     /// The errors of a map against the reference.
     fn error(view: &View, size: (u32, u32), source: MapSource, rows: u32) -> Comparison {
-        let settings = MethodSettings {
-            width: size.0,
-            height: size.1,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().sized(size.0, size.1);
         let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {});
         let frame = draw(&view.scene, size, source, rows).unwrap();
-        let options = CompareOptions {
-            texel: view.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(view.texel());
         compare(&truth.unwrap(), &frame, &options).unwrap()
     }
 

@@ -192,10 +192,7 @@ impl Run<'_> {
         self.tell(observer, &format!("{}: the reference", view.name));
         let truth = self.truth(first, None)?;
         let rays = plan.truth != Truth::Reference;
-        let options = CompareOptions {
-            texel: view.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(view.texel());
         let reference = compare::Reference::new(&truth, &options)?;
         let mut own: Option<(Method, Frame)> = None;
         // While a frame is compared the next is made ready: drivers compile on one thread.
@@ -208,10 +205,7 @@ impl Run<'_> {
                 let case = plan.cases[index];
                 let method = case.settings.method;
                 self.tell(observer, &format!("{}: errors of {method}", view.name));
-                let settings = MethodSettings {
-                    planes: Planes::All,
-                    ..case.settings
-                };
+                let settings = case.settings.storing(Planes::All);
                 let drawn = self.bench.picture(view, &settings);
                 if let Some(one) = compared.take() {
                     self.keep(one, (&truth, &options), observer)?;

@@ -86,10 +86,7 @@ impl SeriesStyles {
             if ways.iter().any(|(known, _)| *known == way) {
                 continue;
             }
-            let wanted = style(&MethodSettings {
-                stage: DrawStage::Fragment,
-                ..*s
-            });
+            let wanted = style(&s.in_stage(DrawStage::Fragment));
             let free = |marker: &Marker| {
                 let taken = |k: &Style| (k.color, k.marker) == (wanted.color, *marker);
                 !ways.iter().any(|(_, known)| taken(known))

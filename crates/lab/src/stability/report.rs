@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::judge::Judged;
 use super::run::{Outcome, STAGES, Trial, Verdict};
-use crate::method::{Method, MethodSettings};
+use crate::method::MethodSettings;
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Point, Series, XyChart};
@@ -146,11 +146,7 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
         Axis::linear(&case.parameter)
     };
     let line = |(solver, stage): (Solver, DrawStage)| {
-        let settings = MethodSettings {
-            method: Method::Search(solver),
-            stage,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().by(solver).in_stage(stage);
         let share = |t: &Trial| Some(100.0 * t.judged.as_ref().ok()?.share());
         let point = |t: &Trial| Some(Point::at(t.value, share(t)?.max(FLOOR)));
         let own = of(outcome, number_of, solver).filter(|t| t.stage == stage);

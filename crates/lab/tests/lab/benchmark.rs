@@ -1,7 +1,7 @@
 //! How a benchmark goes about its plan, with a stand-in for the device.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan, run_within};
-use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
@@ -71,11 +71,7 @@ fn no_truth_is_drawn_twice() {
     for mixed in [false, true] {
         let mut plan = plan();
         for case in plan.cases.clone() {
-            let smaller = MethodSettings {
-                width: 32,
-                height: 24,
-                ..case.settings
-            };
+            let smaller = case.settings.sized(32, 24);
             plan.add(case.view, smaller, "");
         }
         plan.mixed = mixed;

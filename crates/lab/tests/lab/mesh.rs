@@ -32,12 +32,8 @@ fn renderer(scene: &Scene, settings: &MethodSettings) -> revmap::Result<MethodRe
 }
 
 pub fn settings(segments: u32, rings: u32) -> MethodSettings {
-    MethodSettings {
-        width: 240,
-        height: 180,
-        method: Method::mesh(segments, rings).unwrap(),
-        ..MethodSettings::default()
-    }
+    let mesh = Method::mesh(segments, rings).unwrap();
+    MethodSettings::default().by(mesh).sized(240, 180)
 }
 
 /// Draws meshes; any message of the layers is a failure.
@@ -47,14 +43,7 @@ pub fn draw(scene: &Scene, settings: &MethodSettings) -> Frame {
 
 /// Draws by the exact search.
 pub fn searched(scene: &Scene, settings: &MethodSettings) -> Frame {
-    let method = Method::Search(Solver::Quadric);
-    draw(
-        scene,
-        &MethodSettings {
-            method,
-            ..*settings
-        },
-    )
+    draw(scene, &settings.by(Solver::Quadric))
 }
 
 pub fn reference(scene: &Scene, settings: &MethodSettings) -> Frame {
@@ -129,11 +118,7 @@ fn a_shift_moves_the_picture() {
     let mut shifted = plain.clone();
     shifted.camera.shift = [3.0, -2.0];
     let mesh = settings(256, 512);
-    let search = |stage| MethodSettings {
-        stage,
-        method: Method::DEFAULT,
-        ..mesh
-    };
+    let search = |stage| mesh.by(Method::DEFAULT).in_stage(stage);
     let [fragment, compute] = [DrawStage::Fragment, DrawStage::Compute].map(search);
     type Draw<'a> = &'a dyn Fn(&Scene) -> Frame;
     let by: [(&str, Draw); 4] = [
@@ -189,10 +174,7 @@ fn several_solids_hide_each_other() {
 #[test]
 fn updates_leave_nothing_behind() {
     for planes in [Planes::All, Planes::Color] {
-        let settings = MethodSettings {
-            planes,
-            ..settings(48, 96)
-        };
+        let settings = settings(48, 96).storing(planes);
         let mut scene = crowd();
         let mut mesh = renderer(&scene, &settings).unwrap();
         mesh.draw().unwrap();

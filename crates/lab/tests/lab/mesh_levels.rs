@@ -9,10 +9,7 @@ use revmap::scene::Scene;
 use revmap_lab::method::{Method, MethodSettings};
 
 fn levels() -> MethodSettings {
-    MethodSettings {
-        method: Method::MeshLevels,
-        ..settings(3, 2)
-    }
+    settings(3, 2).by(Method::MeshLevels)
 }
 
 /// Pixels in which colours differ.

@@ -8,7 +8,6 @@ use revmap::maps::Projection;
 use revmap::profile::Profile;
 use revmap::scene::{Light, Specular};
 use revmap::settings::Planes;
-use revmap_lab::method::MethodSettings;
 use std::sync::Arc;
 
 /// Names of planes that are wrong in more pixels than edges have.
@@ -107,10 +106,7 @@ fn shading_is_the_renderer_s() {
         scene.lights = all[..count].iter().copied().map(light).collect();
         // In 8 bits a rounding the other way is a step of sRGB, at most 0.009.
         for (planes, bound) in [(Planes::All, 1e-4), (Planes::Color, 1e-2)] {
-            let settings = MethodSettings {
-                planes,
-                ..settings(512, 8)
-            };
+            let settings = settings(512, 8).storing(planes);
             let apart = colors_apart(&draw(&scene, &settings), &searched(&scene, &settings));
             let most = apart[apart.len() * 99 / 100];
             println!("{count} lights, {planes:?}: 99 % below {most}");

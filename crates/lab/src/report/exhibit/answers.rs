@@ -240,6 +240,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::compare::Spread;
+    use crate::method::MethodSettings;
     use crate::report::columns::tests::with_context;
     use crate::report::row::tests;
     use revmap::settings::Solver;
@@ -247,11 +248,7 @@ mod tests {
     /// A row of a search in a stage of a picture; its passes take these times.
     fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
         let mut row = tests::timed(passes);
-        row.settings = crate::method::MethodSettings {
-            method,
-            stage,
-            ..crate::method::MethodSettings::default()
-        };
+        row.settings = MethodSettings::default().by(method).in_stage(stage);
         row.view = view;
         row.scene = format!("scene{view}");
         erring(row, 0.01)

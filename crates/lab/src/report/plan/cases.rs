@@ -99,14 +99,9 @@ impl Plan {
         let mut all = Vec::new();
         for &(width, height) in &measure.sizes {
             for &stage in &measure.stages {
-                let base = MethodSettings {
-                    width,
-                    height,
-                    stage,
-                    planes: Planes::Color,
-                    tolerance: Tolerance::EXACT,
-                    ..MethodSettings::default()
-                };
+                // They are exact by default.
+                let base = MethodSettings::default().storing(Planes::Color);
+                let base = base.sized(width, height).in_stage(stage);
                 let methods = measure.methods(named).into_iter();
                 all.extend(methods.flat_map(|method| ways(seen, measure, base, method)));
             }
@@ -213,14 +208,12 @@ pub(in crate::report) fn grouped<T, K: PartialEq>(
 
 /// `solver` at the stage and size of `settings`, all else as drawing takes it.
 pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
-    MethodSettings {
-        width: settings.width,
-        height: settings.height,
-        stage: settings.stage,
-        planes: settings.planes,
-        method,
-        ..MethodSettings::default()
-    }
+    let plain = MethodSettings::default()
+        .by(method)
+        .storing(settings.planes);
+    plain
+        .in_stage(settings.stage)
+        .sized(settings.width, settings.height)
 }
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
@@ -241,12 +234,7 @@ pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
 
 /// A way of drawing apart from its size: what a summary over views and sizes is told by.
 pub fn variant(settings: &MethodSettings) -> MethodSettings {
-    MethodSettings {
-        width: 0,
-        height: 0,
-        planes: Planes::Color,
-        ..*settings
-    }
+    settings.sized(0, 0).storing(Planes::Color)
 }
 
 /// True if settings are those of [`rbm_baseline`].
