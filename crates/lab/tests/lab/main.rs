@@ -2,19 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 #[cfg(feature = "report")]
-mod antialiasing;
-#[cfg(feature = "report")]
 mod benchmark;
-#[cfg(feature = "report")]
-mod crowds;
 #[cfg(feature = "shaderc")]
 mod floor;
 #[cfg(feature = "mesh")]
 mod mesh;
 #[cfg(feature = "mesh")]
-mod mesh_levels;
-#[cfg(feature = "mesh")]
 mod mesh_shading;
+#[cfg(feature = "report")]
+mod on_device;
 #[cfg(feature = "report")]
 mod planted_faults;
 #[cfg(feature = "mesh")]
