@@ -23,19 +23,12 @@ pub struct Case {
     pub cure: String,
     /// The values of the parameter, in order.
     pub values: Vec<f64>,
-    /// The scene at a value.
-    #[serde(skip, default = "no_scene")]
-    pub scene: fn(f64) -> Step,
     /// What the default is known to fail, each with its reason.
     #[serde(default)]
     pub known: Vec<Known>,
     /// Whether its scenes are the frames of a motion, between which no pixel may flicker.
     #[serde(default)]
     pub motion: bool,
-}
-
-fn no_scene() -> fn(f64) -> Step {
-    |_| Step::new(String::new())
 }
 
 /// One scene of a case.

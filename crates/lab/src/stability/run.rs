@@ -129,7 +129,7 @@ pub fn run(
                 return Ok(outcome);
             }
             done += 1;
-            let step = (case.scene)(value);
+            let step = super::cases::step(case, value)?;
             let file = format!("{}-{value}.toml", case.name);
             write_text(&plan.folder.join(file), &step.scene)?;
             let scene = step.read(plan.folder)?;

@@ -241,7 +241,8 @@ fn what_a_mesh_cannot_draw_is_refused() {
     let heights = asset("heights/brick.png");
     let heights = revmap_files::displacement_map(heights, SlopeFilter::default()).unwrap();
     let heights = Some(Arc::new(heights));
-    let changes: [(&str, &dyn Fn(&mut Object)); 7] = [
+    type Change<'a> = &'a dyn Fn(&mut Object);
+    let changes: [(&str, Change); 7] = [
         ("object.0.repeat", &|o| o.repeat = [2, 1, 1]),
         ("object.0.color_map", &|o| {
             o.texturing.color_map = Some(colors.clone());

@@ -79,7 +79,8 @@ fn planted_faults_fail() {
     with_ball(|truth, hit| {
         let middle = hit[hit.len() / 2];
         let spots = [0, 5, 10, 15, 20].map(|k| middle + k - 10);
-        let faults: [(Change, fn(&Judged) -> usize); 5] = [
+        type Count = fn(&Judged) -> usize;
+        let faults: [(Change, Count); 5] = [
             (MISSED, |j| j.wrong),
             (BEHIND, |j| j.wrong),
             (|f, k| f.distance[k] -= 0.01, |j| j.wrong),

@@ -22,16 +22,8 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
     struct Catalogue {
         case: Vec<Case>,
     }
-    let broken =
-        |why: &dyn std::fmt::Display| Error::new(ErrorKind::Other, format!("cases.toml: {why}"));
     let catalogue = toml::from_str(include_str!("../cases.toml"));
     let Catalogue { case: mut all } = catalogue.map_err(|error| broken(&error))?;
-    for case in &mut all {
-        let mut scenes = views::SCENES.iter().chain(solids::SCENES);
-        let scene = scenes.find(|s| s.0 == case.name);
-        let none = || broken(&format!("{} has no scene", case.name));
-        case.scene = scene.ok_or_else(none)?.1;
-    }
     let is_known = |name: &&String| all.iter().any(|case| case.name == **name);
     if let Some(name) = names.iter().find(|name| !is_known(name)) {
         let known: Vec<_> = all.iter().map(|case| case.name.as_str()).collect();
@@ -40,6 +32,18 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
     }
     all.retain(|case| names.is_empty() || names.contains(&case.name));
     Ok(all)
+}
+
+fn broken(why: &dyn std::fmt::Display) -> Error {
+    Error::new(ErrorKind::Other, format!("cases.toml: {why}"))
+}
+
+/// The scene of a case at a value of its parameter.
+pub(super) fn step(case: &Case, value: f64) -> Result<Step> {
+    let mut scenes = views::SCENES.iter().chain(solids::SCENES);
+    let scene = scenes.find(|s| s.0 == case.name);
+    let scene = scene.ok_or_else(|| broken(&format!("{} has no scene", case.name)))?;
+    Ok(scene.1(value))
 }
 
 /// Writes the pictures that cases name into `folder`.
