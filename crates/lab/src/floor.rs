@@ -1,10 +1,8 @@
 //! The floor: a frame of the default search in which nothing is searched. Each pixel returns its
-//! first possible point: where the hull's own triangle is, or where its ray enters the solid's
-//! bounding cylinder. Corners, tiles, lists of copies, depth, shading and store are those of the
-//! frame itself, so what a search takes is its time above the floor.
+//! first possible point: on the hull's triangle, or where its ray enters the bounding cylinder. All
+//! else is as in the frame itself, so what a search takes is its time above the floor.
 //!
-//! Its shaders are compiled with the feature `shaderc`: the renderer's own, with what stands in
-//! `shaders/floor/` in place of the search. The renderer holds nothing of them.
+//! Its shaders, compiled with the feature `shaderc`, are the renderer's but for `shaders/floor/`.
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;

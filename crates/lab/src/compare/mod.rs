@@ -21,8 +21,7 @@ pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 1
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareOptions {
     /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the
-    /// object's scale. Under a scale that differs along the axes take the smallest factor: the
-    /// strictest reading. Default: 1/512.
+    /// smallest factor of the object's scale. Default: 1/512.
     pub texel: f64,
     /// Pixels of the display per degree of the viewer's sight, for FLIP. Default:
     /// [`PIXELS_PER_DEGREE`], 67.02. `None`: no FLIP, which takes longer than all the rest.

@@ -24,9 +24,8 @@ pub struct PixelErrors {
     pub pixels: usize,
     /// Of these, pixels on the wrong side of a silhouette, or of one solid before another.
     pub moved: usize,
-    /// The smallest error that 99.9 % of the pixels do not exceed: of pixels on the right side the
-    /// error of the depth along the ray, over the size of a pixel there; of the others how far the
-    /// contour has moved.
+    /// The error that 99.9 % of the pixels do not exceed: of the depth along the ray over the size
+    /// of a pixel there, or how far the contour has moved.
     pub p999: f64,
     /// The largest of the others.
     pub contour_max: f64,

@@ -1,22 +1,15 @@
-//! A solid of revolution as triangles.
+//! A solid of revolution as triangles: the contour under its offset, thinned to rings and turned in
+//! equal steps. The mesh is as good as its number of quads allows:
 //!
-//! The contour under its offset ([`ContourSource`](revmap::surface::ContourSource), which the exact
-//! search uses too) is thinned to rings and turned in equal steps. The mesh is as good as its
-//! number of quads allows:
-//!
-//! * Chords are as long as one tolerance lets them be: the least tolerance that keeps within the
-//!   rings allowed. Errors are even along the meridian. No ring is spent where the profile is
-//!   straight, because a frustum is exact there.
-//! * A chord lies on one side of its arc. Vertices are moved outwards by half of the distance, so
-//!   that the surface lies as much before as behind the true one: around the axis by the factor
-//!   `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. This halves the largest error
-//!   of vertices on the surface, and the silhouette's.
-//! * Normals are those of the contour, not of the facets. Each chord has two, between which they
-//!   turn as evenly as possible. Neighbours with nearly equal normals share vertices, others are
-//!   creases. Only the part in the half-plane is stored: each pixel has its exact azimuth.
-//! * Vertices are 16 bytes, shared by all facets on their side of a crease. Indices run in bands of
-//!   [`BAND`] segments: a ring of a band is still in the vertex cache when the next one is drawn.
-//!   Vertices are in the order of their first use.
+//! * Chords are as long as the least tolerance that keeps within the rings allowed. Errors are even
+//!   along the meridian, and straight parts take no ring, because a frustum is exact there.
+//! * Vertices are moved outwards by half of a chord's distance from its arc: around the axis by the
+//!   factor `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. This halves the errors.
+//! * Normals are the contour's. Each chord has two, between which they turn as evenly as possible.
+//!   Neighbours with nearly equal normals share vertices, others are creases. Only the part in the
+//!   half-plane is stored: each pixel has its exact azimuth.
+//! * Indices run in bands of [`BAND`] segments: a ring of a band is still in the vertex cache when
+//!   the next one is drawn. Vertices are in the order of their first use.
 
 use super::meridian::{Strand, meridian};
 use bytemuck::{Pod, Zeroable};

@@ -23,9 +23,8 @@ pub struct Pair {
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
-    /// The same, each time first put over that of the RBM baseline of the same picture, stage and
-    /// run: what is left when one run had the slower machine. `None` where a run lacks that loop,
-    /// and for the loop itself.
+    /// The same, each time first put over the RBM baseline's of the same picture, stage and run.
+    /// `None` where a run lacks that loop, and for the loop itself.
     pub relative: Option<Interval>,
     /// The errors that have grown.
     pub worse: Vec<Change>,

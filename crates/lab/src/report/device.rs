@@ -45,7 +45,8 @@ impl TimedRenderer for Ready {
         let (mut gpu_ms, mut frame_ms) = (Some(0.0), 0.0);
         match &mut self.drawer {
             Drawer::Rays(renderer, count) => {
-                // One stage per submission: timestamps around both in one are wrong on some drivers.
+                // One stage per submission: timestamps around both in one are wrong on some
+                // drivers.
                 for _ in 0..*count {
                     let times = renderer.draw()?;
                     gpu_ms = gpu_ms.zip(times.gpu_ms).map(|(sum, ms)| sum + ms);

@@ -1,8 +1,5 @@
-//! How much of the picture a view's solids take: whole, or close up.
-//!
-//! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing,
-//! storing, ending) weighs much in its time. Close up the search weighs more; that is how games
-//! show solids, and how prototypes were measured. Summaries give both.
+//! How much of the picture a view's solids take: whole, or close up. Seen whole, a solid leaves
+//! most of the picture empty, and what a frame costs anyhow weighs much in its time.
 
 use super::view::{Framing, View};
 use glam::{DQuat, DVec3};

@@ -1,9 +1,6 @@
-//! The error of a map by itself: the surface of its bilinear distances, found on the CPU without any
-//! search of the shaders, against the truth.
-//!
-//! Along a ray the map's `F = D - w` is read at points close enough to see every change of sign
-//! that a pixel shows, and the first change is halved to the last digit. What a drawn picture errs
-//! beyond this is the search's share.
+//! The error of a map by itself: the surface of its bilinear distances, found on the CPU, against
+//! the truth. Along a ray the map's `F = D - w` is read closely, and the first change of sign is
+//! halved to the last digit. What a drawn picture errs beyond this is the search's share.
 
 use super::plan::Plan;
 use crate::compare::{CompareOptions, Comparison, compare};
@@ -212,9 +209,7 @@ mod tests {
         compare(&truth.unwrap(), &frame, &options).unwrap()
     }
 
-    /// On straight flanks bilinear distances are exact but near edges: an exact map errs by next to
-    /// nothing, a binary one by about a third of a texel, which is two thirds of one at twice the
-    /// size of texels.
+    /// On straight flanks an exact map errs by next to nothing, a binary one by a third of a texel.
     #[test]
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);

@@ -1,9 +1,9 @@
 //! Measuring a plan: accuracy once, time in passes and rounds.
 //!
-//! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that
-//! slows down slows all of them. All groups are gone through several times (*passes*), each time
-//! with everything built anew: what one placement in memory, or one bout of work beside ours, does
-//! to a time shows as spread between passes (see `stats`).
+//! Measurements of one picture are taken in turn, A B A B, so that a machine that slows down slows
+//! all of them. All groups are gone through several times (*passes*), each time with everything
+//! built anew: what one placement in memory does to a time shows as spread between passes (see
+//! `stats`).
 
 mod bench;
 

@@ -54,9 +54,8 @@ impl Album {
         })
     }
 
-    /// Takes what is worth showing of a picture: each view once as it should look, then each way of
-    /// drawing it at that size, from one stage (the stages' pictures are alike): look-ups and
-    /// errors.
+    /// Takes what is worth showing: each view once as it should look, then look-ups and errors of
+    /// each way of drawing it at that size, from one stage.
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let view = seen.case.view;

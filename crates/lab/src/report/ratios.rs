@@ -88,7 +88,8 @@ fn is_exact_default(row: &Row) -> bool {
     s.method == Method::DEFAULT && (s.tolerance, s.edges) == (Tolerance::EXACT, Edges::OneRay)
 }
 
-/// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no more.
+/// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no
+/// more.
 fn mesh_row<'a>(
     rows: impl Iterator<Item = &'a Row>,
     row: &Row,

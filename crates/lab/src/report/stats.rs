@@ -1,10 +1,8 @@
-//! The few statistics that benchmarks need: medians, intervals that are honest about few samples,
-//! geometric means, power laws.
+//! Medians, intervals that are honest about few samples, geometric means, power laws.
 //!
-//! Times on one machine drift and come in bouts: neighbouring samples are alike, so an interval
-//! from all of them would be too narrow. Samples are therefore taken in several *passes*, minutes
-//! apart and with everything built anew; the median of a pass is one observation, and intervals are
-//! Student's over these few observations (the method of batch means).
+//! Times on one machine drift and come in bouts: an interval from neighbouring samples would be too
+//! narrow. Samples are taken in several *passes* with everything built anew; the median of a pass
+//! is one observation, and intervals are Student's over these (the method of batch means).
 
 /// A value with the interval that covers it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -84,8 +84,7 @@ impl View {
     }
 
     /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of
-    /// depth errors. It does not depend on the rows of the map that is drawn, so that errors of
-    /// different maps compare.
+    /// depth errors, whatever rows the drawn map has.
     pub fn texel(&self) -> f64 {
         let placements = self.scene.objects.iter().flat_map(|o| o.placements());
         let least = placements.fold(f64::INFINITY, |s, p| s.min(p.scale.min_element()));

@@ -2,25 +2,21 @@
 //!
 //! A pixel is **wrong** when no solid within the tolerance of the true one could have given it: its
 //! ray goes deeper into the solid than the tolerance before the drawn hit (or without one), or the
-//! drawn hit is farther from the surface than the tolerance. At a silhouette both answers are right
-//! as long as the ray comes that near to the surface.
+//! drawn hit is farther from the surface than the tolerance.
 //!
 //! The tolerance is derived, in object units:
 //!
 //! - a tenth of a texel of 512 rows: what the maps and the pieces promise;
-//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays
-//!   are 32-bit numbers;
+//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance;
 //! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's
-//!   direction, of their product, and of the reference's own number. Frames store distances in 32
-//!   bits;
-//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes with
-//!   the place.
+//!   direction, of their product, and of the reference's own number;
+//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes.
 //!
-//! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is
-//! outside of what the 3 x 3 pixels about it have in the reference, by more than [`COLOR`]. A
-//! shadow's edge may lie a pixel off, and a texture may be filtered. To those belong the colours
-//! that the reference has for rays moved aside by the tolerance, and for ways to the lights that
-//! begin that far off the surface: an edge rounded by less than a texel shows any of its normals.
+//! A colour is a fault, where a pixel is not wrong, when one of its channels is outside of what the
+//! 3 x 3 pixels about it have in the reference by more than [`COLOR`]: a shadow's edge may lie a
+//! pixel off. To those belong the reference's colours for rays moved aside by the tolerance, and
+//! for ways to the lights that begin that far off the surface: a rounded edge shows any of its
+//! normals.
 
 use super::case::Step;
 use crate::compare::{CompareOptions, Heat, compare, heat_map};
@@ -79,9 +75,6 @@ pub struct Faults {
 impl Faults {
     /// Pixels that flicker from this frame to the `next`: faulty in one of them alone, or in both
     /// by errors of distance that differ by more than the tolerances of the two.
-    ///
-    /// Pixels that are right in both frames follow the reference to within the tolerance, so their
-    /// changes are the reference's.
     pub fn flicker(&self, next: &Self) -> usize {
         let bound = self.tolerance + next.tolerance;
         let pairs = self.pixels.iter().zip(&next.pixels);
@@ -139,11 +132,9 @@ impl std::fmt::Display for Judged {
 pub struct Truth<'a> {
     /// The reference's frame.
     pub frame: Frame,
-    /// Faults that a frame may have and still pass: 1 in 10,000 pixels, and at least 2.
-    ///
-    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is
-    /// decided by one rounding; both happen on lines. A picture of `n` pixels has of the order of
-    /// `sqrt(n)` pixels on a line, and one of those in about a hundred is decided that way.
+    /// Faults that a frame may have and still pass: 1 in 10,000 pixels, and at least 2. On lines
+    /// where edges meet or rays run along a face, about one pixel in a hundred is decided by one
+    /// rounding, and of `n` pixels of the order of `sqrt(n)` lie on a line.
     pub limit: usize,
     reference: Reference,
     painter: Colors<'a>,
@@ -294,9 +285,7 @@ impl<'a> Truth<'a> {
         if !hit && !drawn || truth == z {
             return false;
         }
-        // The drawn point is that near to a true one. Where cells or boxes cut a solid, the
-        // clearance alone does not tell it: on the other side of the cut it is that of another
-        // solid.
+        // Where cells or boxes cut a solid, the clearance does not tell how near the true point is.
         if hit && drawn && (z - truth).abs() <= 0.1 * self.texel {
             return false;
         }

@@ -44,8 +44,7 @@ fn picture(kind: u32) -> Frame {
 }
 
 /// What the authors' own program (nv-flip 0.1.2, in single precision) finds: pictures, pixels per
-/// degree, mean, and the pixels (0, 0), (30, 20) and (50, 40). Its single precision shows from the
-/// fifth digit on.
+/// degree, mean, and the pixels (0, 0), (30, 20) and (50, 40).
 #[allow(clippy::type_complexity)]
 const AUTHORS: [(u32, u32, f64, f64, [f64; 3]); 14] = [
     (0, 1, 67.0206, 0.116933, [0.000000, 0.964261, 0.000000]),

@@ -1,11 +1,8 @@
 //! The Pareto front: what no other beats in both time and error.
 
-/// The indices of the points `(time, error)` that no other point beats: none is at least as good in
-/// both and better in one. In order of time; of equal points the first. Points that are no numbers
-/// are on no front.
-///
-/// A slower point must bring the error below `gain` times that of the last point on the front: with
-/// a gain below 1, noise in the last digit puts nothing on it.
+/// The indices of the points `(time, error)` that no other beats, in order of time; of equal points
+/// the first. A slower point must bring the error below `gain` times that of the last one: with a
+/// gain below 1, noise in the last digit puts nothing on the front.
 pub fn front(points: &[(f64, f64)], gain: f64) -> Vec<usize> {
     let known = |i: &usize| !points[*i].0.is_nan() && !points[*i].1.is_nan();
     let mut order: Vec<usize> = (0..points.len()).filter(known).collect();

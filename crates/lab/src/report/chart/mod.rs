@@ -1,8 +1,6 @@
-//! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
-//! papers, and as PNG for places that show neither.
-//!
-//! Colours are a published palette for every kind of colour vision (`style`). Each series has a
-//! marker of its own as well, so that a print in grey still reads.
+//! Charts as plain figures of polygons, lines and words, written as SVG, PDF and PNG. Colours serve
+//! every kind of colour vision, and each series has a marker of its own: a print in grey still
+//! reads.
 
 pub(crate) mod axis;
 pub(crate) mod dots;

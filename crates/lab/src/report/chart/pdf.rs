@@ -1,6 +1,5 @@
-//! Figures as PDF, for papers: as wide as a column, curves as curves, words as text of the charts'
-//! own font, so that a reader can search and copy them. The title is left out; a paper's caption
-//! takes its place.
+//! Figures as PDF, for papers: as wide as a column, without the title, words as text of the charts'
+//! own font, so that a reader can search and copy them.
 
 use super::letters::{FONT, face, width};
 use super::style::Dash;
