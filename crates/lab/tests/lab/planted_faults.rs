@@ -45,14 +45,8 @@ fn on_front(rows: &[Row]) -> Vec<Method> {
 #[test]
 fn without_a_fault_all_is_as_it_was_planted() {
     let outcome = measured(Fault::None);
-    assert_eq!(
-        (
-            outcome.rows.len(),
-            outcome.left_out.len(),
-            outcome.interrupted
-        ),
-        (6, 0, false)
-    );
+    let counts = (outcome.rows.len(), outcome.left_out.len());
+    assert_eq!((counts, outcome.interrupted), ((6, 0), false));
     let live = live(&outcome.rows);
     assert!(
         (live.time.value - 0.5).abs() < 0.03 && live.pairs.len() == 2,

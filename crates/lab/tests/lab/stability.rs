@@ -34,11 +34,8 @@ fn the_default_fails_what_is_known_and_nothing_else() {
     assert!(failures.is_empty(), "{failures:#?}");
     for trial in &outcome.trials {
         let case = &all[trial.case].name;
-        assert_ne!(
-            trial.verdict,
-            Verdict::Healed,
-            "{case}: take it off the list"
-        );
+        let healed = trial.verdict == Verdict::Healed;
+        assert!(!healed, "{case}: take it off the list");
     }
     // A catalogue that the RBM baseline passes is too easy.
     let hard = ["thin-discs", "grazing-face", "budget"].map(str::to_owned);
@@ -93,11 +90,8 @@ fn planted_faults_fail() {
         };
         for (n, (change, count)) in faults.into_iter().enumerate() {
             let found = judged(change);
-            assert_eq!(
-                (count(&found), found.passes(truth.limit)),
-                (5, false),
-                "{n}"
-            );
+            let passes = found.passes(truth.limit);
+            assert_eq!((count(&found), passes), (5, false), "{n}");
         }
         let same = judged(|_, _| {});
         assert_eq!((same.faults(), same.passes(truth.limit)), (0, true));

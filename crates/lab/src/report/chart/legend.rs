@@ -40,7 +40,7 @@ pub(super) fn dot(style: Style, place: Place) -> Mark {
         true => (style.color, (PAPER, 0.8)),
         false => (PAPER, (style.color, 1.8)),
     };
-    Mark::Shape(style.corners(place, MARKER), fill, Some(stroke))
+    Mark::Shape(style.corners(place, MARKER), fill, stroke)
 }
 
 /// The entry of a legend that explains the strokes.

@@ -45,7 +45,7 @@ pub(crate) type Place = (f64, f64);
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mark {
     /// A closed shape: its corners, fill, and the colour and width of its outline.
-    Shape(Vec<Place>, &'static str, Option<(&'static str, f64)>),
+    Shape(Vec<Place>, &'static str, (&'static str, f64)),
     /// An open line: its points, colour, width, and how it is broken.
     Line(Vec<Place>, &'static str, f64, Dash),
     /// A word.

@@ -104,15 +104,9 @@ fn draw(content: &mut Content, mark: &Mark) {
         Mark::Shape(points, fill, stroke) => {
             let [r, g, b] = rgb(fill);
             content.set_fill_rgb(r, g, b);
-            if let Some((color, width)) = stroke {
-                pen(content, color, *width, Dash::SOLID);
-            }
+            pen(content, stroke.0, stroke.1, Dash::SOLID);
             path(content, points);
-            content.close_path();
-            match stroke {
-                Some(_) => content.fill_nonzero_and_stroke(),
-                None => content.fill_nonzero(),
-            };
+            content.close_path().fill_nonzero_and_stroke();
         }
         Mark::Line(points, color, width, dash) => {
             pen(content, color, *width, *dash);
