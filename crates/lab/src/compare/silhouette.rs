@@ -17,11 +17,8 @@ pub fn silhouette_hausdorff(a: &Frame, b: &Frame) -> f64 {
         _ => return f64::INFINITY,
     }
     let nearest = |from: &[bool], to: &[bool]| ways(from, to, a.width as usize);
-    let all = [nearest(&edge_a, &edge_b), nearest(&edge_b, &edge_a)];
-    all.concat()
-        .into_iter()
-        .map(|(_, way)| way)
-        .fold(0.0, f64::max)
+    let all = [nearest(&edge_a, &edge_b), nearest(&edge_b, &edge_a)].concat();
+    all.iter().fold(0.0, |most, (_, way)| way.max(most))
 }
 
 /// Whether each pixel belongs to the silhouette.

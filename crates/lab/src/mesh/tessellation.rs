@@ -142,10 +142,8 @@ impl Builder {
             });
         }
         // A smooth closed strand ends on its first vertices; `in_order_of_use` drops the others.
-        let smooth = strand
-            .rings
-            .first()
-            .is_some_and(|r| r.normals[0] == r.normals[1]);
+        let first = strand.rings.first();
+        let smooth = first.is_some_and(|r| r.normals[0] == r.normals[1]);
         if let (true, [first, .., last]) = (strand.closed && smooth, pairs.as_mut_slice()) {
             last[1] = first[0];
         }

@@ -17,10 +17,8 @@ use std::sync::Arc;
 
 fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
-    ContourSource::new(&profile.outline)
-        .unwrap()
-        .contour(offset)
-        .unwrap()
+    let source = ContourSource::new(&profile.outline).unwrap();
+    source.contour(offset).unwrap()
 }
 
 fn ring(n: u32) -> Vec<[f64; 2]> {

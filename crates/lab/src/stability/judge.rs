@@ -207,10 +207,8 @@ impl<'a> Truth<'a> {
     /// Judges a frame, with the faults of each pixel; `other` is the other stage's.
     pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
         let errors = compare(&self.frame, frame, &self.options())?;
-        let wrong: Vec<bool> = (0..frame.pixels())
-            .into_par_iter()
-            .map(|k| self.is_wrong(frame, k))
-            .collect();
+        let pixels = (0..frame.pixels()).into_par_iter();
+        let wrong: Vec<bool> = pixels.map(|k| self.is_wrong(frame, k)).collect();
         let unlike = |truth: &Frame| {
             (0..frame.pixels())
                 .filter(|&k| !wrong[k] && is_strange(truth, frame, k, colors_about(truth, k)))
@@ -317,16 +315,10 @@ impl<'a> Truth<'a> {
 }
 
 fn not_finite(frame: &Frame) -> usize {
-    let bad = |k: usize| {
-        let values = frame.pixel(k);
-        CHANNELS
-            .iter()
-            .zip(values)
-            .any(|(name, v)| !(v.is_finite() || *name == "Z" && v == f32::INFINITY))
-    };
-    (0..frame.pixels())
-        .into_par_iter()
-        .filter(|&k| bad(k))
+    let bad = |(name, v): (&&str, f32)| !(v.is_finite() || *name == "Z" && v == f32::INFINITY);
+    let pixels = (0..frame.pixels()).into_par_iter();
+    pixels
+        .filter(|&k| CHANNELS.iter().zip(frame.pixel(k)).any(bad))
         .count()
 }
 

@@ -90,10 +90,8 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     let is_failure = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
     let line = |t: &Trial| {
         let (name, value) = (&cases[t.case].name, number(t.value, 6));
-        let what = t
-            .judged
-            .as_ref()
-            .map_or_else(Clone::clone, Judged::to_string);
+        let judged = t.judged.as_ref();
+        let what = judged.map_or_else(Clone::clone, Judged::to_string);
         format!("{name} at {value}, {}: {what}", t.stage.name())
     };
     outcome.trials.iter().filter(is_failure).map(line).collect()

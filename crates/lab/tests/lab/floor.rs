@@ -13,11 +13,8 @@ use revmap_lab::renderer::MethodDevice;
 
 fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Frame {
     let device = Device::open_validated(None).unwrap();
-    let settings = MethodSettings::default()
-        .by(method)
-        .in_stage(stage)
-        .sized(240, 180)
-        .storing(planes);
+    let settings = MethodSettings::default().by(method).in_stage(stage);
+    let settings = settings.sized(240, 180).storing(planes);
     let device = MethodDevice::new(device).unwrap();
     device.draw(scene, &settings).unwrap()
 }

@@ -36,10 +36,8 @@ fn on_front(rows: &[Row]) -> Vec<Method> {
         (r.time().map_or(f64::NAN, |t| t.value), error)
     };
     let points: Vec<_> = first.iter().map(place).collect();
-    front(&points, 1.0)
-        .into_iter()
-        .map(|i| first[i].settings.method)
-        .collect()
+    let best = front(&points, 1.0).into_iter();
+    best.map(|i| first[i].settings.method).collect()
 }
 
 #[test]
