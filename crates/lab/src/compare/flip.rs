@@ -118,11 +118,8 @@ impl Colors {
         let DVec3 { x, y, z } = (self.xyz_from_rgb * rgb / self.white).map(f);
         let lightness = 116.0 * y - 16.0;
         let chroma = 0.01 * lightness;
-        DVec3::new(
-            lightness,
-            chroma * 500.0 * (x - y),
-            chroma * 200.0 * (y - z),
-        )
+        let [a, b] = [500.0 * (x - y), 200.0 * (y - z)];
+        DVec3::new(lightness, chroma * a, chroma * b)
     }
 
     /// The largest colour difference of the gamut, green against blue.

@@ -70,12 +70,7 @@ impl MeshLayer {
             size,
             objects: Vec::new(),
             staged: Vec::new(),
-            frame: device.buffer(
-                "mesh frame",
-                size_of::<FrameBlock>() as u64,
-                vk::BufferUsageFlags::UNIFORM_BUFFER,
-                MemoryLocation::CpuToGpu,
-            )?,
+            frame: written::<FrameBlock>(device, 1, vk::BufferUsageFlags::UNIFORM_BUFFER)?,
             instances: instance_buffer(device, 1)?,
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
@@ -353,12 +348,13 @@ fn levels(settings: &MethodSettings) -> Result<Vec<(u32, u32, f64)>> {
 }
 
 fn instance_buffer(device: &Device, count: usize) -> Result<Buffer> {
-    device.buffer(
-        "mesh instances",
-        (count * size_of::<InstanceBlock>()) as u64,
-        vk::BufferUsageFlags::STORAGE_BUFFER,
-        MemoryLocation::CpuToGpu,
-    )
+    written::<InstanceBlock>(device, count, vk::BufferUsageFlags::STORAGE_BUFFER)
+}
+
+/// A buffer of so many values that the host writes.
+fn written<T>(device: &Device, count: usize, usage: vk::BufferUsageFlags) -> Result<Buffer> {
+    let bytes = (count * size_of::<T>()) as u64;
+    device.buffer("mesh values", bytes, usage, MemoryLocation::CpuToGpu)
 }
 
 /// Writes to the beginning of a buffer in host memory.

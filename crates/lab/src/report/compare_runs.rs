@@ -169,13 +169,10 @@ pub fn as_text(against: &Against) -> String {
         changed.map(line).collect()
     };
     let [old, new] = &against.devices;
-    format!(
-        "old: {old}\nnew: {new}\n\n{}{}{}{}",
-        table.aligned(),
-        counts(against),
-        changes("less exact", |p| &p.worse),
-        changes("more exact", |p| &p.better)
-    )
+    let (table, counts) = (table.aligned(), counts(against));
+    let worse = changes("less exact", |p| &p.worse);
+    let better = changes("more exact", |p| &p.better);
+    format!("old: {old}\nnew: {new}\n\n{table}{counts}{worse}{better}")
 }
 
 /// How many became slower and faster, and whether the machine did.

@@ -145,11 +145,8 @@ fn crowd() -> Scene {
     let mut scene = scene_of(shapes::vase(), eye(20.0, 3.0));
     let place = |k: usize, z: f64| {
         let (x, y) = ((k % 4) as f64 - 1.5, (k / 4) as f64 - 1.5);
-        placement(
-            [0.8 * x, 0.8 * y, z],
-            [0.1 * x, 0.2 * y, 0.3],
-            [0.7, 0.7, 0.9],
-        )
+        let turn = [0.1 * x, 0.2 * y, 0.3];
+        placement([0.8 * x, 0.8 * y, z], turn, [0.7, 0.7, 0.9])
     };
     scene.objects[0].instances = (0..16).map(|k| place(k, 0.0)).collect();
     let mut glass = Object::new("glass", Arc::new(shapes::glass()));

@@ -23,11 +23,8 @@ pub(in super::super) mod generated {
 pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
     let packed = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
     let start = generated::MODULE_BYTES.iter().take(n).sum();
-    unpacked(
-        packed
-            .get(start..)?
-            .get(..*generated::MODULE_BYTES.get(n)?)?,
-    )
+    let bytes = *generated::MODULE_BYTES.get(n)?;
+    unpacked(packed.get(start..)?.get(..bytes)?)
 }
 
 /// What a pipeline is made for.

@@ -55,13 +55,9 @@ impl Cell {
             [] => "–".to_owned(),
             some => number(mean(some), 2),
         };
-        format!(
-            "**{}** ({} to {}); {depth}; {}",
-            number(mean(&self.times), 2),
-            number(low, 2),
-            number(high, 2),
-            percent(self.wrong / self.pixels.max(1.0))
-        )
+        let [time, low, high] = [mean(&self.times), low, high].map(|v| number(v, 2));
+        let wrong = percent(self.wrong / self.pixels.max(1.0));
+        format!("**{time}** ({low} to {high}); {depth}; {wrong}")
     }
 }
 

@@ -275,12 +275,8 @@ impl Chart {
         let drawn = |row: &&Row| {
             let (source, count) = (row.settings.map_source?, row.settings.map_rows?);
             let y = (column.cell)(context, row).value()?;
-            Some(item(
-                &format!("{}, drawn", source.name),
-                of_source(source),
-                count,
-                y,
-            ))
+            let name = format!("{}, drawn", source.name);
+            Some(item(&name, of_source(source), count, y))
         };
         let own = rows.iter().filter(|r| r.settings.method == method);
         let own = own.filter(|r| !is_rbm_baseline(&r.settings));

@@ -108,11 +108,8 @@ pub(super) const SCENES: &[Scene] = &[
     }),
     ("bevel", |slope| {
         let depth = 0.2 / slope.max(1.0);
-        spindle(
-            30.0,
-            2.2,
-            &format!("bevel = {slope:?}\nchamfer = {depth:?}"),
-        )
+        let keys = format!("bevel = {slope:?}\nchamfer = {depth:?}");
+        spindle(30.0, 2.2, &keys)
     }),
     ("extension", |by| {
         spindle(20.0, 2.6, &format!("extend = {by:?}"))

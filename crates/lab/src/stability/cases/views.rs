@@ -125,11 +125,8 @@ pub(super) const SCENES: &[Scene] = &[
         Step::seen(eye(25.0, 2.0), MIDDLE).solid(&cylinder(r, 0.0, 0.8), keys)
     }),
     ("many-cells", |n| {
-        spindle(
-            35.0,
-            1.9,
-            &format!("repeat = {:?}", [n as u32, n as u32, 2]),
-        )
+        let keys = format!("repeat = {:?}", [n as u32, n as u32, 2]);
+        spindle(35.0, 1.9, &keys)
     }),
     ("axis-aside", |x| {
         spindle(25.0, 1.9, &format!("axis = {:?}", [x, 0.4]))
