@@ -1,6 +1,7 @@
 //! Random scenes, held to the reference, and reduced to the smallest that still fail.
 
 use super::case::Step;
+use super::cases::on_half_turn;
 use super::judge::Truth;
 use super::run::both_stages;
 use crate::report::folder::write_text;
@@ -99,16 +100,7 @@ impl Random {
         match (4.0 * self.next()) as u32 {
             // Half a star, both ends on the axis.
             0 => (0..=count)
-                .map(|k| {
-                    let angle = PI * (k as f64 / last - 0.5);
-                    let radius = self.within(0.15, 0.48);
-                    let r = if k == 0 || k == count {
-                        0.0
-                    } else {
-                        radius * angle.cos()
-                    };
-                    [r, 0.5 + radius * angle.sin()]
-                })
+                .map(|k| on_half_turn(k, count, self.within(0.15, 0.48)))
                 .collect(),
             // A whole star off the axis: a ring.
             1 => (0..count)

@@ -93,19 +93,17 @@ pub(super) const GLASS: [[f64; 2]; 12] = [
     [0.0, 0.44],
 ];
 
+/// Point `k` of `count` and one more on a half turn about the middle of the box, `radius` away.
+pub(super) fn on_half_turn(k: usize, count: usize, radius: f64) -> [f64; 2] {
+    let angle = std::f64::consts::PI * (k as f64 / count as f64 - 0.5);
+    let end = k == 0 || k == count;
+    let r = if end { 0.0 } else { radius * angle.cos() };
+    [r, 0.5 + radius * angle.sin()]
+}
+
 /// A ball of 96 segments about the middle of the box.
 pub(super) fn ball(radius: f64) -> Vec<[f64; 2]> {
-    (0..=96)
-        .map(|k| {
-            let angle = std::f64::consts::PI * (f64::from(k) / 96.0 - 0.5);
-            let r = if k == 0 || k == 96 {
-                0.0
-            } else {
-                radius * angle.cos()
-            };
-            [r, 0.5 + radius * angle.sin()]
-        })
-        .collect()
+    (0..=96).map(|k| on_half_turn(k, 96, radius)).collect()
 }
 
 /// A cylinder on its box's floor.
