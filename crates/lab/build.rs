@@ -1,10 +1,6 @@
-//! Turns the shaders of the mesh baseline into the SPIR-V that Rust embeds. With the feature
-//! `shaderc` the GLSL is compiled here; without it the SPIR-V kept in `shaders/spirv/` is taken.
-//! `REVMAP_KEEP_SPIRV=1 cargo build` renews what is kept.
-//!
-//! Compiles the floor's shaders where the feature `shaderc` is on: those of the renderer, with what
-//! `shaders/floor/` has in place of theirs. None is kept in the repository: they are for measuring
-//! alone.
+//! The SPIR-V of the mesh baseline, and with the feature `shaderc` that of the floor. Without it
+//! the mesh's is taken from `shaders/spirv/`, which `REVMAP_KEEP_SPIRV=1 cargo build` renews. The
+//! floor's is the renderer's with what `shaders/floor/` has in place, and is not kept.
 
 use shaderc_link::modules::{Fallible, Module, Modules, files_in};
 use std::fmt::Write as _;

@@ -130,7 +130,7 @@ impl Animate {
         }
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
-        renderer.prewarm()?;
+        renderer.offscreen.prewarm()?;
         let mut rows = Vec::new();
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {

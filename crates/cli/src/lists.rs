@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 
 /// Names of parts of the suite.
 const EXTENTS: [(&str, &Extent); 3] = [
-    ("one", &Extent::One),
-    ("three", &Extent::Three),
-    ("all", &Extent::All),
+    ("one", &Extent::First(1)),
+    ("three", &Extent::First(3)),
+    ("all", &Extent::ALL),
 ];
 
 /// Views and ways of drawing; lists are separated by commas

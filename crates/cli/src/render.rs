@@ -13,7 +13,7 @@ use revmap::scene::{Object, Scene};
 use revmap::settings::{Planes, Tolerance, name_of};
 use revmap_files::SceneFile;
 use revmap_lab::method::{Edges, Method, MethodSettings};
-use revmap_lab::renderer::{MethodDevice, MethodDrawn};
+use revmap_lab::renderer::MethodDevice;
 use revmap_reference as reference;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -110,21 +110,11 @@ impl Render {
         let (device, kept) = self.drawing.open()?;
         let report = device.report();
         let progress = Progress::start(&format!("drawing on {}", report.name), self.drawing.quiet);
-        let drawn = self
-            .drawn(&device, scene, settings, &progress)
-            .map_err(|e| on(&report.name, e))?;
+        let drawn = self.drawn(&device, scene, settings, &progress);
         drop(progress);
+        let drawn = drawn.map_err(|e| on(&report.name, e))?;
         kept.save(&device);
-        Ok(Picture {
-            frame: drawn.frame,
-            device: Some(report.clone()),
-            times: drawn.times,
-            map_bytes: drawn.map_bytes,
-            notes: drawn.notes,
-            costs: drawn.costs,
-            device_bytes: drawn.device_bytes,
-            warnings: Vec::new(),
-        })
+        Ok(drawn)
     }
 
     /// Draws the picture, after one whose time includes the driver's compiler. Times are for all
@@ -135,7 +125,7 @@ impl Render {
         scene: &Scene,
         settings: &MethodSettings,
         progress: &Progress,
-    ) -> Result<MethodDrawn> {
+    ) -> Result<Picture> {
         let method_device = MethodDevice::new(device.clone())?;
         let mut renderer = method_device.renderer(scene, settings)?;
         renderer.draw()?;
@@ -146,7 +136,7 @@ impl Render {
             progress.report(times.len(), 1 + self.samples.count as usize);
             renderer.read()
         })?;
-        let costs = renderer.object_costs();
+        let costs = renderer.offscreen.object_costs();
         let device_bytes = renderer.device_bytes();
         if let Some(file) = &self.levels {
             // Colours encode levels and are not mixed.
@@ -160,17 +150,19 @@ impl Render {
             revmap_files::write_png(&renderer.read()?, file)?;
         }
         device.check()?;
-        Ok(MethodDrawn {
+        Ok(Picture {
             frame,
+            device: Some(device.report().clone()),
             times: Times {
                 prepare_ms: times.iter().map(|t| t.prepare_ms).sum(),
                 gpu_ms: times.iter().map(|t| t.gpu_ms).sum(),
                 frame_ms: times.iter().map(|t| t.frame_ms).sum(),
             },
             map_bytes: renderer.map_bytes(),
-            notes: renderer.notes().to_vec(),
+            notes: renderer.offscreen.notes().to_vec(),
             costs,
             device_bytes,
+            warnings: Vec::new(),
         })
     }
 

@@ -2,17 +2,16 @@
 //!
 //! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
 //! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
-//! the RBM baseline. `--crowd` and `--distant` draw copies, at the default tolerance, and time what a camera that moves asks of the CPU too.
+//! the RBM baseline. `--crowd` and `--distant` draw copies at the default tolerance; `revmap bench --crowds` tells what a camera that moves asks of the CPU.
 //! `--count N` draws N frames by the last method and prints nothing, for `perf stat`. Linux alone: it reads `/proc/self/task`.
 
 use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::renderer::{MethodDevice, MethodRenderer};
+use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::flight;
 use revmap_lab::report::plan::suite::{Extent, views};
 use revmap_lab::report::plan::{army, distant, plain, rbm_baseline};
-use revmap_lab::report::view::View;
 use std::time::Instant;
 
 const ROUNDS: usize = 8;
@@ -45,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let device = MethodDevice::new(device)?;
     let mut sums = vec![0.0; methods.len()];
     let mut views = if crowds.is_empty() {
-        views(&Extent::All, &[25.0])?
+        views(&Extent::ALL, &[25.0])?
     } else {
         crowds
     };
@@ -59,11 +58,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let settings = if view.solids() > 1 {
             flight::settings(stage)
         } else {
-            MethodSettings {
-                stage,
-                planes: Planes::Color,
-                ..MethodSettings::default()
-            }
+            let settings = MethodSettings::default().in_stage(stage);
+            settings.storing(Planes::Color)
         };
         let mut ways = vec![rbm_baseline(&view, &settings)];
         ways.extend(methods.iter().map(|&method| MethodSettings {
@@ -115,12 +111,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             sums[k] += (ms / papers).ln() / count;
         }
         println!();
-        if view.solids() > 1 {
-            println!(
-                "   a new view asks the CPU: {}",
-                updates(&mut drawn[1].0, &view)?
-            );
-        }
     }
     for (method, sum) in methods.iter().zip(&sums) {
         println!(
@@ -129,20 +119,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     Ok(())
-}
-
-/// Wall clock of taking over scenes that differ by the camera alone.
-fn updates(renderer: &mut MethodRenderer, view: &View) -> revmap::Result<String> {
-    let mut scene = view.scene.clone();
-    let mut all = Vec::new();
-    for n in 0..12 {
-        scene.camera.eye.z += 1e-3 * f64::from(n);
-        let start = Instant::now();
-        renderer.update(&scene)?;
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        all.push(ms + renderer.draw()?.prepare_ms);
-    }
-    Ok(format!("{:.2} ms (median)", median(&mut all)))
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -1,10 +1,8 @@
 //! The floor: a frame of the default search in which nothing is searched. Each pixel returns its
-//! first possible point: where the hull's own triangle is, or where its ray enters the solid's
-//! bounding cylinder. Corners, tiles, lists of copies, depth, shading and store are those of the
-//! frame itself, so what a search takes is its time above the floor.
+//! first possible point: on the hull's triangle, or where its ray enters the bounding cylinder. All
+//! else is as in the frame itself, so what a search takes is its time above the floor.
 //!
-//! Its shaders are compiled with the feature `shaderc`: the renderer's own, with what stands in
-//! `shaders/floor/` in place of the search. The renderer holds nothing of them.
+//! Its shaders, compiled with the feature `shaderc`, are the renderer's but for `shaders/floor/`.
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
@@ -13,7 +11,6 @@ use revmap::scene::{Scene, Shadow};
 include!(concat!(env!("OUT_DIR"), "/floor.rs"));
 
 /// Whether the program was built with it.
-#[must_use]
 pub fn is_available() -> bool {
     !MODULES.is_empty()
 }
@@ -26,8 +23,7 @@ pub fn device(device: &Device) -> Result<Device> {
     if !is_available() {
         return refused("this program was built without the feature `shaderc`, which compiles it");
     }
-    // SAFETY: the shaders are built on the renderer's own includes, so their interface is that of
-    // the shaders that they stand for.
+    // SAFETY: the shaders have the renderer's own includes, so their interface is the same.
     #[allow(unsafe_code)]
     unsafe {
         device.with_shaders(Box::new(words))

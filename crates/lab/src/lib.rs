@@ -19,6 +19,7 @@ pub mod map_accuracy;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 pub mod method;
+mod mosaic;
 #[cfg(feature = "mesh")]
 pub mod renderer;
 #[cfg(feature = "report")]

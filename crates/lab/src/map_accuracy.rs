@@ -46,11 +46,7 @@ impl Default for Disc {
 }
 
 impl Disc {
-    /// The disc as a polygon of `corners` corners in a box of radius 1. The polygon's area outside
-    /// the disc equals the disc's area outside the polygon.
-    ///
-    /// # Errors
-    /// Discs within the half-plane never fail.
+    /// The disc as a polygon of `corners` corners and of the same area, in a box of radius 1.
     pub fn polygon(&self, corners: u32) -> Result<Profile> {
         let step = std::f64::consts::TAU / f64::from(corners);
         let radius = self.radius * (step / step.sin()).sqrt();
@@ -61,15 +57,11 @@ impl Disc {
     }
 
     /// Signed distance of a point, object units.
-    #[must_use]
     pub fn distance(&self, p: DVec2) -> f64 {
         p.distance(self.center) - self.radius
     }
 
     /// Bakes the disc from a source and measures the map's errors.
-    ///
-    /// # Errors
-    /// The errors of [`ShapeMap::bake`].
     pub fn errors(&self, source: MapSource, rows: u32) -> Result<MapErrors> {
         let map = ShapeMap::bake(&self.polygon(1 << 16)?, &BakeOptions::new(source, rows))?;
         Ok(self.measure(&map))
@@ -77,7 +69,6 @@ impl Disc {
 
     /// Errors of a map of this disc. A binary map is measured outside only: the papers store no
     /// distances inside.
-    #[must_use]
     pub fn measure(&self, map: &ShapeMap) -> MapErrors {
         let side = f64::from(map.rows);
         let mut distance = Vec::new();
@@ -92,8 +83,7 @@ impl Disc {
         let (mut cell, mut channels) = (Vec::new(), Vec::new());
         const AROUND: u32 = 20_000;
         for k in 0..AROUND {
-            // The points form a spiral that covers every direction and every depth within a texel
-            // of the surface.
+            // A spiral covers every direction and every depth within a texel of the surface.
             let along = DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND));
             let depth = (f64::from(k) * 0.618_033_988_749_895).fract() * 2.0 - 1.0;
             let p = self.center + along * (self.radius + depth / side);

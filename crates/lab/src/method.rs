@@ -18,20 +18,17 @@ pub enum Method {
         /// Most steps along the meridian; fewer where fewer follow it exactly.
         rings: u32,
     },
-    /// Triangles, each copy of a solid by one of [`Method::MESH_LEVELS`], and copies beside the
-    /// picture left out.
+    /// Triangles, each copy by one of [`Method::MESH_LEVELS`], without copies beside the picture.
     MeshLevels,
     /// The default search's frame without the search: each pixel returns its first possible point.
     Floor,
 }
 
 impl Method {
-    /// The meshes of [`Method::MeshLevels`]: segments, rings, and the height on the screen in
-    /// pixels from which on a copy is drawn by it.
+    /// The meshes of [`Method::MeshLevels`]: segments, rings, least height on the screen in pixels.
     pub const MESH_LEVELS: [(u32, u32, f64); 3] = [(16, 32, 0.0), (32, 64, 40.0), (64, 128, 160.0)];
 
-    /// Every search, in the order in which reports list them. Meshes are as many as there are
-    /// numbers of segments and rings, and not among them.
+    /// Every search, in the order in which reports list them. Meshes are not among them.
     pub const ALL: [Self; revmap_searches::ALL.len()] = {
         let mut all = [Self::DEFAULT; revmap_searches::ALL.len()];
         let mut i = 0;
@@ -65,7 +62,6 @@ impl Method {
     }
 
     /// The search; `None` of a mesh and of the floor.
-    #[must_use]
     pub const fn solver(self) -> Option<Solver> {
         match self {
             Self::Search(solver) => Some(solver),
@@ -74,14 +70,11 @@ impl Method {
     }
 
     /// Whether it is a mesh.
-    #[must_use]
     pub const fn is_mesh(self) -> bool {
         matches!(self, Self::Mesh { .. } | Self::MeshLevels)
     }
 
-    /// Most quads of one copy of a solid: of a mesh the product of its numbers, of levels those of
-    /// the coarsest, of a search none.
-    #[must_use]
+    /// Most quads of one copy of a solid; of levels those of the coarsest, of a search none.
     pub const fn quads(self) -> u64 {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
@@ -90,9 +83,7 @@ impl Method {
         }
     }
 
-    /// Its name; of a mesh the first part, [`Display`](fmt::Display) gives the whole:
-    /// `mesh:64x128`.
-    #[must_use]
+    /// Its name; of a mesh the first part of [`Display`](fmt::Display)'s `mesh:64x128`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Search(solver) => solver.name(),
@@ -102,19 +93,16 @@ impl Method {
     }
 
     /// As [`Solver::reads_own_table`]; a mesh does not.
-    #[must_use]
     pub const fn reads_own_table(self) -> bool {
         matches!(self, Self::Search(solver) if solver.reads_own_table())
     }
 
     /// As [`Solver::reads_map`]; a mesh is made from the boundary itself.
-    #[must_use]
     pub const fn reads_map(self) -> bool {
         matches!(self, Self::Search(solver) if solver.reads_map())
     }
 
     /// As [`Solver::follows_tolerance`]; a mesh does not.
-    #[must_use]
     pub const fn follows_tolerance(self) -> bool {
         match self {
             Self::Search(solver) => solver.follows_tolerance(),
@@ -124,13 +112,11 @@ impl Method {
     }
 
     /// As [`Solver::may_run_out`]; a mesh makes no steps.
-    #[must_use]
     pub fn may_run_out(self) -> bool {
         matches!(self, Self::Search(solver) if solver.may_run_out())
     }
 
     /// As [`Solver::default_steps`]; 1 for a mesh, which has none to bound.
-    #[must_use]
     pub fn default_steps(self, beveled: bool) -> u32 {
         self.solver().map_or(1, |s| s.default_steps(beveled))
     }
@@ -213,7 +199,6 @@ pub enum Edges {
 
 impl Edges {
     /// Its name in plans and results.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::OneRay => "1 ray".to_owned(),
@@ -224,7 +209,6 @@ impl Edges {
     }
 
     /// Samples of a pixel in one pass.
-    #[must_use]
     pub fn samples(self) -> u32 {
         match self {
             Self::Msaa => 4,
@@ -275,6 +259,32 @@ pub struct MethodSettings {
     pub edges: Edges,
 }
 
+impl MethodSettings {
+    /// The same by another method.
+    pub fn by(mut self, method: impl Into<Method>) -> Self {
+        self.method = method.into();
+        self
+    }
+
+    /// The same in another stage.
+    pub fn in_stage(mut self, stage: DrawStage) -> Self {
+        self.stage = stage;
+        self
+    }
+
+    /// The same with so many pixels across and down.
+    pub fn sized(mut self, width: u32, height: u32) -> Self {
+        (self.width, self.height) = (width, height);
+        self
+    }
+
+    /// The same with other planes.
+    pub fn storing(mut self, planes: Planes) -> Self {
+        self.planes = planes;
+        self
+    }
+}
+
 impl Default for MethodSettings {
     /// As [`Settings::exact`].
     fn default() -> Self {
@@ -295,8 +305,7 @@ impl Default for MethodSettings {
     }
 }
 
-/// The renderer's settings. A mesh leaves the default search, for a picture without objects; so does
-/// the floor, whose frame is that search's.
+/// The renderer's settings: for a mesh and for the floor those of the default search.
 impl From<&MethodSettings> for Settings {
     fn from(settings: &MethodSettings) -> Self {
         Self {

@@ -5,7 +5,7 @@ use crate::mesh::{MeshLayer, MeshPipelines};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, ObjectCost, Offscreen, OffscreenOptions, Times};
+use revmap::gpu::{Device, Guest, Offscreen, OffscreenOptions, Times};
 use revmap::scene::Scene;
 use revmap::settings::Settings;
 use std::sync::{Arc, OnceLock};
@@ -18,28 +18,8 @@ pub struct MethodDevice {
     pipelines: Arc<MeshPipelines>,
 }
 
-/// A drawn frame and what it cost.
-#[derive(Clone, Debug)]
-pub struct MethodDrawn {
-    /// The picture.
-    pub frame: Frame,
-    /// What drawing it took, of a second frame: the first waits for the driver's compiler.
-    pub times: Times,
-    /// As [`MethodRenderer::map_bytes`].
-    pub map_bytes: [u64; 2],
-    /// As [`Offscreen::notes`]; none of a mesh.
-    pub notes: Vec<String>,
-    /// As [`Offscreen::object_costs`]; none of a mesh.
-    pub costs: Vec<ObjectCost>,
-    /// As [`MethodRenderer::device_bytes`].
-    pub device_bytes: u64,
-}
-
 impl MethodDevice {
     /// Draws on this device.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn new(device: Device) -> Result<Self> {
         let pipelines = MeshPipelines::new(&device)?;
         Ok(Self {
@@ -86,25 +66,14 @@ impl MethodDevice {
         }
     }
 
-    /// Draws a scene once, as [`revmap::gpu::draw`].
-    ///
-    /// # Errors
-    /// As [`MethodDevice::renderer`]; of drawing.
-    pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodDrawn> {
+    /// Draws a scene once.
+    pub fn draw(&self, scene: &Scene, settings: &MethodSettings) -> Result<Frame> {
         let mut renderer = self.renderer(scene, settings)?;
         renderer.draw()?;
-        let times = renderer.draw()?;
-        let drawn = MethodDrawn {
-            frame: renderer.read()?,
-            times,
-            map_bytes: renderer.map_bytes(),
-            notes: renderer.notes().to_vec(),
-            costs: renderer.object_costs(),
-            device_bytes: renderer.device_bytes(),
-        };
+        let frame = renderer.read()?;
         drop(renderer);
         self.device.check()?;
-        Ok(drawn)
+        Ok(frame)
     }
 }
 
@@ -112,15 +81,12 @@ impl MethodDevice {
 pub struct MethodRenderer {
     // Dropped first: its frames were waited for.
     meshes: Option<Box<MeshLayer>>,
-    /// Of meshes without the scene's objects.
-    offscreen: Box<Offscreen>,
+    /// What draws a search, and tells of it; of meshes it has none of the scene's objects.
+    pub offscreen: Box<Offscreen>,
 }
 
 impl MethodRenderer {
     /// Takes over a scene.
-    ///
-    /// # Errors
-    /// As [`Offscreen::update`]; of what a mesh does not draw.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
         match &mut self.meshes {
             None => self.offscreen.update(scene),
@@ -131,67 +97,34 @@ impl MethodRenderer {
         }
     }
 
-    /// As [`Offscreen::prewarm`]; of a mesh nothing.
-    ///
-    /// # Errors
-    /// Of Vulkan.
-    pub fn prewarm(&mut self) -> Result<()> {
-        match self.meshes {
-            None => self.offscreen.prewarm(),
-            Some(_) => Ok(()),
-        }
-    }
-
     /// Draws one frame and waits for it.
-    ///
-    /// # Errors
-    /// Of drawing.
     pub fn draw(&mut self) -> Result<Times> {
-        let guest = self.meshes.as_ref().map(|meshes| meshes.guest());
+        let guest = self.meshes.as_deref().map(|meshes| meshes as &dyn Guest);
         let times = self.offscreen.draw_with(guest)?;
         self.meshes.iter_mut().for_each(|m| m.drop_staging());
         Ok(times)
     }
 
     /// The frame that was drawn last.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn read(&mut self) -> Result<Frame> {
         self.offscreen.read()
     }
 
     /// As [`Offscreen::rebuild_count`], or how many meshes were made.
-    #[must_use]
     pub fn rebuild_count(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.made_count());
         meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
     }
 
-    /// Bytes on the device: of shape maps and tables, or of meshes; of colour and displacement
-    /// maps.
-    #[must_use]
+    /// Bytes on the device: of shape maps and tables, or of meshes; of colours and displacements.
     pub fn map_bytes(&self) -> [u64; 2] {
         let meshes = self.meshes.as_ref().map(|meshes| [meshes.bytes(), 0]);
         meshes.unwrap_or_else(|| self.offscreen.map_bytes())
     }
 
-    /// As [`Offscreen::object_costs`]; none of a mesh.
-    #[must_use]
-    pub fn object_costs(&self) -> Vec<ObjectCost> {
-        self.offscreen.object_costs()
-    }
-
     /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
-    #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
         meshes.unwrap_or_else(|| self.offscreen.device_bytes())
-    }
-
-    /// As [`Offscreen::notes`]; none of a mesh.
-    #[must_use]
-    pub fn notes(&self) -> &[String] {
-        self.offscreen.notes()
     }
 }

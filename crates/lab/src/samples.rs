@@ -4,12 +4,8 @@ use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::scene::Scene;
 
-/// Draws the scene through the middle of each pixel by `draw`, then, where `count` is above 1, once
-/// for each of so many points, a power of two, and averages the colours of these, linear and
-/// weighted by alpha.
-///
-/// # Errors
-/// Of `draw`.
+/// Draws the scene through the middle of each pixel by `draw`; where `count`, a power of two, is
+/// above 1, with the mean of the colours through so many points, linear and weighted by alpha.
 pub fn averaged(
     count: u32,
     scene: &Scene,

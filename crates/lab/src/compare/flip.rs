@@ -14,13 +14,11 @@ use std::f64::consts::PI;
 ///
 /// Colours are laid over black, clamped to `[0, 1]` (what a PNG would keep, without its rounding)
 /// and seen at `pixels_per_degree`. The frames must be of one size; else the list is empty.
-#[must_use]
 pub fn flip_map(reference: &Frame, frame: &Frame, pixels_per_degree: f64) -> Vec<f32> {
     Eye::on(reference, pixels_per_degree).flip(frame)
 }
 
-/// An eye on a reference: what it takes in of that is found once, for any number of frames to be
-/// flipped to.
+/// An eye on a reference, which it takes in once for any number of frames.
 pub(super) struct Eye {
     colors: Colors,
     sight: Sight,
@@ -48,16 +46,14 @@ impl Eye {
         }
         let frame = self.sight.look(&self.colors, &frame.color, self.size);
         let most = self.colors.most_different();
-        self.reference
-            .par_iter()
-            .zip(frame)
-            .map(|(a, b)| {
-                let color = redistribute(hyab(a.lab, b.lab).powf(COLOR_EXPONENT), most);
-                let feature = (a.edge - b.edge).abs().max((a.point - b.point).abs());
-                let feature = (feature / std::f64::consts::SQRT_2).powf(FEATURE_EXPONENT);
-                color.powf(1.0 - feature) as f32
-            })
-            .collect()
+        let seen = self.reference.par_iter().zip(frame);
+        let flip = seen.map(|(a, b)| {
+            let color = redistribute(hyab(a.lab, b.lab).powf(COLOR_EXPONENT), most);
+            let feature = (a.edge - b.edge).abs().max((a.point - b.point).abs());
+            let feature = (feature / std::f64::consts::SQRT_2).powf(FEATURE_EXPONENT);
+            color.powf(1.0 - feature) as f32
+        });
+        flip.collect()
     }
 }
 
@@ -114,22 +110,16 @@ impl Colors {
 
     /// CIELAB, its chroma weighed by lightness (Hunt: colours fade in the dark).
     fn hunt_lab(&self, rgb: DVec3) -> DVec3 {
-        let f = |q: f64| {
-            let bend = 6.0f64 / 29.0;
-            if q > bend.powi(3) {
-                q.cbrt()
-            } else {
-                q / (3.0 * bend * bend) + 4.0 / 29.0
-            }
+        let bend = 6.0f64 / 29.0;
+        let f = |q: f64| match q > bend.powi(3) {
+            true => q.cbrt(),
+            false => q / (3.0 * bend * bend) + 4.0 / 29.0,
         };
-        let q = self.xyz_from_rgb * rgb / self.white;
-        let (x, y, z) = (f(q.x), f(q.y), f(q.z));
+        let DVec3 { x, y, z } = (self.xyz_from_rgb * rgb / self.white).map(f);
         let lightness = 116.0 * y - 16.0;
-        DVec3::new(
-            lightness,
-            0.01 * lightness * 500.0 * (x - y),
-            0.01 * lightness * 200.0 * (y - z),
-        )
+        let chroma = 0.01 * lightness;
+        let [a, b] = [500.0 * (x - y), 200.0 * (y - z)];
+        DVec3::new(lightness, chroma * a, chroma * b)
     }
 
     /// The largest colour difference of the gamut, green against blue.
@@ -168,8 +158,7 @@ impl Sight {
             let n = radius as i64;
             (-n..=n).map(|x| f(x as f64)).collect()
         };
-        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees; the widest sets
-        // the radius for all.
+        // Contrast sensitivity: `a sqrt(pi / b) exp(-pi^2 x^2 / b)`, x in degrees.
         let radius = (3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * ppd).ceil();
         let contrast = [
             vec![(1.0, 0.0047)],
@@ -177,22 +166,17 @@ impl Sight {
             vec![(34.1, 0.04), (13.5, 0.025)],
         ]
         .map(|sum| {
-            let mut parts: Vec<(f64, Vec<f64>)> = sum
-                .into_iter()
-                .map(|(a, b): (f64, f64)| {
-                    let line = row(radius, &|x| (-(PI * x / ppd).powi(2) / b).exp());
-                    (a * (PI / b).sqrt(), line)
-                })
-                .collect();
-            let total: f64 = parts
-                .iter()
-                .map(|(w, line)| w * line.iter().sum::<f64>().powi(2))
-                .sum();
+            let parts = sum.into_iter().map(|(a, b): (f64, f64)| {
+                let line = row(radius, &|x| (-(PI * x / ppd).powi(2) / b).exp());
+                (a * (PI / b).sqrt(), line)
+            });
+            let mut parts: Vec<(f64, Vec<f64>)> = parts.collect();
+            let whole = |(w, line): &(f64, Vec<f64>)| w * line.iter().sum::<f64>().powi(2);
+            let total: f64 = parts.iter().map(whole).sum();
             parts.iter_mut().for_each(|(w, _)| *w /= total);
             parts
         });
-        // Edges and points: derivatives of a Gaussian as wide as an edge that the eye takes for
-        // one.
+        // Edges and points: derivatives of a Gaussian as wide as what the eye takes for an edge.
         let sigma = 0.5 * 0.082 * ppd;
         let radius = (3.0 * sigma).ceil();
         let bell = |x: f64| (-x * x / (2.0 * sigma * sigma)).exp();
@@ -217,12 +201,10 @@ impl Sight {
     }
 
     fn look(&self, colors: &Colors, rgba: &[[f32; 4]], size: (usize, usize)) -> Vec<Seen> {
-        let opponent: Vec<DVec3> = rgba
-            .par_iter()
-            .map(|&c| colors.opponent(over_black(c)))
-            .collect();
-        let planes: [Vec<f64>; 3] =
-            std::array::from_fn(|c| opponent.iter().map(|v| v[c]).collect());
+        let opponent = rgba.par_iter().map(|&c| colors.opponent(over_black(c)));
+        let opponent: Vec<DVec3> = opponent.collect();
+        let plane = |c: usize| opponent.iter().map(|v| v[c]).collect();
+        let planes: [Vec<f64>; 3] = std::array::from_fn(plane);
         let filtered: [Vec<f64>; 3] = std::array::from_fn(|c| {
             let mut sum = vec![0.0; planes[c].len()];
             for (weight, line) in &self.contrast[c] {
@@ -238,56 +220,47 @@ impl Sight {
             x.into_iter().zip(y).map(|(x, y)| x.hypot(y)).collect()
         };
         let (edge, point) = (strength(&self.edge), strength(&self.point));
-        (0..rgba.len())
-            .into_par_iter()
-            .map(|k| {
-                let c = DVec3::new(filtered[0][k], filtered[1][k], filtered[2][k]);
-                let rgb = colors.rgb_of_opponent(c).clamp(DVec3::ZERO, DVec3::ONE);
-                Seen {
-                    lab: colors.hunt_lab(rgb),
-                    edge: edge[k],
-                    point: point[k],
-                }
-            })
-            .collect()
+        let seen = |k: usize| {
+            let c = DVec3::new(filtered[0][k], filtered[1][k], filtered[2][k]);
+            let rgb = colors.rgb_of_opponent(c).clamp(DVec3::ZERO, DVec3::ONE);
+            Seen {
+                lab: colors.hunt_lab(rgb),
+                edge: edge[k],
+                point: point[k],
+            }
+        };
+        (0..rgba.len()).into_par_iter().map(seen).collect()
     }
 }
 
 fn over_black([r, g, b, a]: [f32; 4]) -> DVec3 {
-    let cut = |v: f32| {
-        if v.is_nan() {
-            0.0
-        } else {
-            f64::from(v.clamp(0.0, 1.0))
-        }
-    };
+    // No number is black.
+    let cut = |v: f32| f64::from(v.max(0.0)).min(1.0);
     DVec3::new(cut(r), cut(g), cut(b)) * cut(a)
 }
 
 /// Filters along rows, then along columns; beyond the picture its border goes on.
 fn separable(plane: &[f64], (w, h): (usize, usize), along_x: &[f64], along_y: &[f64]) -> Vec<f64> {
     let (rx, ry) = (along_x.len() / 2, along_y.len() / 2);
+    let add = |out: &mut [f64], weight: f64, line: &[f64]| {
+        let pairs = out.iter_mut().zip(line);
+        pairs.for_each(|(v, l)| *v += weight * l);
+    };
     let mut rows = vec![0.0; plane.len()];
-    rows.par_chunks_mut(w)
-        .zip(plane.par_chunks(w))
-        .for_each(|(out, line)| {
-            // The line with its border going on, so that each weight meets all of it at once.
-            let wide: Vec<f64> = (0..w + 2 * rx)
-                .map(|x| line[x.saturating_sub(rx).min(w - 1)])
-                .collect();
-            for (weight, moved) in along_x.iter().zip(wide.windows(w)) {
-                out.iter_mut()
-                    .zip(moved)
-                    .for_each(|(v, l)| *v += weight * l);
-            }
-        });
+    let lines = rows.par_chunks_mut(w).zip(plane.par_chunks(w));
+    lines.for_each(|(out, line)| {
+        // The line with its border going on, so that each weight meets all of it at once.
+        let inside = |x: usize| line[x.saturating_sub(rx).min(w - 1)];
+        let wide: Vec<f64> = (0..w + 2 * rx).map(inside).collect();
+        for (weight, moved) in along_x.iter().zip(wide.windows(w)) {
+            add(out, *weight, moved);
+        }
+    });
     let mut out = vec![0.0; plane.len()];
     out.par_chunks_mut(w).enumerate().for_each(|(y, line)| {
         for (k, weight) in along_y.iter().enumerate() {
             let from = (y + k).saturating_sub(ry).min(h - 1) * w;
-            line.iter_mut()
-                .zip(&rows[from..from + w])
-                .for_each(|(v, r)| *v += weight * r);
+            add(line, *weight, &rows[from..from + w]);
         }
     });
     out

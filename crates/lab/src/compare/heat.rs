@@ -3,24 +3,21 @@
 use super::{
     CompareOptions, PIXELS_PER_DEGREE, check, depth_error, flip, normal_error, silhouette,
 };
+use crate::mosaic::tiled;
 use revmap::Result;
 use revmap::frame::{Frame, pixel_count};
 use revmap_files::Picture;
 
-/// What a heat map shows. Everywhere missed pixels are cyan, ghosts green, and what is empty in
-/// both frames is grey.
+/// What a heat map shows. Missed pixels are cyan, ghosts green, what is empty in both frames grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heat {
     /// Missed and ghost pixels alone; what both hit is a lighter grey.
     Wrong,
-    /// Depth error, from dark blue at 0.001 texel and below to pale yellow at 10 texels, a decade a
-    /// step.
+    /// Depth error, from dark blue at 0.001 texel to pale yellow at 10 texels, a decade a step.
     Depth,
-    /// Angle between the normals, from dark blue at 0.01 degrees and below to pale yellow at 100
-    /// degrees.
+    /// Angle between the normals, from dark blue at 0.01 degrees to pale yellow at 100 degrees.
     Normal,
-    /// The pixels of both silhouettes, by their distance to the other's silhouette: from 0 to 8
-    /// pixels.
+    /// The pixels of both silhouettes, by their distance to the other's: from 0 to 8 pixels.
     Silhouette,
     /// FLIP, from 0 to 1, on every pixel.
     Flip,
@@ -37,7 +34,6 @@ impl Heat {
     ];
 
     /// Its name in options and captions.
-    #[must_use]
     pub fn name(self) -> &'static str {
         ["wrong", "depth", "normal", "silhouette", "flip"][self as usize]
     }
@@ -65,13 +61,11 @@ impl Scale {
     };
 
     /// The place of a value on the scale: 0 at `low`, 1 at `high`.
-    #[must_use]
     pub fn place(self, value: f64) -> f64 {
         (value.max(self.low) / self.low).log2() / (self.high / self.low).log2()
     }
 
     /// The colour of a value.
-    #[must_use]
     pub fn color(self, value: f64) -> [u8; 3] {
         ramp(self.place(value))
     }
@@ -86,9 +80,6 @@ pub const MISSED: [u8; 3] = [0, 255, 255];
 pub const GHOST: [u8; 3] = [0, 255, 0];
 
 /// A picture of one kind of error.
-///
-/// # Errors
-/// Those of [`compare`](super::compare()).
 pub fn heat_map(
     reference: &Frame,
     frame: &Frame,
@@ -137,53 +128,35 @@ pub fn heat_map(
 /// when the sheet, six times the frame, is too large for a picture.
 pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Picture> {
     check(reference, frame, options)?;
-    let (w, h) = (frame.width, frame.height);
-    let (width, height) = (w.saturating_mul(3), h.saturating_mul(2));
-    let pixels = pixel_count(width, height)?;
-    let mut sheet = Picture {
-        width,
-        height,
-        rgba: vec![[0; 4]; pixels],
-    };
-    let mut place = |tile: usize, pixel: &dyn Fn(usize) -> [u8; 4]| {
-        let (left, top) = (tile % 3 * w as usize, tile / 3 * h as usize);
-        for y in 0..h as usize {
-            for x in 0..w as usize {
-                sheet.rgba[(top + y) * width as usize + left + x] = pixel(y * w as usize + x);
-            }
-        }
-    };
-    for (tile, kind) in Heat::ALL.into_iter().enumerate() {
-        let map = heat_map(reference, frame, options, kind)?;
-        place(tile, &|k| map.rgba[k]);
-    }
-    let drawn = Picture::of(frame);
-    place(Heat::ALL.len(), &|k| drawn.rgba[k]);
-    Ok(sheet)
+    pixel_count(
+        frame.width.saturating_mul(3),
+        frame.height.saturating_mul(2),
+    )?;
+    let maps = Heat::ALL.map(|kind| heat_map(reference, frame, options, kind));
+    let mut tiles: Vec<Picture> = maps.into_iter().collect::<Result<_>>()?;
+    tiles.push(Picture::of(frame));
+    Ok(tiled(&tiles, 3, 0))
 }
 
 /// Colours of the silhouettes' pixels, by the way to the other silhouette.
 fn rims(reference: &Frame, frame: &Frame) -> impl Fn(usize) -> [u8; 3] {
-    let rims = [reference, frame].map(silhouette::silhouette);
-    let ways =
-        [&rims[0], &rims[1]].map(|rim| silhouette::squares_to(rim, reference.width as usize));
-    let hits: Vec<bool> = (0..reference.pixels())
-        .map(|k| reference.hits(k) || frame.hits(k))
-        .collect();
-    move |k| {
-        let way = match (rims[0][k], rims[1][k]) {
-            (true, false) => ways[1][k],
-            (false, true) => ways[0][k],
-            (true, true) => 0.0,
-            (false, false) => return if hits[k] { BOTH } else { EMPTY },
-        };
-        ramp(way.sqrt() / 8.0)
+    let [a, b] = [reference, frame].map(silhouette::silhouette);
+    let width = reference.width as usize;
+    let hit = |k| reference.hits(k) || frame.hits(k);
+    let ground = |k| if hit(k) { BOTH } else { EMPTY };
+    let mut colors: Vec<[u8; 3]> = (0..a.len()).map(ground).collect();
+    let both = (0..a.len()).filter(|&k| a[k] && b[k]).map(|k| (k, 0.0));
+    let apart = [
+        silhouette::ways(&a, &b, width),
+        silhouette::ways(&b, &a, width),
+    ];
+    for (k, way) in apart.concat().into_iter().chain(both) {
+        colors[k] = ramp(way / 8.0);
     }
+    move |k| colors[k]
 }
 
-/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly, so it reads without colour
-/// too.
-#[must_use]
+/// Dark blue, purple, red, orange, pale yellow: brightness grows evenly.
 pub fn ramp(place: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [12.0, 10.0, 70.0],
@@ -228,10 +201,7 @@ mod tests {
     fn at(kind: Heat, change: impl Fn(&mut Frame), x: usize, y: usize) -> [u8; 3] {
         let mut frame = base();
         change(&mut frame);
-        let options = CompareOptions {
-            texel: 0.01,
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(0.01);
         let map = heat_map(&base(), &frame, &options, kind).unwrap();
         let [r, g, b, a] = map.rgba[y * 40 + x];
         assert_eq!((map.width, map.height, a), (40, 20, 255));
@@ -281,8 +251,8 @@ mod tests {
         assert_eq!((sheet.width, sheet.height), (120, 40));
         for (tile, kind) in Heat::ALL.into_iter().enumerate() {
             let map = heat_map(&base(), &frame, &options, kind).unwrap();
-            let row = (tile / 3 * 20) * 120 + tile % 3 * 40;
-            assert_eq!(sheet.rgba[row..row + 40], map.rgba[..40], "{}", kind.name());
+            let first = tile / 3 * 20 * 120 + tile % 3 * 40;
+            assert_eq!(sheet.rgba[first..first + 40], map.rgba[..40], "{kind:?}");
         }
         assert_eq!(sheet.rgba[20 * 120 + 80], [188, 188, 188, 255]);
         assert!(heat_sheet(&base(), &Frame::new(1, 1, [0.0; 4]).unwrap(), &options).is_err());

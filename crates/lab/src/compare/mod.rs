@@ -14,16 +14,14 @@ use rayon::prelude::*;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 
-/// Pixels per degree of sight that FLIP's authors propose: a display 0.7 m wide of 3840 pixels,
-/// seen from 0.7 m.
+/// Pixels per degree of FLIP's authors: 3840 pixels on 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
 /// What the comparison must know beyond the two frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareOptions {
     /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the
-    /// object's scale. Under a scale that differs along the axes take the smallest factor: the
-    /// strictest reading. Default: 1/512.
+    /// smallest factor of the object's scale. Default: 1/512.
     pub texel: f64,
     /// Pixels of the display per degree of the viewer's sight, for FLIP. Default:
     /// [`PIXELS_PER_DEGREE`], 67.02. `None`: no FLIP, which takes longer than all the rest.
@@ -35,6 +33,16 @@ impl Default for CompareOptions {
         Self {
             texel: 1.0 / 512.0,
             pixels_per_degree: Some(PIXELS_PER_DEGREE),
+        }
+    }
+}
+
+impl CompareOptions {
+    /// With this world length of a texel.
+    pub fn of(texel: f64) -> Self {
+        Self {
+            texel,
+            ..Self::default()
         }
     }
 }
@@ -75,14 +83,11 @@ pub struct Comparison {
 
 impl Comparison {
     /// Missed and ghost pixels as a part of the reference's hits (of 1 where it has none).
-    #[must_use]
     pub fn wrong(&self) -> f64 {
         (self.missed + self.ghost) as f64 / self.hits.max(1) as f64
     }
 
-    /// Error of the distance along the ray in h/512: h = 1 world unit is the height of an unscaled
-    /// solid.
-    #[must_use]
+    /// Error of the distance along the ray in h/512, h being the height of an unscaled solid.
     pub fn depth_h512(&self) -> Option<Spread> {
         let unit = 512.0 * self.texel;
         self.depth.map(|d| Spread {
@@ -290,10 +295,7 @@ mod tests {
         let solid: Vec<usize> = (0..base.pixels()).filter(|&k| base.hits(k)).collect();
         let mut other = base.clone();
         change(&mut other, &solid);
-        let options = CompareOptions {
-            texel: 0.01,
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(0.01);
         compare(&base, &other, &options).unwrap()
     }
 

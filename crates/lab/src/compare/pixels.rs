@@ -10,12 +10,10 @@ use revmap_reference::{Ray, Reference};
 /// one, are a contour that has moved.
 const JUMP: f64 = 4.0;
 
-/// Directions in which the contour is looked for, and how often the distance found is halved: to 2
-/// % and a 16th of itself.
+/// Directions in which the contour is looked for, and how often the distance is halved.
 const DIRECTIONS: u32 = 16;
 const HALVINGS: u32 = 4;
-/// The distances looked at, pixels, each twice the one before; the last stands for all that are
-/// farther.
+/// The distances looked at, pixels, each twice the one before; the last stands for all beyond.
 const LEAST: f64 = 1.0 / 256.0;
 const MOST: f64 = 4.0;
 
@@ -24,21 +22,16 @@ const MOST: f64 = 4.0;
 pub struct PixelErrors {
     /// Pixels that hit in either frame.
     pub pixels: usize,
-    /// Of these, pixels on the wrong side of a contour: of a silhouette, or of one solid before
-    /// another.
+    /// Of these, pixels on the wrong side of a silhouette, or of one solid before another.
     pub moved: usize,
-    /// The smallest error that 99.9 % of the pixels do not exceed: of pixels on the right side the
-    /// error of the depth along the ray, over the size of a pixel there; of the others how far the
-    /// contour has moved.
+    /// The error that 99.9 % of the pixels do not exceed: of the depth along the ray over the size
+    /// of a pixel there, or how far the contour has moved.
     pub p999: f64,
     /// The largest of the others.
     pub contour_max: f64,
 }
 
 /// Errors of a drawn frame of `scene`.
-///
-/// # Errors
-/// As [`CameraFrame::new`] and [`Reference::new`].
 pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<PixelErrors> {
     let camera = CameraFrame::new(&scene.camera, truth.width, truth.height)?;
     let reference = Reference::new(scene)?;

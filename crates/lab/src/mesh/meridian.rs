@@ -25,8 +25,7 @@ const AROUND: f64 = 3.0 / 512.0;
 /// Vertices are shared where the normals on both sides differ by less. The error is half of that.
 /// Without sharing a fine mesh takes a tenth more time (llvmpipe).
 const SHARED: f64 = 4.0 * std::f64::consts::PI / 180.0;
-/// The least and the largest tolerance, object units: points nearer to a line are on it, and what
-/// is farther is another shape.
+/// The least and the largest tolerance, object units.
 const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 
 /// All chains, in at most `most` chords together if corners allow.
@@ -49,8 +48,7 @@ pub(super) fn meridian(contour: &Contour, most: usize) -> Vec<Strand> {
     lines.iter().map(|l| l.strand(high)).collect()
 }
 
-/// A chain from its first point to its last; a closed one begins, and ends, at a crease if it has
-/// any.
+/// A chain from its first point to its last; a closed one begins at a crease if it has any.
 struct Line {
     points: Vec<DVec2>,
     /// Outward normals of the segments: segment `k` runs from point `k` on.
@@ -198,8 +196,7 @@ impl Line {
         }
     }
 
-    /// How far the contour lies outside the chord between two of its points, at most; negative
-    /// inside.
+    /// How far the contour lies outside the chord between two points; negative inside.
     fn bulge(&self, a: usize, b: usize) -> f64 {
         let (start, chord) = (self.points[a], self.points[b] - self.points[a]);
         let outward = -chord.perp().normalize_or_zero();
@@ -235,8 +232,7 @@ fn joined(before: Chord, after: Chord) -> [DVec2; 2] {
     }
 }
 
-/// The normal of a chord that ends on the axis: along it where the surface is smooth there, else a
-/// cone's.
+/// The normal on the axis: along it where the surface is smooth there, else a cone's.
 fn pole(normal: DVec2) -> DVec2 {
     if turns(normal, DVec2::new(-normal.x, normal.y)) {
         normal

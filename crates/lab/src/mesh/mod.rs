@@ -9,7 +9,6 @@
 //! shadows, replicas, maps of colours and heights, and coordinates along the profile.
 
 mod blocks;
-mod drawer;
 mod layer;
 mod meridian;
 mod placed;
@@ -17,6 +16,5 @@ mod tessellation;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use drawer::MeshPipelines;
-pub(crate) use layer::MeshLayer;
+pub(crate) use layer::{MeshLayer, MeshPipelines};
 pub use tessellation::{BAND, Mesh, Vertex};

@@ -48,8 +48,7 @@ struct Made {
 }
 
 impl SceneMeshes {
-    /// Meshes of so many segments and at most so many rings each, by the height of a copy on the
-    /// screen.
+    /// Meshes of so many segments and at most so many rings, by the height of a copy.
     pub fn new(levels: Vec<(u32, u32, f64)>, size: (u32, u32)) -> Self {
         Self {
             levels,
@@ -101,8 +100,7 @@ impl SceneMeshes {
         Ok(placed)
     }
 
-    /// Copies of an object by level. Where there are several levels, those beside the picture are
-    /// left out.
+    /// Copies of an object by level. With several levels, those beside the picture are left out.
     fn by_level(&self, object: &Object, camera: &CameraFrame) -> Vec<Vec<Placement>> {
         let mut all = vec![Vec::new(); self.levels.len()];
         if let [one] = all.as_mut_slice() {
@@ -236,8 +234,7 @@ fn check_object(object: &Object) -> std::result::Result<(), KeyError> {
     Err((key, refused(what)))
 }
 
-/// Refuses a mesh that leaves its box, because the box does not cut it. `widest` is the contour's
-/// largest radius.
+/// Refuses a mesh that leaves its box, which does not cut it. `widest`: the largest radius.
 fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> {
     let radius = object.profile.radius;
     let off = object.axis_offset().map(f64::abs);
@@ -264,8 +261,7 @@ fn eye_about_axis(object: &Object, placement: &Placement, camera: &CameraFrame) 
     back * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
 }
 
-/// Whether an eye may be inside, or so near that the near plane cuts the mesh: then backs of
-/// triangles are seen.
+/// Whether an eye may be inside, or so near that the near plane cuts: then backs are seen.
 fn may_hold(mesh: &Mesh, eye: DVec3) -> bool {
     let [r_max, z_min, z_max] = mesh.extent;
     let margin = 0.01;

@@ -1,22 +1,15 @@
-//! A solid of revolution as triangles.
+//! A solid of revolution as triangles: the contour under its offset, thinned to rings and turned in
+//! equal steps. The mesh is as good as its number of quads allows:
 //!
-//! The contour under its offset ([`ContourSource`](revmap::surface::ContourSource), which the exact
-//! search uses too) is thinned to rings and turned in equal steps. The mesh is as good as its
-//! number of quads allows:
-//!
-//! * Chords are as long as one tolerance lets them be: the least tolerance that keeps within the
-//!   rings allowed. Errors are even along the meridian. No ring is spent where the profile is
-//!   straight, because a frustum is exact there.
-//! * A chord lies on one side of its arc. Vertices are moved outwards by half of the distance, so
-//!   that the surface lies as much before as behind the true one: around the axis by the factor
-//!   `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. This halves the largest error
-//!   of vertices on the surface, and the silhouette's.
-//! * Normals are those of the contour, not of the facets. Each chord has two, between which they
-//!   turn as evenly as possible. Neighbours with nearly equal normals share vertices, others are
-//!   creases. Only the part in the half-plane is stored: each pixel has its exact azimuth.
-//! * Vertices are 16 bytes, shared by all facets on their side of a crease. Indices run in bands of
-//!   [`BAND`] segments: a ring of a band is still in the vertex cache when the next one is drawn.
-//!   Vertices are in the order of their first use.
+//! * Chords are as long as the least tolerance that keeps within the rings allowed. Errors are even
+//!   along the meridian, and straight parts take no ring, because a frustum is exact there.
+//! * Vertices are moved outwards by half of a chord's distance from its arc: around the axis by the
+//!   factor `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. This halves the errors.
+//! * Normals are the contour's. Each chord has two, between which they turn as evenly as possible.
+//!   Neighbours with nearly equal normals share vertices, others are creases. Only the part in the
+//!   half-plane is stored: each pixel has its exact azimuth.
+//! * Indices run in bands of [`BAND`] segments: a ring of a band is still in the vertex cache when
+//!   the next one is drawn. Vertices are in the order of their first use.
 
 use super::meridian::{Strand, meridian};
 use bytemuck::{Pod, Zeroable};
@@ -54,9 +47,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Tessellates a contour in `segments` steps around the axis and at most `rings` along the
-    /// meridian; more where the contour has more corners.
-    #[must_use]
+    /// A contour in `segments` steps around and at most `rings` along, more if it has more corners.
     pub fn new(contour: &Contour, segments: u32, rings: u32) -> Self {
         let strands = meridian(contour, rings as usize);
         let points = || contour.chains.iter().flat_map(|c| &c.points);
@@ -98,9 +89,7 @@ impl Mesh {
         self.vertices = sorted;
     }
 
-    /// The index at which the band a quarter turn before `azimuth` begins. From there on, what
-    /// faces an eye in that direction comes first.
-    #[must_use]
+    /// The index of the band from which on what faces an eye at `azimuth` comes first.
     pub fn start(&self, azimuth: f64) -> u32 {
         let turns = ((azimuth - 0.5 * PI) / TAU).rem_euclid(1.0);
         let segment = (turns * f64::from(self.segments)) as u32;
@@ -152,12 +141,9 @@ impl Builder {
                 self.set(ring.point, after)
             });
         }
-        // A smooth closed strand ends on the vertices that it begins with. `in_order_of_use` drops
-        // those that are then unused.
-        let smooth = strand
-            .rings
-            .first()
-            .is_some_and(|r| r.normals[0] == r.normals[1]);
+        // A smooth closed strand ends on its first vertices; `in_order_of_use` drops the others.
+        let first = strand.rings.first();
+        let smooth = first.is_some_and(|r| r.normals[0] == r.normals[1]);
         if let (true, [first, .., last]) = (strand.closed && smooth, pairs.as_mut_slice()) {
             last[1] = first[0];
         }

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use super::drawer::pipelines::{generated as g, shader};
+use super::layer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
 use super::{MeshLayer, MeshPipelines};
 use crate::compare::{CompareOptions, compare};
@@ -17,10 +17,8 @@ use std::sync::Arc;
 
 fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
-    ContourSource::new(&profile.outline)
-        .unwrap()
-        .contour(offset)
-        .unwrap()
+    let source = ContourSource::new(&profile.outline).unwrap();
+    source.contour(offset).unwrap()
 }
 
 fn ring(n: u32) -> Vec<[f64; 2]> {
@@ -85,11 +83,7 @@ fn meshes_are_closed_and_hold_the_volume() {
         let mesh = Mesh::new(&torus, segments, rings);
         assert!(is_closed(&mesh));
         assert_eq!(mesh.segments, segments);
-        assert!(
-            mesh.rings <= rings && 2 * mesh.rings > rings,
-            "{}",
-            mesh.rings
-        );
+        assert!(mesh.rings <= rings && 2 * mesh.rings > rings);
         let off = volume(&mesh) / pappus - 1.0;
         assert!(off.abs() < within, "{segments}x{rings}: {off}");
     }
@@ -99,14 +93,12 @@ fn meshes_are_closed_and_hold_the_volume() {
     }
 }
 
-/// Straight walls are one frustum each, and creases stay sharp: the cup needs no more rings than
-/// its outline has sides.
+/// Straight walls are one frustum each, and creases stay sharp.
 #[test]
 fn no_ring_is_wasted_and_no_corner_lost() {
     let mesh = Mesh::new(&contour(&CUP, &Offset::default()), 24, 100);
     assert_eq!(mesh.rings, 5);
-    // All but the two poles have a vertex on either side of the crease, and nothing is kept that no
-    // triangle names.
+    // All but the two poles have a vertex on either side of the crease; no other is kept.
     assert_eq!(mesh.vertices.len(), 4 * 2 * 24 + 2);
     let coarse = Mesh::new(&contour(&CUP, &Offset::default()), 24, 2);
     assert_eq!(coarse.rings, 5);
@@ -163,8 +155,7 @@ fn straight_walls_keep_their_normals() {
     assert_eq!(upright.count(), 2 * 16);
 }
 
-/// A wall jagged by a tenth of a pixel: its teeth are no corners, and a coarse mesh spends nothing
-/// on them.
+/// A wall jagged by a tenth of a pixel has no corners.
 #[test]
 fn jags_are_no_corners() {
     let mut jagged = vec![[0.0, 0.1], [0.2, 0.1]];
@@ -201,12 +192,8 @@ fn meshes_and_searches_hide_each_other() {
     let mut theirs = all.clone();
     theirs.objects = vec![meshed];
 
-    let settings = MethodSettings {
-        width: 240,
-        height: 180,
-        method: Method::mesh(256, 512).unwrap(),
-        ..MethodSettings::default()
-    };
+    let mesh = Method::mesh(256, 512).unwrap();
+    let settings = MethodSettings::default().by(mesh).sized(240, 180);
     let own = Settings::from(&settings);
     let mut offscreen = Offscreen::new(&device, &ours, &own).unwrap();
     let pipelines = MeshPipelines::new(&device).unwrap();
@@ -217,7 +204,7 @@ fn meshes_and_searches_hide_each_other() {
     let options = CompareOptions::default();
     offscreen.draw().unwrap();
     let alone = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
-    offscreen.draw_with(Some(meshes.guest())).unwrap();
+    offscreen.draw_with(Some(&meshes)).unwrap();
     let both = compare(&truth, &offscreen.read().unwrap(), &options).unwrap();
     assert!(both.wrong() < 2e-3, "{both}");
     assert!(both.depth.unwrap().p99 < 0.3, "{both}");
@@ -229,8 +216,7 @@ fn meshes_and_searches_hide_each_other() {
     device.check().unwrap();
 }
 
-/// Stored SPIR-V was made from today's sources, and is equal word for word if the same compiler is
-/// used here.
+/// Stored SPIR-V was made from today's sources; by the same compiler word for word.
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/spirv");

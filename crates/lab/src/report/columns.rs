@@ -1,5 +1,4 @@
-//! The one description of every column: its name in files, its heading on pages, its meaning, and the
-//! cell of a row.
+//! The one description of every column: name in files, heading, meaning, and the cell of a row.
 
 use super::machine::Machine;
 use super::names::{number, percent, range};
@@ -127,7 +126,7 @@ fn edges(row: &Row) -> String {
 /// All columns, each once; those of `results.csv` first, in the order in which it has them.
 pub static COLUMNS: &[Column] = columns! {
     "scene", "scene", "name of the view: the scene, with @ the elevation of the camera in degrees, with : a framing" => |_, r| Cell::text(&r.scene);
-    "technique", "form", "offset of the surface: revolution (none), extended, beveled or chamfered" => |_, r| Cell::text(r.technique.name());
+    "technique", "form", "offset of the surface: revolution (none), extended, beveled or chamfered" => |_, r| Cell::text(r.technique);
     "extend", "e", "extension of the offset, object units" => |_, r| offset(r, |o| o.extend);
     "bevel", "b", "slope of the offset" => |_, r| offset(r, |o| o.bevel);
     "chamfer", "c", "depth from 0 to 1 to which the slope reaches" => |_, r| offset(r, |o| o.chamfer);

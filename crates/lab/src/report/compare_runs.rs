@@ -23,9 +23,8 @@ pub struct Pair {
     pub key: Vec<String>,
     /// New time over old; `None` where a clock cannot be trusted.
     pub time: Option<Interval>,
-    /// The same, each time first put over that of the RBM baseline of the same picture, stage and
-    /// run: what is left when one run had the slower machine. `None` where a run lacks that loop,
-    /// and for the loop itself.
+    /// The same, each time first put over the RBM baseline's of the same picture, stage and run.
+    /// `None` where a run lacks that loop, and for the loop itself.
     pub relative: Option<Interval>,
     /// The errors that have grown.
     pub worse: Vec<Change>,
@@ -170,13 +169,10 @@ pub fn as_text(against: &Against) -> String {
         changed.map(line).collect()
     };
     let [old, new] = &against.devices;
-    format!(
-        "old: {old}\nnew: {new}\n\n{}{}{}{}",
-        table.aligned(),
-        counts(against),
-        changes("less exact", |p| &p.worse),
-        changes("more exact", |p| &p.better)
-    )
+    let (table, counts) = (table.aligned(), counts(against));
+    let worse = changes("less exact", |p| &p.worse);
+    let better = changes("more exact", |p| &p.better);
+    format!("old: {old}\nnew: {new}\n\n{table}{counts}{worse}{better}")
 }
 
 /// How many became slower and faster, and whether the machine did.

@@ -45,7 +45,8 @@ impl TimedRenderer for Ready {
         let (mut gpu_ms, mut frame_ms) = (Some(0.0), 0.0);
         match &mut self.drawer {
             Drawer::Rays(renderer, count) => {
-                // One stage per submission: timestamps around both in one are wrong on some drivers.
+                // One stage per submission: timestamps around both in one are wrong on some
+                // drivers.
                 for _ in 0..*count {
                     let times = renderer.draw()?;
                     gpu_ms = gpu_ms.zip(times.gpu_ms).map(|(sum, ms)| sum + ms);
@@ -53,8 +54,7 @@ impl TimedRenderer for Ready {
                 }
             }
             Drawer::Smoothed([smoothed, plain]) => {
-                // Reading a picture takes the same for all but what smoothing adds, which is never
-                // less than nothing, whatever else the machine does.
+                // Reading takes the same for all but what smoothing adds, which is not negative.
                 plain.draw()?;
                 let usual = read_ms(plain)?;
                 frame_ms = smoothed.draw()?.frame_ms;

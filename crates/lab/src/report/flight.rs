@@ -17,14 +17,9 @@ const WARM: usize = 10;
 
 /// The default search with a tolerance, as crowds are drawn.
 pub fn settings(stage: DrawStage) -> MethodSettings {
-    MethodSettings {
-        stage,
-        width: 1366,
-        height: 706,
-        planes: Planes::Color,
-        tolerance: Tolerance::DEFAULT,
-        ..MethodSettings::default()
-    }
+    let mut settings = MethodSettings::default().in_stage(stage).sized(1366, 706);
+    settings.tolerance = Tolerance::DEFAULT;
+    settings.storing(Planes::Color)
 }
 
 /// A flight.
@@ -51,7 +46,7 @@ pub fn fly(
     let mut scene = army(count)?.scene;
     let at = |frame: usize| flight_camera(frame as f64 / frames as f64);
     let mut renderer = device.renderer(&scene, settings)?;
-    renderer.prewarm()?;
+    renderer.offscreen.prewarm()?;
     for _ in 0..WARM {
         renderer.draw()?;
     }
@@ -75,7 +70,7 @@ pub fn fly(
                 planes: Planes::All,
                 ..*settings
             };
-            Ok::<_, revmap::Error>(device.draw(&scene, &all)?.frame)
+            device.draw(&scene, &all)
         };
         let exact = picture(Tolerance::EXACT)?;
         errors.push((
@@ -106,8 +101,7 @@ impl FlightTimes {
         stats::median(&all).unwrap_or(f64::NAN)
     }
 
-    /// The largest error over the pictures that were compared, pixels: of 99.9 % of the pixels,
-    /// and of contours.
+    /// The largest error over the pictures, pixels: of 99.9 % of the pixels, and of contours.
     pub fn worst(&self) -> [f64; 2] {
         let most =
             |of: fn(&PixelErrors) -> f64| self.errors.iter().map(|e| of(&e.1)).fold(0.0, f64::max);

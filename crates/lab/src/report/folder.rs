@@ -1,5 +1,4 @@
-//! The folder of a run: `results.csv`, `raw.csv`, `excluded.csv`, `machine.txt`, and whatever
-//! pictures and pages belong to it.
+//! The folder of a run: its tables, the note on the machine, pictures and pages.
 
 use super::chart::Figure;
 use super::chart::pdf::pdf;
@@ -18,8 +17,7 @@ use revmap_files::Picture;
 pub use revmap_files::write_bytes;
 use std::path::{Path, PathBuf};
 
-/// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on. Results are
-/// never overwritten.
+/// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on.
 pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
     let mut folder = base.join(name);
     let mut count = 1;
@@ -120,8 +118,7 @@ pub fn write_text(file: &Path, text: &str) -> Result<()> {
     write_bytes(file, text.as_bytes())
 }
 
-/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, and as PDF without its
-/// title.
+/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, as PDF without title.
 pub(crate) fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     let charts = folder.join("charts");
     make(&charts)?;
@@ -138,8 +135,7 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// `raw.csv`: every sample. `row` counts the records of `results.csv` from 1; passes and rounds
-/// count from 1.
+/// `raw.csv`: every sample. Rows of `results.csv`, passes and rounds count from 1.
 pub fn raw(rows: &[Row]) -> Table {
     let header = [
         "row", "scene", "stage", "solver", "pass", "round", "gpu_ms", "frame_ms",
@@ -222,7 +218,7 @@ pub fn write(
     let excluded = excluded(plan, measured).csv();
     write_text(&folder.join("excluded.csv"), &excluded)?;
     let line = |(what, which): &(&str, String)| format!("{what}: {which}\n");
-    let note: String = machine.lines().iter().map(line).collect();
+    let note: String = machine.lines.iter().map(line).collect();
     write_text(&folder.join("machine.txt"), &note)
 }
 

@@ -1,15 +1,11 @@
-//! How much of the picture a view's solids take: whole, or close up.
-//!
-//! A solid seen whole leaves most of the picture empty, and what a frame costs anyhow (clearing,
-//! storing, ending) weighs much in its time. Close up the search weighs more; that is how games
-//! show solids, and how prototypes were measured. Summaries give both.
+//! How much of the picture a view's solids take: whole, or close up. Seen whole, a solid leaves
+//! most of the picture empty, and what a frame costs anyhow weighs much in its time.
 
 use super::view::{Framing, View};
 use glam::{DQuat, DVec3};
 use revmap::scene::{Camera, Light};
 
-/// Close up, the rectangle around the boxes is so many times as wide and as high as a picture of
-/// 4:3, whichever is less.
+/// Close up, the boxes' rectangle is so many times as wide or high as a picture of 4:3.
 pub const OVERFILL: f64 = 1.25;
 
 /// The part of the picture's height that the boxes fill when seen whole.
@@ -132,8 +128,7 @@ mod tests {
     use super::*;
     use revmap::scene::CameraFrame;
 
-    /// How far the boxes reach past the middle of the picture, as parts of half its width and
-    /// height: the most, and the mean of both sides.
+    /// How far the boxes reach, as parts of half the picture: the most, and the mean of both sides.
     fn reach(view: &View) -> [(f64, f64); 2] {
         let frame = CameraFrame::new(&view.scene.camera, 400, 300).unwrap();
         [(frame.right, 200.0), (frame.up, 150.0)].map(|(axis, half)| {
@@ -203,12 +198,8 @@ mod tests {
         use crate::method::MethodSettings;
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
-            let settings = MethodSettings {
-                width,
-                height,
-                ..MethodSettings::default()
-            };
-            for view in views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap() {
+            let settings = MethodSettings::default().sized(width, height);
+            for view in views(&Extent::ALL, &[0.0, 25.0, 60.0]).unwrap() {
                 let [whole, close] = [Framing::Whole, Framing::Close].map(|framing| {
                     let scene = view.clone().in_framing(framing).scene;
                     let frame = reference::draw(&scene, &(&settings).into(), &|_, _| {});

@@ -1,5 +1,4 @@
-//! The meanings of methods' names in a report, a sentence each: a reader of one page needs no
-//! other.
+//! The meanings of methods' names in a report, a sentence each.
 
 use super::measure::Measured;
 use super::page::Page;
@@ -43,8 +42,7 @@ const SOURCES: [&str; 4] = [
     "A. Ragragui, A. Ouazzani Chahdi, A. Arbah, H. El Moubtahij, A. Halli, K. Satori: Revolution-bump mapping with texture function adjustment according to the geometry of the revolved object. Journal of Graphic Engineering and Design, 2025",
 ];
 
-/// The names that occur in these rows, each with its meaning, in the order in which reports list
-/// them.
+/// The names that occur in these rows, each with its meaning, in the reports' order.
 pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);
     let mut all: Vec<(&'static str, String)> = Vec::new();

@@ -5,28 +5,17 @@
 pub struct Machine {
     /// The Vulkan device's name.
     pub device: String,
-    /// Its kind: discrete, integrated, virtual, cpu.
-    pub kind: String,
     /// Driver and version.
     pub driver: String,
-    /// The processor's name.
-    pub processor: String,
-    /// Threads that the program may use.
-    pub threads: usize,
-    /// Memory, GB; empty where the system does not tell.
-    pub memory: String,
-    /// The operating system.
-    pub system: String,
     /// Date and time of the start, UTC.
     pub date: String,
-    /// This program, its version and commit.
-    pub program: String,
-    /// The command that makes the results again.
-    pub command: String,
+    /// The note as `(what, which)`, without what the system does not tell.
+    pub lines: Vec<(&'static str, String)>,
 }
 
 impl Machine {
-    /// This machine, now. `version` is that of the program which measures.
+    /// This machine, now. `kind` is the device's: discrete, integrated, virtual, cpu. `version` is
+    /// that of the program which measures, `command` the one that makes the results again.
     pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
         let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -35,42 +24,32 @@ impl Machine {
         let memory = kilobytes.map(|kb| format!("{:.0} GB", kb / 1_048_576.0));
         let system = field(&read("/etc/os-release"), "PRETTY_NAME", '=');
         let processor = field(&read("/proc/cpuinfo"), "model name", ':');
-        let now = jiff::Timestamp::now();
+        let processor = processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+        let date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC");
+        let date = date.to_string();
+        let mut lines = vec![
+            ("device", format!("{device} ({kind})")),
+            ("driver", driver.to_owned()),
+            ("processor", format!("{processor}, {threads} threads")),
+            ("memory", memory.unwrap_or_default()),
+            (
+                "system",
+                system.unwrap_or_else(|| std::env::consts::OS.to_owned()),
+            ),
+            ("date", date.clone()),
+            ("program", format!("revmap {version}")),
+            ("command", command.to_owned()),
+        ];
+        lines.retain(|(_, which)| !which.is_empty());
         Self {
             device: device.to_owned(),
-            kind: kind.to_owned(),
             driver: driver.to_owned(),
-            processor: processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
-            threads,
-            memory: memory.unwrap_or_default(),
-            system: system.unwrap_or_else(|| std::env::consts::OS.to_owned()),
-            date: now.strftime("%Y-%m-%d %H:%M UTC").to_string(),
-            program: format!("revmap {version}"),
-            command: command.to_owned(),
+            date,
+            lines,
         }
     }
 
-    /// The note as `(what, which)`.
-    pub fn lines(&self) -> Vec<(&'static str, String)> {
-        let mut lines = vec![
-            ("device", format!("{} ({})", self.device, self.kind)),
-            ("driver", self.driver.clone()),
-            (
-                "processor",
-                format!("{}, {} threads", self.processor, self.threads),
-            ),
-            ("memory", self.memory.clone()),
-            ("system", self.system.clone()),
-            ("date", self.date.clone()),
-            ("program", self.program.clone()),
-            ("command", self.command.clone()),
-        ];
-        lines.retain(|(_, which)| !which.is_empty());
-        lines
-    }
-
-    /// A name for a folder of results, after day, device and the driver's version:
-    /// `2026-01-31-lavapipe-22.3.6`.
+    /// A folder's name after day, device and the driver's version: `2026-01-31-lavapipe-22.3.6`.
     pub fn folder(&self) -> String {
         let device = self.device.to_lowercase();
         let words = device.split(|c: char| !c.is_ascii_alphanumeric());
@@ -111,7 +90,7 @@ mod tests {
         here.driver = "NVIDIA".into();
         here.device = "NVIDIA GeForce RTX 4090".into();
         assert_eq!(here.folder(), "2026-01-31-nvidia-geforce-rtx");
-        assert!(here.lines().iter().all(|(_, which)| !which.is_empty()) && here.threads > 0);
+        assert!(here.lines.iter().all(|(_, which)| !which.is_empty()));
     }
 
     #[test]

@@ -1,9 +1,6 @@
-//! The error of a map by itself: the surface of its bilinear distances, found on the CPU without any
-//! search of the shaders, against the truth.
-//!
-//! Along a ray the map's `F = D - w` is read at points close enough to see every change of sign
-//! that a pixel shows, and the first change is halved to the last digit. What a drawn picture errs
-//! beyond this is the search's share.
+//! The error of a map by itself: the surface of its bilinear distances, found on the CPU, against
+//! the truth. Along a ray the map's `F = D - w` is read closely, and the first change of sign is
+//! halved to the last digit. What a drawn picture errs beyond this is the search's share.
 
 use super::plan::Plan;
 use crate::compare::{CompareOptions, Comparison, compare};
@@ -32,8 +29,7 @@ pub struct MapError {
 /// Samples along a ray are at most this many texels apart where the surface is near.
 const STRIDE: f64 = 0.25;
 
-/// Distances of the reference, kept while a plan is measured: the reference is slow, and no picture
-/// is drawn with it twice.
+/// Distances of the reference, which is slow: no picture is drawn with it twice.
 #[derive(Clone, Debug, Default)]
 pub struct Truths {
     known: Vec<(usize, (u32, u32), Vec<f32>)>,
@@ -89,11 +85,7 @@ pub fn measure(
     }
     let mut all = Vec::new();
     let mut truth: Option<(usize, Frame)> = None;
-    let settings = MethodSettings {
-        width: size.0,
-        height: size.1,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().sized(size.0, size.1);
     for (number, &(view, source, rows)) in wanted.iter().enumerate() {
         progress(number, wanted.len());
         let seen = &plan.views[view];
@@ -102,10 +94,7 @@ pub fn measure(
         }
         let Some((_, truth)) = &truth else { continue };
         let frame = draw(&seen.scene, size, source, rows)?;
-        let options = CompareOptions {
-            texel: seen.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(seen.texel());
         all.push(MapError {
             view,
             source,
@@ -172,8 +161,7 @@ fn hit(
         let w = offset.extend + offset.bevel * (1.0 - p.z).clamp(0.0, offset.chamfer.max(0.0));
         map.distance_at(p.x.hypot(p.y), p.z) - w
     };
-    // The map's distances change by at most the length of the way and a texel's interpolation; a
-    // bevel adds its slope.
+    // Distances change by at most the way and a texel's interpolation; a bevel adds its slope.
     let slope = (std::f64::consts::SQRT_2 + offset.bevel.abs()) * v.length();
     let stride = STRIDE * map.texel() / v.length();
     let mut t = start;
@@ -214,23 +202,14 @@ mod tests {
 
     /// The errors of a map against the reference.
     fn error(view: &View, size: (u32, u32), source: MapSource, rows: u32) -> Comparison {
-        let settings = MethodSettings {
-            width: size.0,
-            height: size.1,
-            ..MethodSettings::default()
-        };
+        let settings = MethodSettings::default().sized(size.0, size.1);
         let truth = reference::draw(&view.scene, &(&settings).into(), &|_, _| {});
         let frame = draw(&view.scene, size, source, rows).unwrap();
-        let options = CompareOptions {
-            texel: view.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(view.texel());
         compare(&truth.unwrap(), &frame, &options).unwrap()
     }
 
-    /// On straight flanks bilinear distances are exact but near edges: an exact map errs by next to
-    /// nothing, a binary one by about a third of a texel, which is two thirds of one at twice the
-    /// size of texels.
+    /// On straight flanks an exact map errs by next to nothing, a binary one by a third of a texel.
     #[test]
     fn errors_are_those_that_the_sources_are_known_for() {
         let view = spindle().framed(20.0);

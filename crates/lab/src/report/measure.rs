@@ -1,9 +1,9 @@
 //! Measuring a plan: accuracy once, time in passes and rounds.
 //!
-//! Measurements of one picture form a group and are taken in turn, A B A B, so that a machine that
-//! slows down slows all of them. All groups are gone through several times (*passes*), each time
-//! with everything built anew: what one placement in memory, or one bout of work beside ours, does
-//! to a time shows as spread between passes (see `stats`).
+//! Measurements of one picture are taken in turn, A B A B, so that a machine that slows down slows
+//! all of them. All groups are gone through several times (*passes*), each time with everything
+//! built anew: what one placement in memory does to a time shows as spread between passes (see
+//! `stats`).
 
 mod bench;
 
@@ -94,8 +94,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// All passes: as many as the plan means to take, then more over the groups with a time that is
-    /// not resolved, until all are or the limit is reached.
+    /// The plan's passes, then more over groups that are not resolved, until the limit.
     fn passes(&mut self, observer: &mut Observer) -> Result<()> {
         let (plan, budget) = (self.plan, self.budget);
         let groups = plan.groups();
@@ -193,14 +192,10 @@ impl Run<'_> {
         self.tell(observer, &format!("{}: the reference", view.name));
         let truth = self.truth(first, None)?;
         let rays = plan.truth != Truth::Reference;
-        let options = CompareOptions {
-            texel: view.texel(),
-            ..CompareOptions::default()
-        };
+        let options = CompareOptions::of(view.texel());
         let reference = compare::Reference::new(&truth, &options)?;
         let mut own: Option<(Method, Frame)> = None;
-        // While a frame is compared the next is made ready: drivers compile on one thread. Nothing
-        // is timed meanwhile.
+        // While a frame is compared the next is made ready: drivers compile on one thread.
         std::thread::scope(|scope| {
             let mut compared: Option<(usize, u64, ScopedJoinHandle<Compared>)> = None;
             for &index in group {
@@ -210,10 +205,7 @@ impl Run<'_> {
                 let case = plan.cases[index];
                 let method = case.settings.method;
                 self.tell(observer, &format!("{}: errors of {method}", view.name));
-                let settings = MethodSettings {
-                    planes: Planes::All,
-                    ..case.settings
-                };
+                let settings = case.settings.storing(Planes::All);
                 let drawn = self.bench.picture(view, &settings);
                 if let Some(one) = compared.take() {
                     self.keep(one, (&truth, &options), observer)?;
@@ -361,8 +353,7 @@ fn settled(samples: &[Sample], precision: f64) -> bool {
         return false;
     };
     let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // The standard error of a normal distribution's median is 1.25 sigma / sqrt n, sigma is 1.48
-    // median deviations.
+    // A normal distribution's median errs by 1.25 sigma / sqrt n, sigma is 1.48 median deviations.
     let deviation = super::stats::median(&off).unwrap_or(0.0);
     let error = 1.25 * 1.48 * deviation / (times.len() as f64).sqrt();
     times.len() >= 5 && 1.96 * error <= precision * middle

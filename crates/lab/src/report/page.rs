@@ -1,13 +1,14 @@
-//! A page that needs nothing beside itself: text, tables, charts and pictures in one HTML file,
-//! without scripts, for screens of any width and for print.
+//! A page that needs nothing beside itself, without scripts, for any screen and for print.
 
 use super::chart::Figure;
 use super::chart::letters::{FAMILY, FONT};
 use super::chart::svg::svg;
-use super::pictures::Shot;
+use super::folder::png;
 use super::table::Table;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use revmap::error::Result;
+use revmap_files::Picture;
 
 /// A page in the making.
 #[derive(Clone, Debug)]
@@ -112,20 +113,20 @@ impl Page {
         });
     }
 
-    /// Pictures side by side.
-    pub fn shots(&mut self, shots: &[&Shot]) {
-        let source = |shot: &Shot| {
-            format!(
-                "data:image/png;base64,{}",
-                BASE64_STANDARD.encode(&shot.small)
-            )
-        };
+    /// Pictures side by side, each with its caption.
+    pub fn shots(&mut self, shots: &[(Picture, String)]) -> Result<()> {
+        let mut sources = Vec::new();
+        for (picture, _) in shots {
+            let bytes = BASE64_STANDARD.encode(png(picture)?);
+            sources.push(format!("data:image/png;base64,{bytes}"));
+        }
         self.add(html! {
-            div.shots { @for shot in shots { figure {
-                img src=(source(shot)) alt=(shot.caption) width=(shot.size.0) height=(shot.size.1);
-                figcaption { (shot.caption) }
+            div.shots { @for ((picture, caption), source) in shots.iter().zip(sources) { figure {
+                img src=(source) alt=(caption) width=(picture.width) height=(picture.height);
+                figcaption { (caption) }
             } } }
         });
+        Ok(())
     }
 
     /// The whole file.

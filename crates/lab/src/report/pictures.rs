@@ -7,24 +7,12 @@ use super::names::{self, safe};
 use super::plan::{Labels, is_rbm_baseline};
 use crate::compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
 use crate::method::{Edges, Method, MethodSettings};
+use crate::mosaic::{enlarged, painted, pixel, tiled, worst_part};
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::settings::DrawStage;
-use revmap_files::{Picture, write_png};
+use revmap_files::Picture;
 use std::path::{Path, PathBuf};
-
-/// A picture made smaller for a page.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shot {
-    /// Index of the view.
-    pub view: usize,
-    /// Its title.
-    pub caption: String,
-    /// A PNG file's bytes.
-    pub small: Vec<u8>,
-    /// Its width and height.
-    pub size: (u32, u32),
-}
 
 /// The heat map of steps.
 pub const STEPS: Scale = Scale {
@@ -35,8 +23,7 @@ pub const STEPS: Scale = Scale {
 const WIDEST: u32 = 420;
 /// Heat maps of more views than this would bury the page.
 const HEATED_VIEWS: usize = 3;
-/// Beyond so many views, heat maps are of the first alone, and each view has a smaller
-/// picture.
+/// Beyond so many views, heat maps are of the first alone, and pictures are smaller.
 const MANY_VIEWS: usize = 12;
 /// Pictures of many views are at most this wide.
 const NARROW: u32 = 200;
@@ -48,8 +35,8 @@ pub struct Album {
     heat_maps: bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
-    /// The pictures.
-    pub shots: Vec<Shot>,
+    /// Pictures made smaller for a page: the view's index, the picture and its caption.
+    pub shots: Vec<(usize, (Picture, String))>,
 }
 
 impl Album {
@@ -67,9 +54,8 @@ impl Album {
         })
     }
 
-    /// Takes what is worth showing of a picture: each view once as it should look, then each way of
-    /// drawing it at that size, from one stage (the stages' pictures are alike): look-ups and
-    /// errors.
+    /// Takes what is worth showing: each view once as it should look, then look-ups and errors of
+    /// each way of drawing it at that size, from one stage.
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let settings = &seen.case.settings;
         let view = seen.case.view;
@@ -114,18 +100,12 @@ impl Album {
         let file = self.folder.join(format!("{}.png", safe(name)));
         write_bytes(&file, &png(picture)?)?;
         let small = reduced(picture, picture.width.div_ceil(widest).max(1));
-        self.shots.push(Shot {
-            view,
-            caption,
-            size: (small.width, small.height),
-            small: png(&small)?,
-        });
+        self.shots.push((view, (small, caption)));
         Ok(())
     }
 }
 
-/// True if a way of drawing is worth a heat map: in a sweep only searches as they are drawn by
-/// default, and at one middling bound on steps.
+/// True if a way of drawing is worth a heat map: in a sweep only the usual ones.
 fn worth(s: &MethodSettings) -> bool {
     let plain = s.map_rows.is_none()
         && s.map_source.is_none()
@@ -162,30 +142,23 @@ pub fn steps(frame: &Frame) -> Picture {
 
 /// A picture with each square of `factor` pixels made one, by their mean.
 pub fn reduced(picture: &Picture, factor: u32) -> Picture {
-    let side = |length: u32| (length / factor).max(1);
-    let (width, height) = (side(picture.width), side(picture.height));
-    let part = |k: u32, length: u32| k * factor..((k + 1) * factor).min(length);
-    let pixel = |x: u32, y: u32| {
-        let rows = part(y, picture.height);
-        let places = rows.flat_map(|j| part(x, picture.width).map(move |i| (i, j)));
-        let pixels = places.map(|(i, j)| picture.rgba[(j * picture.width + i) as usize]);
+    let side = |length: u32| (length / factor).max(1) as usize;
+    let size = [side(picture.width), side(picture.height)];
+    let part = |k: usize| k * factor as usize..(k + 1) * factor as usize;
+    painted(size, |x, y| {
+        let places = part(y).flat_map(|j| part(x).map(move |i| (i, j)));
+        let pixels = places.filter_map(|(i, j)| pixel(picture, i, j));
         let (mut sum, mut count) = ([0u32; 4], 0);
         for pixel in pixels {
             (0..4).for_each(|c| sum[c] += u32::from(pixel[c]));
             count += 1;
         }
         sum.map(|s| (s / count.max(1)) as u8)
-    };
-    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    Picture {
-        width,
-        height,
-        rgba: places.map(|(x, y)| pixel(x, y)).collect(),
-    }
+    })
 }
 
 /// Pixels of an enlarged part either way, and how often each is repeated.
-const PART: usize = 40;
+const PART: [usize; 2] = [40; 2];
 const ENLARGED: usize = 7;
 
 /// Collects the pictures of one view and stage, and writes their sheet when the next begins.
@@ -194,11 +167,10 @@ pub struct Sheets {
     folder: PathBuf,
     of: Option<(usize, DrawStage)>,
     name: String,
-    /// Each picture of one ray per pixel, in a part of which FLIP is largest.
-    worst: Vec<f32>,
-    width: usize,
-    colors: Vec<Vec<[f32; 4]>>,
-    truth: Vec<[f32; 4]>,
+    /// The part in which FLIP is largest with one ray per pixel.
+    worst: [usize; 2],
+    pictures: Vec<Picture>,
+    truth: Option<Picture>,
 }
 
 impl Sheets {
@@ -219,46 +191,29 @@ impl Sheets {
             let view = &seen.plan.views[seen.case.view].name;
             self.name = format!("antialiasing-{view}-{}.png", settings.stage.name());
             self.of = of;
-            self.width = seen.frame.width as usize;
-            self.truth.clone_from(&seen.truth.color);
+            self.truth = Some(Picture::of(seen.truth));
         }
         if settings.method == Method::DEFAULT && settings.edges == Edges::OneRay {
-            self.worst = flip_map(seen.truth, seen.frame, PIXELS_PER_DEGREE);
+            let flip = flip_map(seen.truth, seen.frame, PIXELS_PER_DEGREE);
+            let flip: Vec<f64> = flip.into_iter().map(f64::from).collect();
+            let size = [seen.frame.width, seen.frame.height].map(|side| side as usize);
+            self.worst = worst_part(&flip, size, PART, PART).1;
         }
-        self.colors.push(seen.frame.color.clone());
+        self.pictures.push(Picture::of(seen.frame));
         Ok(())
     }
 
     /// Writes the last sheet.
     pub fn finish(&mut self) -> Result<()> {
-        let mut colors = std::mem::take(&mut self.colors);
-        if colors.is_empty() {
+        let mut pictures = std::mem::take(&mut self.pictures);
+        if pictures.is_empty() {
             return Ok(());
         }
-        colors.push(std::mem::take(&mut self.truth));
-        let first = worst_part(&self.worst, self.width);
-        let side = PART * ENLARGED;
-        let mut frame = Frame::new((side * colors.len()) as u32, side as u32, [0.0; 4])?;
-        for (k, color) in frame.color.iter_mut().enumerate() {
-            let (x, y) = (k % (side * colors.len()), k / (side * colors.len()));
-            let from = first + y / ENLARGED * self.width + x % side / ENLARGED;
-            *color = colors[x / side].get(from).copied().unwrap_or_default();
-        }
-        write_png(&frame, self.folder.join(&self.name))
+        pictures.extend(self.truth.take());
+        let part = |picture| enlarged(picture, self.worst, PART, ENLARGED, [0; 4]);
+        let parts: Vec<Picture> = pictures.iter().map(part).collect();
+        tiled(&parts, parts.len(), 0).write_png(self.folder.join(&self.name))
     }
-}
-
-/// The first pixel of the part of a map whose sum is largest.
-fn worst_part(map: &[f32], width: usize) -> usize {
-    let columns = (width / PART).max(1);
-    let sum = |part: usize| {
-        let first = part / columns * PART * width + part % columns * PART;
-        let row = |y: usize| map.iter().skip(first + y * width).take(PART).sum::<f32>();
-        (first, (0..PART).map(row).sum::<f32>())
-    };
-    let parts = columns * (map.len() / (width * PART).max(1));
-    let worst = (0..parts).map(sum).max_by(|a, b| a.1.total_cmp(&b.1));
-    worst.map_or(0, |w| w.0)
 }
 
 #[cfg(test)]
@@ -294,13 +249,5 @@ mod tests {
         assert_eq!(small.rgba, [pixel(25), pixel(100)]);
         assert_eq!(reduced(&picture, 1), picture);
         assert!(png(&picture).unwrap().starts_with(b"\x89PNG"));
-    }
-
-    #[test]
-    fn the_worst_part_is_found() {
-        let mut map = vec![0.0; 120 * 80];
-        map[50 * 120 + 95] = 1.0;
-        assert_eq!(worst_part(&map, 120), 40 * 120 + 80);
-        assert_eq!(worst_part(&[], 120), 0);
     }
 }

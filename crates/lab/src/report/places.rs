@@ -1,5 +1,4 @@
-//! The groups of rows that have tables and charts of their own: all of a run, those of a picture, a
-//! framing, a stage or a size.
+//! The groups of rows that have tables and charts of their own.
 
 use super::columns::Context;
 use super::exhibit::{Exhibit, Per};
@@ -116,9 +115,7 @@ pub(super) fn places<'a>(context: &Context, rows: &[&'a Row], per: Per) -> Vec<P
     }
 }
 
-/// The content of rows in words:
-/// `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`. Little is hit in some, and
-/// what a frame costs anyhow weighs much in their times.
+/// `close: 24 pictures, of which 44.8 to 80.5 % of the pixels are hit`.
 fn title(name: &str, rows: &[&Row]) -> String {
     let pictures = grouped(rows, |r| r.picture());
     let shares = || pictures.iter().map(|(_, rows)| rows[0].covered());

@@ -8,8 +8,7 @@ use super::row::Row;
 use super::stats::{Interval, Verdict};
 use super::table::Table;
 
-/// One of the published tables, measured by the authors on an Intel Core i7-3612QM with a GeForce
-/// GT 630M.
+/// A published table, measured by its authors on a Core i7-3612QM with a GeForce GT 630M.
 pub struct Printed {
     /// Its number in the article.
     pub number: &'static str,

@@ -1,5 +1,4 @@
-//! Times in proportion to those of other rows, over all views: the tables that say which way of
-//! drawing is faster, and how sure that is.
+//! Times in proportion to those of other rows: which way is faster, and how sure that is.
 
 use super::plan::{grouped, is_rbm_baseline, variant};
 use super::row::{Row, Sample};
@@ -89,7 +88,8 @@ fn is_exact_default(row: &Row) -> bool {
     s.method == Method::DEFAULT && (s.tolerance, s.edges) == (Tolerance::EXACT, Edges::OneRay)
 }
 
-/// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no more.
+/// The row of a mesh that shows the same picture: of this one, or of the coarsest that errs no
+/// more.
 fn mesh_row<'a>(
     rows: impl Iterator<Item = &'a Row>,
     row: &Row,
@@ -109,8 +109,7 @@ fn mesh_row<'a>(
 pub struct Ratio<'a> {
     /// The way, without its size.
     pub settings: MethodSettings,
-    /// The mesh that it is put over, in tables over meshes; `None`: in each picture the coarsest
-    /// that errs no more in depth.
+    /// The mesh that it is put over; `None`: in each picture the coarsest that errs no more.
     pub mesh: Option<Method>,
     /// Time over the other's: the geometric mean over views and sizes, with its 95 % interval.
     pub time: Interval,
@@ -127,8 +126,7 @@ impl Ratio<'_> {
         sum(|r| r.errors.missed + r.errors.ghost) / sum(|r| r.errors.hits).max(1.0)
     }
 
-    /// In how many of the pictures the other row errs no more in depth: only there a ratio of times
-    /// is one of equals.
+    /// In how many pictures the other row errs no more in depth: there equals are compared.
     pub fn no_worse(&self) -> usize {
         let exact = |(row, other): &&(&Row, &Row)| errs_no_more(other, row);
         self.pairs.iter().filter(exact).count()
@@ -223,8 +221,7 @@ pub fn above_floor<'a>(rows: impl IntoIterator<Item = &'a Row>, row: &Row) -> Op
     (row.settings.method != Method::Floor).then_some(above)
 }
 
-/// The time of `a` over that of `b`, two rows that were drawn in turn; `None` where a clock cannot
-/// be trusted.
+/// The time of `a` over that of `b`, drawn in turn; `None` where a clock cannot be trusted.
 pub fn between(a: &Row, b: &Row) -> Option<Interval> {
     a.time().and(b.time())?;
     let passes = a.passes.len().min(b.passes.len());

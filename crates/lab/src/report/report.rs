@@ -39,8 +39,7 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Writes the page, the charts and the tables that are files; returns the text of the tables
-    /// that are printed.
+    /// Writes page, charts and tables; returns the text of the tables that are printed.
     pub fn write(&self, folder: &Path) -> Result<String> {
         let rows: Vec<&Row> = self.measured.rows.iter().collect();
         let resolved = self.file.time.resolved;
@@ -86,7 +85,7 @@ impl Run<'_> {
             page.table(&out, &[1, 2, 3, 4]);
         }
         page.chapter("How this was measured");
-        page.facts(&self.machine.lines());
+        page.facts(&self.machine.lines);
         let ends = |of: fn(&Row) -> usize| {
             let all = || measured.rows.iter().map(of);
             (all().min().unwrap_or(0), all().max().unwrap_or(0))
@@ -161,7 +160,7 @@ impl<'a> Writer<'a> {
         if exhibit.name == "shots" {
             if !self.run.album.shots.is_empty() {
                 self.begin();
-                shots(&mut self.page, self.run.plan, self.run.album);
+                shots(&mut self.page, self.run.plan, self.run.album)?;
             }
             return Ok(());
         }
@@ -261,19 +260,21 @@ impl<'a> Writer<'a> {
 }
 
 /// The pictures of each view: one by itself, then pairs of heat maps in even columns.
-fn shots(page: &mut Page, plan: &Plan, album: &Album) {
+fn shots(page: &mut Page, plan: &Plan, album: &Album) -> Result<()> {
     page.text(&heat_key());
     for (index, view) in plan.views.iter().enumerate() {
-        let shots: Vec<_> = album.shots.iter().filter(|s| s.view == index).collect();
-        if shots.is_empty() {
+        let own = album.shots.iter().filter(|s| s.0 == index);
+        let shots: Vec<_> = own.map(|s| s.1.clone()).collect();
+        let Some((first, rest)) = shots.split_first() else {
             continue;
-        }
+        };
         page.heading(&view.name);
-        let (first, rest) = shots.split_at(1);
-        for shots in [first, rest].into_iter().filter(|s| !s.is_empty()) {
-            page.shots(shots);
+        page.shots(std::slice::from_ref(first))?;
+        if !rest.is_empty() {
+            page.shots(rest)?;
         }
     }
+    Ok(())
 }
 
 /// A heading of words that begin small.

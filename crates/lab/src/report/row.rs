@@ -2,7 +2,7 @@
 
 use super::plan::Case;
 use super::stats::{self, Interval};
-use super::view::{Framing, Technique, View};
+use super::view::{Framing, View};
 use crate::compare::{Comparison, PixelErrors};
 use crate::method::{Method, MethodSettings};
 use revmap::frame::Frame;
@@ -42,8 +42,7 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Look-ups of a frame. Pixels in which no look-up was made do not count: they are not covered by any
-    /// box.
+    /// Look-ups of a frame, over the pixels with any: others are not covered by a box.
     pub fn of(frame: &Frame) -> Self {
         let looked = frame.steps.iter().filter(|s| **s > 0.0);
         let steps: Vec<f64> = looked.map(|s| f64::from(*s)).collect();
@@ -63,8 +62,7 @@ pub enum Clocks {
     Agree,
     /// The device has no clock of its own; the wall clock stands alone.
     Wall,
-    /// They are further apart than [`CLOCKS_APART`]: at least one is wrong, and the row counts in
-    /// no summary.
+    /// They are further apart than [`CLOCKS_APART`]: the row counts in no summary.
     Disagree {
         /// Median of the device's clock, ms.
         gpu_ms: f64,
@@ -83,7 +81,7 @@ pub struct Row {
     /// How much of the picture its solids take.
     pub framing: Framing,
     /// Form of the offset.
-    pub technique: Technique,
+    pub technique: &'static str,
     /// The offset, where all objects have the same.
     pub offset: Option<Offset>,
     /// How it was drawn.
@@ -216,8 +214,7 @@ impl Row {
         self.passes.iter().filter_map(median).collect()
     }
 
-    /// The time of a frame with its interval, ms; `None` where the clocks disagree, or nothing was
-    /// timed.
+    /// The time of a frame, ms; `None` where the clocks disagree, or nothing was timed.
     pub fn time(&self) -> Option<Interval> {
         match self.clocks() {
             Clocks::Disagree { .. } => None,

@@ -1,5 +1,4 @@
-//! Which way of drawing looks how: a search has one colour, marker and dash in every chart of every
-//! report.
+//! Which way of drawing looks how, in every chart of every report.
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::chart::xy::Guide;
@@ -47,8 +46,7 @@ pub fn style(s: &MethodSettings) -> Style {
     look
 }
 
-/// The line of the floor's time in a chart over times: solid in the fragment stage, dotted in
-/// compute.
+/// The line of the floor's time: solid in the fragment stage, dotted in compute.
 pub(super) fn floor_line(s: &MethodSettings, time: f64) -> Guide {
     // Over every axis of errors.
     let points = vec![(time, 1e-12), (time, 1e12)];
@@ -88,10 +86,7 @@ impl SeriesStyles {
             if ways.iter().any(|(known, _)| *known == way) {
                 continue;
             }
-            let wanted = style(&MethodSettings {
-                stage: DrawStage::Fragment,
-                ..*s
-            });
+            let wanted = style(&s.in_stage(DrawStage::Fragment));
             let free = |marker: &Marker| {
                 let taken = |k: &Style| (k.color, k.marker) == (wanted.color, *marker);
                 !ways.iter().any(|(_, known)| taken(known))

@@ -1,10 +1,8 @@
-//! The few statistics that benchmarks need: medians, intervals that are honest about few samples,
-//! geometric means, power laws.
+//! Medians, intervals that are honest about few samples, geometric means, power laws.
 //!
-//! Times on one machine drift and come in bouts: neighbouring samples are alike, so an interval
-//! from all of them would be too narrow. Samples are therefore taken in several *passes*, minutes
-//! apart and with everything built anew; the median of a pass is one observation, and intervals are
-//! Student's over these few observations (the method of batch means).
+//! Times on one machine drift and come in bouts: an interval from neighbouring samples would be too
+//! narrow. Samples are taken in several *passes* with everything built anew; the median of a pass
+//! is one observation, and intervals are Student's over these (the method of batch means).
 
 /// A value with the interval that covers it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,20 +86,15 @@ fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
 /// observation has an interval that excludes nothing; `None` of nothing, or of what is not
 /// positive.
 pub fn geometric(observations: &[f64]) -> Option<Interval> {
-    if observations.is_empty() || !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
+    if !observations.iter().all(|v| *v > 0.0 && v.is_finite()) {
         return None;
     }
     let logs: Vec<f64> = observations.iter().map(|v| v.ln()).collect();
-    let Some((mean, error)) = mean_and_error(&logs) else {
-        return Some(Interval::new(observations[0], 0.0, f64::INFINITY));
-    };
-    let reach = student(logs.len() as f64 - 1.0) * error;
-    let [value, low, high] = [mean, mean - reach, mean + reach].map(f64::exp);
-    Some(Interval::new(value, low, high))
+    let Interval { value, low, high } = mean(&logs)?;
+    Some(Interval::new(value.exp(), low.exp(), high.exp()))
 }
 
-/// The mean of observations with Student's interval; a single one has an interval that excludes
-/// nothing. `None` of nothing.
+/// The mean with Student's interval, which excludes nothing for one value; `None` of nothing.
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {
         let alone = |&value| Interval::new(value, f64::NEG_INFINITY, f64::INFINITY);
@@ -111,13 +104,11 @@ pub fn mean(observations: &[f64]) -> Option<Interval> {
     Some(Interval::new(value, value - reach, value + reach))
 }
 
-/// The ratio of the geometric means of two independent sets of observations, `a / b`, with Welch's
-/// interval.
+/// The ratio `a / b` of geometric means of independent observations, with Welch's interval.
 pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
     let value = geometric(a)?.value / geometric(b)?.value;
-    let logs = |v: &[f64]| v.iter().map(|x| x.ln()).collect::<Vec<_>>();
-    let (Some((_, ea)), Some((_, eb))) = (mean_and_error(&logs(a)), mean_and_error(&logs(b)))
-    else {
+    let error = |v: &[f64]| mean_and_error(&v.iter().map(|x| x.ln()).collect::<Vec<_>>());
+    let (Some((_, ea)), Some((_, eb))) = (error(a), error(b)) else {
         return Some(Interval::new(value, 0.0, f64::INFINITY));
     };
     let (va, vb) = (ea * ea, eb * eb);

@@ -1,5 +1,4 @@
-//! The table of all outputs: comma-separated values in files, aligned columns on standard output,
-//! rows of a page (`Page::table`).
+//! The table of all outputs: of files, of standard output and of pages.
 
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;

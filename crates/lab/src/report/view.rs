@@ -23,8 +23,7 @@ pub struct View {
 /// How much of the picture is solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Framing {
-    /// The scene's own camera: for the program's own solids nine tenths of the picture's height, or of
-    /// its width in a picture of 4:3.
+    /// The scene's own camera: the program's solids fill nine tenths of the height or width.
     Whole,
     /// The field of view narrowed until the boxes are larger than a picture of 4:3 by the factor
     /// `OVERFILL` in `framing.rs`; a wider one may show their sides.
@@ -41,49 +40,14 @@ impl Framing {
     }
 }
 
-/// Which form of the offset a scene's objects have (articles of 2022 and 2025).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Technique {
-    /// The profile itself.
-    Revolution,
-    /// `w = e`.
-    Extended,
-    /// `w = e + b u`.
-    Beveled,
-    /// `w = e + b min(u, c)`.
-    Chamfered,
-    /// Objects of several forms.
-    Mixed,
-}
-
-impl Technique {
-    /// The technique of one object's offset.
-    pub fn of(offset: &Offset) -> Self {
-        match (
-            offset.extend != 0.0,
-            offset.bevel != 0.0 && offset.chamfer > 0.0,
-        ) {
-            (false, false) => Self::Revolution,
-            (true, false) => Self::Extended,
-            (_, true) if offset.chamfer < 1.0 => Self::Chamfered,
-            (_, true) => Self::Beveled,
-        }
-    }
-
-    /// Its name in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Revolution => "revolution",
-            Self::Extended => "extended",
-            Self::Beveled => "beveled",
-            Self::Chamfered => "chamfered",
-            Self::Mixed => "mixed",
-        }
-    }
-
-    /// True if the offset changes with height, for which the papers take more iterations.
-    pub fn is_beveled(self) -> bool {
-        matches!(self, Self::Beveled | Self::Chamfered | Self::Mixed)
+/// The form of an offset (articles of 2022 and 2025): `w = 0`, `e`, `e + b u`, `e + b min(u, c)`.
+fn technique(offset: &Offset) -> &'static str {
+    let beveled = offset.bevel != 0.0 && offset.chamfer > 0.0;
+    match (offset.extend != 0.0, beveled) {
+        (false, false) => "revolution",
+        (true, false) => "extended",
+        (_, true) if offset.chamfer < 1.0 => "chamfered",
+        (_, true) => "beveled",
     }
 }
 
@@ -99,12 +63,12 @@ impl View {
         }
     }
 
-    /// The form of its objects.
-    pub fn technique(&self) -> Technique {
-        let forms = self.scene.objects.iter().map(|o| Technique::of(&o.offset));
+    /// The form of its objects' offsets, as results name it.
+    pub fn technique(&self) -> &'static str {
+        let forms = self.scene.objects.iter().map(|o| technique(&o.offset));
         match self.scene.objects.is_empty() {
-            true => Technique::Revolution,
-            false => one(forms).unwrap_or(Technique::Mixed),
+            true => "revolution",
+            false => one(forms).unwrap_or("mixed"),
         }
     }
 
@@ -120,8 +84,7 @@ impl View {
     }
 
     /// World length of a texel of a 512-row map under the smallest factor of scale: the unit of
-    /// depth errors. It does not depend on the rows of the map that is drawn, so that errors of
-    /// different maps compare.
+    /// depth errors, whatever rows the drawn map has.
     pub fn texel(&self) -> f64 {
         let placements = self.scene.objects.iter().flat_map(|o| o.placements());
         let least = placements.fold(f64::INFINITY, |s, p| s.min(p.scale.min_element()));
@@ -177,13 +140,13 @@ pub(crate) mod tests {
                 bevel,
                 chamfer,
             };
-            assert_eq!(Technique::of(&offset).name(), wanted);
+            assert_eq!(technique(&offset), wanted);
         }
         let mut two = spindle();
         two.scene.objects.push(two.scene.objects[0].clone());
-        assert_eq!(two.technique(), Technique::Revolution);
+        assert_eq!(two.technique(), "revolution");
         two.scene.objects[1].offset.extend = 0.1;
-        assert_eq!((two.technique(), two.offset()), (Technique::Mixed, None));
+        assert_eq!((two.technique(), two.offset()), ("mixed", None));
     }
 
     #[test]

@@ -23,19 +23,12 @@ pub struct Case {
     pub cure: String,
     /// The values of the parameter, in order.
     pub values: Vec<f64>,
-    /// The scene at a value.
-    #[serde(skip, default = "no_scene")]
-    pub scene: fn(f64) -> Step,
     /// What the default is known to fail, each with its reason.
     #[serde(default)]
     pub known: Vec<Known>,
     /// Whether its scenes are the frames of a motion, between which no pixel may flicker.
     #[serde(default)]
     pub motion: bool,
-}
-
-fn no_scene() -> fn(f64) -> Step {
-    |_| Step::new(String::new())
 }
 
 /// One scene of a case.
@@ -60,7 +53,6 @@ pub struct Known {
 
 impl Case {
     /// Whether the default is known to fail at a value of the parameter.
-    #[must_use]
     pub fn is_known(&self, value: f64) -> bool {
         let mut known = self.known.iter().map(|k| k.values[0]..=k.values[1]);
         known.any(|values| values.contains(&value))
@@ -69,7 +61,6 @@ impl Case {
 
 impl Step {
     /// A scene in a picture of 160 x 120 pixels, drawn exactly.
-    #[must_use]
     pub fn new(scene: String) -> Self {
         Self {
             scene,
@@ -83,13 +74,11 @@ impl Step {
     }
 
     /// A scene with a camera at `eye` that looks at `target`, field of view 40 degrees.
-    #[must_use]
     pub fn seen(eye: [f64; 3], target: [f64; 3]) -> Self {
         Self::through(eye, target, 40.0)
     }
 
     /// The same with a vertical field of view in degrees.
-    #[must_use]
     pub fn through(eye: [f64; 3], target: [f64; 3], fov_y: f64) -> Self {
         let mut text = format!("[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov_y:?}\n");
         // Straight down or up: any other direction will do.
@@ -100,48 +89,39 @@ impl Step {
     }
 
     /// With a line before the first table, as for `shadow`.
-    #[must_use]
     pub fn with(mut self, line: &str) -> Self {
         self.scene.insert_str(0, &format!("{line}\n"));
         self
     }
 
     /// With a light that travels along `direction`.
-    #[must_use]
     pub fn lit(mut self, direction: [f64; 3]) -> Self {
         let _ = writeln!(self.scene, "[[light]]\ndirection = {direction:?}");
         self
     }
 
     /// With an object of a polygon in a box of radius 0.5; `keys` are further lines.
-    #[must_use]
     pub fn solid(self, polygon: &[[f64; 2]], keys: &str) -> Self {
         self.object(&format!("polygon = {polygon:?}\n{keys}"))
     }
 
     /// With an object of these lines.
-    #[must_use]
     pub fn object(mut self, keys: &str) -> Self {
         let _ = writeln!(self.scene, "[[object]]\n{keys}");
         self
     }
 
     /// In a picture of another size.
-    #[must_use]
     pub fn sized(mut self, width: u32, height: u32) -> Self {
         (self.settings.width, self.settings.height) = (width, height);
         self
     }
 
     /// The scene; `folder` holds the files that it names.
-    ///
-    /// # Errors
-    /// As [`SceneFile::parse`] and [`SceneFile::scene`].
     pub fn read(&self, folder: &Path) -> Result<Scene> {
         SceneFile::parse(&self.scene, folder)?.scene(&[])
     }
 }
 
-/// The searches that the catalogue compares: the RBM baseline, the map search, the exact search,
-/// the default.
+/// The searches compared: the RBM baseline, the map search, the exact search, the default.
 pub const SOLVERS: [Solver; 4] = [CIRCLE, Solver::Live, Solver::Quadric, Solver::DEFAULT];

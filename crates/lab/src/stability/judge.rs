@@ -2,25 +2,21 @@
 //!
 //! A pixel is **wrong** when no solid within the tolerance of the true one could have given it: its
 //! ray goes deeper into the solid than the tolerance before the drawn hit (or without one), or the
-//! drawn hit is farther from the surface than the tolerance. At a silhouette both answers are right
-//! as long as the ray comes that near to the surface.
+//! drawn hit is farther from the surface than the tolerance.
 //!
 //! The tolerance is derived, in object units:
 //!
 //! - a tenth of a texel of 512 rows: what the maps and the pieces promise;
-//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance: rays
-//!   are 32-bit numbers;
+//! - 8 roundings (2^-24 each) of the extents of the solid and of the picture at its distance;
 //! - for a drawn hit, 4 roundings of its distance: of the depth, of the length of the ray's
-//!   direction, of their product, and of the reference's own number. Frames store distances in 32
-//!   bits;
-//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes with
-//!   the place.
+//!   direction, of their product, and of the reference's own number;
+//! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes.
 //!
-//! Colours are compared where a pixel is not wrong: a colour is a fault when one of its channels is
-//! outside of what the 3 x 3 pixels about it have in the reference, by more than [`COLOR`]. A
-//! shadow's edge may lie a pixel off, and a texture may be filtered. To those belong the colours
-//! that the reference has for rays moved aside by the tolerance, and for ways to the lights that
-//! begin that far off the surface: an edge rounded by less than a texel shows any of its normals.
+//! A colour is a fault, where a pixel is not wrong, when one of its channels is outside of what the
+//! 3 x 3 pixels about it have in the reference by more than [`COLOR`]: a shadow's edge may lie a
+//! pixel off. To those belong the reference's colours for rays moved aside by the tolerance, and
+//! for ways to the lights that begin that far off the surface: a rounded edge shows any of its
+//! normals.
 
 use super::case::Step;
 use crate::compare::{CompareOptions, Heat, compare, heat_map};
@@ -63,16 +59,14 @@ pub struct Judged {
     pub color: usize,
     /// Pixels whose colour in the other stage is a fault; 0 in the first stage that is judged.
     pub stages: usize,
-    /// Pixels that flicker: those whose fault is another one than in the frame before; `None` in a
-    /// frame that has none before it.
+    /// Pixels whose fault is another one than in the frame before; `None` without one.
     pub flicker: Option<usize>,
 }
 
 /// The faults of a frame, pixel by pixel.
 #[derive(Clone, Debug)]
 pub struct Faults {
-    /// Of each faulty pixel the error of its distance, world units: infinite for a ghost or a miss,
-    /// 0 where the colour alone is wrong.
+    /// The error of each faulty pixel's distance, world units: infinite, or 0 for a colour alone.
     pixels: Vec<Option<f64>>,
     /// What errors may differ by: each of two is known to within this.
     tolerance: f64,
@@ -81,10 +75,6 @@ pub struct Faults {
 impl Faults {
     /// Pixels that flicker from this frame to the `next`: faulty in one of them alone, or in both
     /// by errors of distance that differ by more than the tolerances of the two.
-    ///
-    /// Pixels that are right in both frames follow the reference to within the tolerance, so their
-    /// changes are the reference's.
-    #[must_use]
     pub fn flicker(&self, next: &Self) -> usize {
         let bound = self.tolerance + next.tolerance;
         let pairs = self.pixels.iter().zip(&next.pixels);
@@ -99,25 +89,21 @@ impl Faults {
 
 impl Judged {
     /// The faults that count: none in a case that passes.
-    #[must_use]
     pub fn faults(&self) -> usize {
         self.wrong + self.not_finite + self.exhausted + self.color + self.stages
     }
 
     /// Faults as a part of the pixels that the reference hits.
-    #[must_use]
     pub fn share(&self) -> f64 {
         self.faults() as f64 / self.hits.max(1) as f64
     }
 
     /// Pixels that flicker as a part of those that the reference hits.
-    #[must_use]
     pub fn flicker_share(&self) -> Option<f64> {
         Some(self.flicker? as f64 / self.hits.max(1) as f64)
     }
 
     /// Whether the picture passes with at most so many faults.
-    #[must_use]
     pub fn passes(&self, limit: usize) -> bool {
         let flickers = self.flicker.unwrap_or(0) > limit;
         self.not_finite == 0 && self.faults() <= limit && !flickers
@@ -146,11 +132,9 @@ impl std::fmt::Display for Judged {
 pub struct Truth<'a> {
     /// The reference's frame.
     pub frame: Frame,
-    /// Faults that a frame may have and still pass: 1 in 10,000 pixels, and at least 2.
-    ///
-    /// A pixel where two edges of triangles meet, or where a ray runs exactly along a face, is
-    /// decided by one rounding; both happen on lines. A picture of `n` pixels has of the order of
-    /// `sqrt(n)` pixels on a line, and one of those in about a hundred is decided that way.
+    /// Faults that a frame may have and still pass: 1 in 10,000 pixels, and at least 2. On lines
+    /// where edges meet or rays run along a face, about one pixel in a hundred is decided by one
+    /// rounding, and of `n` pixels of the order of `sqrt(n)` lie on a line.
     pub limit: usize,
     reference: Reference,
     painter: Colors<'a>,
@@ -168,9 +152,6 @@ pub struct Truth<'a> {
 
 impl<'a> Truth<'a> {
     /// Draws the reference of a step's scene.
-    ///
-    /// # Errors
-    /// As [`revmap_reference::draw`].
     pub fn new(scene: &'a Scene, step: &Step) -> Result<Self> {
         let frame = revmap_reference::draw(scene, &step.settings, &|_, _| {})?;
         let reference = Reference::new(scene)?;
@@ -220,24 +201,15 @@ impl<'a> Truth<'a> {
     }
 
     /// Where a frame's depths are wrong.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
     pub fn heat(&self, frame: &Frame) -> Result<Picture> {
         heat_map(&self.frame, frame, &self.options(), Heat::Depth)
     }
 
-    /// Judges a frame, with the faults of each pixel; `other` is the same picture by the other
-    /// stage.
-    ///
-    /// # Errors
-    /// When the frames differ in size.
+    /// Judges a frame, with the faults of each pixel; `other` is the other stage's.
     pub fn judge(&self, frame: &Frame, other: Option<&Frame>) -> Result<(Judged, Faults)> {
         let errors = compare(&self.frame, frame, &self.options())?;
-        let wrong: Vec<bool> = (0..frame.pixels())
-            .into_par_iter()
-            .map(|k| self.is_wrong(frame, k))
-            .collect();
+        let pixels = (0..frame.pixels()).into_par_iter();
+        let wrong: Vec<bool> = pixels.map(|k| self.is_wrong(frame, k)).collect();
         let unlike = |truth: &Frame| {
             (0..frame.pixels())
                 .filter(|&k| !wrong[k] && is_strange(truth, frame, k, colors_about(truth, k)))
@@ -312,9 +284,7 @@ impl<'a> Truth<'a> {
         if !hit && !drawn || truth == z {
             return false;
         }
-        // The drawn point is that near to a true one. Where cells or boxes cut a solid, the
-        // clearance alone does not tell it: on the other side of the cut it is that of another
-        // solid.
+        // Where cells or boxes cut a solid, the clearance does not tell how near the true point is.
         if hit && drawn && (z - truth).abs() <= 0.1 * self.texel {
             return false;
         }
@@ -322,8 +292,7 @@ impl<'a> Truth<'a> {
         let [silhouette, tolerance] = self.tolerance;
         let fine = 0.05 * silhouette;
         if drawn {
-            // A hit on a face between cells may be rounded into the cell beyond, which need not be
-            // solid there.
+            // A hit on a face between cells may be rounded into a cell that is not solid there.
             let about = [z * (1.0 - 4.0 * ROUNDING), z * (1.0 + 4.0 * ROUNDING)];
             if !self.reference.goes_deeper(ray, about, -tolerance, fine) {
                 return true;
@@ -355,16 +324,10 @@ impl<'a> Truth<'a> {
 }
 
 fn not_finite(frame: &Frame) -> usize {
-    let bad = |k: usize| {
-        let values = frame.pixel(k);
-        CHANNELS
-            .iter()
-            .zip(values)
-            .any(|(name, v)| !(v.is_finite() || *name == "Z" && v == f32::INFINITY))
-    };
-    (0..frame.pixels())
-        .into_par_iter()
-        .filter(|&k| bad(k))
+    let bad = |(name, v): (&&str, f32)| !(v.is_finite() || *name == "Z" && v == f32::INFINITY);
+    let pixels = (0..frame.pixels()).into_par_iter();
+    pixels
+        .filter(|&k| CHANNELS.iter().zip(frame.pixel(k)).any(bad))
         .count()
 }
 

@@ -1,7 +1,7 @@
-//! Random scenes, held to the reference; one that fails is reduced to the smallest that still
-//! fails.
+//! Random scenes, held to the reference, and reduced to the smallest that still fail.
 
 use super::case::Step;
+use super::cases::on_half_turn;
 use super::judge::Truth;
 use super::run::both_stages;
 use crate::report::folder::write_text;
@@ -100,16 +100,7 @@ impl Random {
         match (4.0 * self.next()) as u32 {
             // Half a star, both ends on the axis.
             0 => (0..=count)
-                .map(|k| {
-                    let angle = PI * (k as f64 / last - 0.5);
-                    let radius = self.within(0.15, 0.48);
-                    let r = if k == 0 || k == count {
-                        0.0
-                    } else {
-                        radius * angle.cos()
-                    };
-                    [r, 0.5 + radius * angle.sin()]
-                })
+                .map(|k| on_half_turn(k, count, self.within(0.15, 0.48)))
                 .collect(),
             // A whole star off the axis: a ring.
             1 => (0..count)
@@ -181,7 +172,6 @@ impl Random {
 
 impl Draft {
     /// The scene of a seed.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
         let r = &mut random;
@@ -229,7 +219,6 @@ impl Draft {
     }
 
     /// The scene as TOML.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
         for line in &self.lines {
@@ -285,11 +274,7 @@ impl Draft {
         all
     }
 
-    /// What the default fails in this scene, in either stage; `None` where it passes, or where the
-    /// scene is refused.
-    ///
-    /// # Errors
-    /// Of files, and of the device's validation.
+    /// What the default fails in this scene; `None` where it passes, or the scene is refused.
     pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
         for (name, rows) in self.instance_files() {
             write_text(&folder.join(name), &rows)?;
@@ -317,9 +302,6 @@ impl Draft {
     }
 
     /// The smallest scene that still fails, taking away one part at a time.
-    ///
-    /// # Errors
-    /// As [`Draft::fails`].
     pub fn reduced(&self, device: &Device, folder: &Path) -> Result<Self> {
         let mut now = self.clone();
         'again: loop {
@@ -336,9 +318,6 @@ impl Draft {
 
 /// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
 /// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
-///
-/// # Errors
-/// As [`Draft::fails`].
 pub fn run(
     device: &Device,
     (seed, count): (u64, u64),

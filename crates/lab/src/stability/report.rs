@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use super::judge::Judged;
-use super::run::{Exhibit, Outcome, STAGES, Trial, Verdict};
-use crate::method::{Method, MethodSettings};
+use super::run::{Outcome, STAGES, Trial, Verdict};
+use crate::method::MethodSettings;
 use crate::report::chart::Figure;
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Point, Series, XyChart};
@@ -11,12 +11,10 @@ use crate::report::folder::{keep_figure, make, png, write_bytes, write_text};
 use crate::report::machine::Machine;
 use crate::report::names::number;
 use crate::report::page::Page;
-use crate::report::pictures::Shot;
 use crate::report::series_style;
 use crate::report::table::Table;
 use revmap::error::Result;
 use revmap::settings::{DrawStage, Solver};
-use revmap_files::Picture;
 use std::path::Path;
 
 /// What shares of faults are drawn at where there are none, percent.
@@ -57,24 +55,20 @@ fn drawn(cases: &[Case], outcome: &Outcome) -> Vec<usize> {
 }
 
 /// The table of cases and searches: the worst share of faults in each, and the verdict.
-#[must_use]
 pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
     let header = ["case", "swept over"].into_iter();
     let record = |k: usize| {
         let named = [cases[k].name.clone(), cases[k].parameter.clone()];
-        let cells = solvers.iter().map(|&s| worst(of(outcome, k, s)));
-        let cells = cells.map(|trial| trial.map(cell).unwrap_or_default());
-        named.into_iter().chain(cells).collect()
+        let worst = |&s: &Solver| worst(of(outcome, k, s)).map(cell).unwrap_or_default();
+        named.into_iter().chain(solvers.iter().map(worst)).collect()
     };
-    Table::new(
-        header.chain(solvers.iter().map(|s| s.name())),
-        drawn(cases, outcome).into_iter().map(record).collect(),
-    )
+    let records = drawn(cases, outcome).into_iter().map(record);
+    let header = header.chain(solvers.iter().map(|s| s.name()));
+    Table::new(header, records.collect())
 }
 
 /// The table of flicker: of each motion and search the worst share of pixels that flicker from one
 /// frame to the next, percent of the hit pixels. None where no motion was drawn.
-#[must_use]
 pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<Table> {
     let share = |k: usize, solver: Solver| {
         let judged = of(outcome, k, solver).filter_map(|t| t.judged.as_ref().ok());
@@ -92,71 +86,51 @@ pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<
 }
 
 /// What the default fails, a line for each.
-#[must_use]
 pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     let is_failure = |t: &&Trial| t.solver == Solver::DEFAULT && t.verdict == Verdict::Failed;
     let line = |t: &Trial| {
         let (name, value) = (&cases[t.case].name, number(t.value, 6));
-        let what = t
-            .judged
-            .as_ref()
-            .map_or_else(Clone::clone, Judged::to_string);
+        let judged = t.judged.as_ref();
+        let what = judged.map_or_else(Clone::clone, Judged::to_string);
         format!("{name} at {value}, {}: {what}", t.stage.name())
     };
     outcome.trials.iter().filter(is_failure).map(line).collect()
 }
 
-type Text = fn(&Judged) -> String;
-
-/// The columns of `results.csv` that a judged picture fills.
-const JUDGED: [(&str, Text); 11] = [
-    ("hits", |j| j.hits.to_string()),
-    ("missed", |j| j.missed.to_string()),
-    ("ghost", |j| j.ghost.to_string()),
-    ("wrong", |j| j.wrong.to_string()),
-    ("depth_p99_texels", |j| optional(j.depth_p99)),
-    ("normal_rms_degrees", |j| optional(j.normal_rms)),
-    ("not_finite", |j| j.not_finite.to_string()),
-    ("exhausted", |j| j.exhausted.to_string()),
-    ("color_faults", |j| j.color.to_string()),
-    ("stage_faults", |j| j.stages.to_string()),
-    ("flicker", |j| optional(j.flicker_share())),
-];
-
-fn optional(value: Option<f64>) -> String {
-    value.map(|v| number(v, 5)).unwrap_or_default()
-}
-
 /// `results.csv`: a record for each trial.
-#[must_use]
 pub fn results(cases: &[Case], outcome: &Outcome, machine: &Machine) -> Table {
-    let about = ["case", "parameter", "value", "solver", "stage", "verdict"];
-    let rest = ["limit", "ms", "error", "device", "driver"];
-    let record = |trial: &Trial| {
-        let case = &cases[trial.case];
-        let about = [
-            case.name.clone(),
-            case.parameter.clone(),
-            number(trial.value, 6),
-            trial.solver.name().to_owned(),
-            trial.stage.name().to_owned(),
-            trial.verdict.name().to_owned(),
-        ];
-        let judged = trial.judged.as_ref();
-        let found = JUDGED.map(|(_, text)| judged.map(text).unwrap_or_default());
-        let rest = [
-            trial.limit.to_string(),
-            number(trial.ms, 4),
-            judged.err().cloned().unwrap_or_default(),
-            machine.device.clone(),
-            machine.driver.clone(),
-        ];
-        about.into_iter().chain(found).chain(rest).collect()
+    let judged =
+        |of: fn(&Judged) -> String| move |t: &Trial| t.judged.as_ref().map(of).unwrap_or_default();
+    let optional = |value: Option<f64>| value.map(|v| number(v, 5)).unwrap_or_default();
+    let share = |of: fn(&Judged) -> Option<f64>| {
+        move |t: &Trial| optional(t.judged.as_ref().ok().and_then(of))
     };
-    let header = about.into_iter().chain(JUDGED.map(|(name, _)| name));
-    Table::new(
-        header.chain(rest),
-        outcome.trials.iter().map(record).collect(),
+    Table::of(
+        &outcome.trials,
+        &[
+            ("case", &|t| cases[t.case].name.clone()),
+            ("parameter", &|t| cases[t.case].parameter.clone()),
+            ("value", &|t| number(t.value, 6)),
+            ("solver", &|t| t.solver.name().to_owned()),
+            ("stage", &|t| t.stage.name().to_owned()),
+            ("verdict", &|t| t.verdict.name().to_owned()),
+            ("hits", &judged(|j| j.hits.to_string())),
+            ("missed", &judged(|j| j.missed.to_string())),
+            ("ghost", &judged(|j| j.ghost.to_string())),
+            ("wrong", &judged(|j| j.wrong.to_string())),
+            ("depth_p99_texels", &share(|j| j.depth_p99)),
+            ("normal_rms_degrees", &share(|j| j.normal_rms)),
+            ("not_finite", &judged(|j| j.not_finite.to_string())),
+            ("exhausted", &judged(|j| j.exhausted.to_string())),
+            ("color_faults", &judged(|j| j.color.to_string())),
+            ("stage_faults", &judged(|j| j.stages.to_string())),
+            ("flicker", &share(Judged::flicker_share)),
+            ("limit", &|t| t.limit.to_string()),
+            ("ms", &|t| number(t.ms, 4)),
+            ("error", &|t| t.judged.clone().err().unwrap_or_default()),
+            ("device", &|_| machine.device.clone()),
+            ("driver", &|_| machine.driver.clone()),
+        ],
     )
 }
 
@@ -170,18 +144,9 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
         Axis::linear(&case.parameter)
     };
     let line = |(solver, stage): (Solver, DrawStage)| {
-        let settings = MethodSettings {
-            method: Method::Search(solver),
-            stage,
-            ..MethodSettings::default()
-        };
-        let point = |t: &Trial| {
-            Some(Point {
-                x: t.value,
-                y: (100.0 * t.judged.as_ref().ok()?.share()).max(FLOOR),
-                ..Point::default()
-            })
-        };
+        let settings = MethodSettings::default().by(solver).in_stage(stage);
+        let share = |t: &Trial| Some(100.0 * t.judged.as_ref().ok()?.share());
+        let point = |t: &Trial| Some(Point::at(t.value, share(t)?.max(FLOOR)));
         let own = of(outcome, number_of, solver).filter(|t| t.stage == stage);
         Series {
             name: solver.name().to_owned(),
@@ -201,24 +166,7 @@ fn chart(case: &Case, number_of: usize, solvers: &[Solver], outcome: &Outcome) -
     .figure()
 }
 
-fn show(page: &mut Page, exhibit: &Exhibit) -> Result<()> {
-    let shot = |(picture, caption): &(Picture, String)| {
-        Ok(Shot {
-            view: exhibit.case,
-            caption: caption.clone(),
-            small: png(picture)?,
-            size: (picture.width, picture.height),
-        })
-    };
-    let shots: Vec<Shot> = exhibit.shots.iter().map(shot).collect::<Result<_>>()?;
-    page.shots(&shots.iter().collect::<Vec<_>>());
-    Ok(())
-}
-
 /// Writes `results.csv`, `report.html`, the charts and the pictures.
-///
-/// # Errors
-/// When a file cannot be written.
 pub fn write(
     folder: &Path,
     cases: &[Case],
@@ -229,7 +177,7 @@ pub fn write(
     let csv = results(cases, outcome, machine).csv();
     write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
-    page.facts(&machine.lines());
+    page.facts(&machine.lines);
     page.text(
         "Each case is a scene in which methods break, swept over the parameter that decides. A fault is a pixel that no solid within the tolerance could have given, a \
          number that is none, a ray out of steps, a colour that the reference does not have there, or a pixel in which both stages differ. The table has the worst \
@@ -257,11 +205,11 @@ pub fn write(
         }
         if let Some(sheet) = outcome.sheets.iter().find(|s| s.case == k) {
             page.text(&format!("At {}:", number(sheet.value, 6)));
-            show(&mut page, sheet)?;
+            page.shots(&sheet.shots)?;
         }
         if let Some(glance) = outcome.glances.iter().find(|g| g.case == k) {
             page.text("Where the failure is seen best: the whole picture, and a part of it as drawn, as the reference has it, and the difference.");
-            show(&mut page, glance)?;
+            page.shots(&glance.shots)?;
             for (strip, caption) in &glance.shots {
                 let file = pictures.join(format!("{}.png", case.name));
                 write_bytes(&file, &png(strip)?)?;

@@ -35,7 +35,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// As tables have it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Passed => "passed",
@@ -85,11 +84,9 @@ pub struct Exhibit {
 pub struct Outcome {
     /// Every picture that was judged.
     pub trials: Vec<Trial>,
-    /// The worst scene: the reference, the default, and the search that fails most, each with
-    /// where it is wrong.
+    /// The worst scene: the reference, the default, and the search that fails most.
     pub sheets: Vec<Exhibit>,
-    /// The failure that is seen best: the whole picture, and a part of it as drawn, as the
-    /// reference has it, and the difference.
+    /// The failure that is seen best, as [`Spot::strip`] shows it.
     pub glances: Vec<Exhibit>,
 }
 
@@ -125,15 +122,14 @@ pub fn run(
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
         let mut shown: [Option<Exhibit>; 2] = [None, None];
-        // The faults of each search and stage in the frame before, where frames are those of a
-        // motion.
+        // The faults of each search and stage in the frame before, of motions.
         let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
         for value in chosen(case) {
             if !progress(&case.name, done, total) {
                 return Ok(outcome);
             }
             done += 1;
-            let step = (case.scene)(value);
+            let step = super::cases::step(case, value)?;
             let file = format!("{}-{value}.toml", case.name);
             write_text(&plan.folder.join(file), &step.scene)?;
             let scene = step.read(plan.folder)?;
@@ -199,9 +195,6 @@ pub(super) struct Attempt {
 }
 
 /// A scene by a search in both stages, each judged; the second is compared with the first.
-///
-/// # Errors
-/// As [`Truth::judge`]. Errors of drawing are part of what is returned.
 pub(super) fn both_stages(
     device: &Device,
     step: &Step,
@@ -286,8 +279,7 @@ fn most_faults(drawn: &[Drawn], own: bool) -> Option<&Drawn> {
 /// A score, and pictures with captions.
 type Scored = Option<(f64, Vec<(Picture, String)>)>;
 
-/// The pictures of a scene: scenes in which the default fares worst come first, then those in which
-/// any does.
+/// The pictures of a scene, scored: failures of the default come first.
 fn sheet(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
     let (own, others) = (most_faults(drawn, true), most_faults(drawn, false));
     let Some(first) = own.or(others) else {
@@ -315,16 +307,12 @@ fn glance(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
         let picture = Picture::of(&drawn.frame);
         (Spot::worst(&picture, &reference), picture, drawn)
     });
-    let Some((spot, picture, drawn)) = spots.max_by_key(|(spot, ..)| spot.seen) else {
+    let Some((spot, picture, drawn)) = spots.max_by(|a, b| a.0.seen.total_cmp(&b.0.seen)) else {
         return Ok(None);
     };
     let strip = spot.strip(&picture, &reference, &truth.heat(&drawn.frame)?);
-    let nothing = if spot.seen == 0 {
-        ", nothing is seen"
-    } else {
-        ""
-    };
+    let nothing = [", nothing is seen", ""][usize::from(spot.seen > 0.0)];
     let ((solver, stage), value) = (drawn.method, number(drawn.value, 6));
     let caption = format!("{solver}, {}, at {value}{nothing}", stage.name());
-    Ok(Some((spot.seen as f64, vec![(strip, caption)])))
+    Ok(Some((spot.seen, vec![(strip, caption)])))
 }

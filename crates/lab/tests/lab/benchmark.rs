@@ -1,8 +1,7 @@
-//! How a benchmark goes about its plan, with a stand-in for the device: in which order, what it
-//! draws once, and what it keeps.
+//! How a benchmark goes about its plan, with a stand-in for the device.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan, run_within};
-use revmap_lab::method::{Method, MethodSettings};
+use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
@@ -12,8 +11,7 @@ use revmap_lab::report::report::Run;
 use revmap_lab::report::table::Table;
 use std::sync::atomic::AtomicBool;
 
-/// A B C, C B A: every search is drawn once a round, and nobody always follows the same neighbour;
-/// each pass makes all anew.
+/// A B C, C B A: nobody always follows the same neighbour; each pass makes all anew.
 #[test]
 fn samples_are_interleaved_and_passes_are_built_anew() {
     let mut bench = StandIn::new(Fault::None);
@@ -52,8 +50,7 @@ fn passes_are_added_until_times_are_resolved() {
     }
 }
 
-/// A time that no number of passes makes sure: the run ends at its limit, and says that it is not
-/// resolved.
+/// A time that no number of passes resolves: the run ends at its limit, and says so.
 #[test]
 fn a_time_that_is_never_resolved_ends_at_the_limit() {
     let limits = TimeBudget {
@@ -68,18 +65,13 @@ fn a_time_that_is_never_resolved_ends_at_the_limit() {
     assert!(live.passes.len() > 3 && !live.resolved(limits.resolved));
 }
 
-/// The reference is slow: it draws each view at each size once, whatever the number of ways, passes
-/// and views that are measured in turn.
+/// The reference is slow: it draws each view at each size once.
 #[test]
 fn no_truth_is_drawn_twice() {
     for mixed in [false, true] {
         let mut plan = plan();
         for case in plan.cases.clone() {
-            let smaller = MethodSettings {
-                width: 32,
-                height: 24,
-                ..case.settings
-            };
+            let smaller = case.settings.sized(32, 24);
             plan.add(case.view, smaller, "");
         }
         plan.mixed = mixed;
@@ -107,8 +99,7 @@ fn an_interrupt_keeps_what_was_measured() {
     assert!(error.to_string().contains("stopped before"), "{error}");
 }
 
-/// All files of a run; every table parses, the page needs nothing from elsewhere, every row is in
-/// it.
+/// All files of a run; every row is in the page, which needs nothing from elsewhere.
 #[test]
 fn a_runs_folder_is_whole() {
     let folder = tempfile::tempdir().unwrap();

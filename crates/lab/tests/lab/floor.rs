@@ -13,16 +13,10 @@ use revmap_lab::renderer::MethodDevice;
 
 fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Frame {
     let device = Device::open_validated(None).unwrap();
-    let settings = MethodSettings {
-        width: 240,
-        height: 180,
-        method,
-        stage,
-        planes,
-        ..MethodSettings::default()
-    };
-    let drawn = MethodDevice::new(device).unwrap().draw(scene, &settings);
-    drawn.unwrap().frame
+    let settings = MethodSettings::default().by(method).in_stage(stage);
+    let settings = settings.sized(240, 180).storing(planes);
+    let device = MethodDevice::new(device).unwrap();
+    device.draw(scene, &settings).unwrap()
 }
 
 /// Each pixel that the search hits is hit, no farther away, without a look-up.
@@ -86,10 +80,7 @@ fn what_has_no_floor_is_refused() {
     let device = MethodDevice::new(Device::open_validated(None).unwrap()).unwrap();
     let mut scene = scene_of(shapes::vase(), eye(25.0, 2.6));
     scene.shadow = Shadow::Hard;
-    let settings = MethodSettings {
-        method: Method::Floor,
-        ..MethodSettings::default()
-    };
+    let settings = MethodSettings::default().by(Method::Floor);
     let error = device.draw(&scene, &settings).err().unwrap();
     assert_eq!(error.kind, ErrorKind::Usage);
     assert!(error.to_string().contains("shadows"), "{error}");

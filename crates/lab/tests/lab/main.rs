@@ -2,11 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 #[cfg(feature = "report")]
-mod antialiasing;
-#[cfg(feature = "report")]
 mod benchmark;
-#[cfg(feature = "report")]
-mod crowds;
 #[cfg(feature = "shaderc")]
 mod fetched_cells;
 #[cfg(feature = "shaderc")]
@@ -14,9 +10,9 @@ mod floor;
 #[cfg(feature = "mesh")]
 mod mesh;
 #[cfg(feature = "mesh")]
-mod mesh_levels;
-#[cfg(feature = "mesh")]
 mod mesh_shading;
+#[cfg(feature = "report")]
+mod on_device;
 #[cfg(feature = "report")]
 mod planted_faults;
 #[cfg(feature = "mesh")]

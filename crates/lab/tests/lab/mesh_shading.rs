@@ -8,11 +8,9 @@ use revmap::maps::Projection;
 use revmap::profile::Profile;
 use revmap::scene::{Light, Specular};
 use revmap::settings::Planes;
-use revmap_lab::method::MethodSettings;
 use std::sync::Arc;
 
-/// What of a frame is wrong in more pixels than silhouettes, creases and texture's edges have:
-/// planes by name.
+/// Names of planes that are wrong in more pixels than edges have.
 pub fn wrong_planes(truth: &Frame, frame: &Frame) -> Vec<&'static str> {
     let both: Vec<usize> = (0..truth.pixels())
         .filter(|&k| truth.hits(k) && frame.hits(k))
@@ -80,8 +78,7 @@ fn every_plane_is_the_reference_s() {
     }
 }
 
-/// A cone's normals are the same on both: so are its colours, under any number of lights, as colour
-/// alone and among all planes.
+/// A cone's normals are the same on both: so are its colours, under any number of lights.
 #[test]
 fn shading_is_the_renderer_s() {
     let mut scene = scene_of(shapes::cone(), eye(30.0, 1.6));
@@ -109,10 +106,7 @@ fn shading_is_the_renderer_s() {
         scene.lights = all[..count].iter().copied().map(light).collect();
         // In 8 bits a rounding the other way is a step of sRGB, at most 0.009.
         for (planes, bound) in [(Planes::All, 1e-4), (Planes::Color, 1e-2)] {
-            let settings = MethodSettings {
-                planes,
-                ..settings(512, 8)
-            };
+            let settings = settings(512, 8).storing(planes);
             let apart = colors_apart(&draw(&scene, &settings), &searched(&scene, &settings));
             let most = apart[apart.len() * 99 / 100];
             println!("{count} lights, {planes:?}: 99 % below {most}");

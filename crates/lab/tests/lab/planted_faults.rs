@@ -36,23 +36,15 @@ fn on_front(rows: &[Row]) -> Vec<Method> {
         (r.time().map_or(f64::NAN, |t| t.value), error)
     };
     let points: Vec<_> = first.iter().map(place).collect();
-    front(&points, 1.0)
-        .into_iter()
-        .map(|i| first[i].settings.method)
-        .collect()
+    let best = front(&points, 1.0).into_iter();
+    best.map(|i| first[i].settings.method).collect()
 }
 
 #[test]
 fn without_a_fault_all_is_as_it_was_planted() {
     let outcome = measured(Fault::None);
-    assert_eq!(
-        (
-            outcome.rows.len(),
-            outcome.left_out.len(),
-            outcome.interrupted
-        ),
-        (6, 0, false)
-    );
+    let counts = (outcome.rows.len(), outcome.left_out.len());
+    assert_eq!((counts, outcome.interrupted), ((6, 0), false));
     let live = live(&outcome.rows);
     assert!(
         (live.time.value - 0.5).abs() < 0.03 && live.pairs.len() == 2,
@@ -78,8 +70,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     for (slept, other) in slept.iter().zip(&other) {
         assert!(slept.time().unwrap().low > other.time().unwrap().high);
     }
-    // In the chart its marker stands further right: marks in order of series, the markers of the
-    // plot before those of the legend.
+    // In the chart its marker stands further right; the plot's markers come before the legend's.
     let rows: Vec<&Row> = outcome.rows.iter().filter(|r| r.view == 0).collect();
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
     let plan = plan();

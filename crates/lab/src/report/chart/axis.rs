@@ -9,8 +9,7 @@ pub struct Axis {
     pub label: String,
     /// True if equal ratios are equally far apart.
     pub log: bool,
-    /// On logarithmic axes: what lies below is drawn here, and the tick says so. Errors of zero
-    /// have a place this way.
+    /// On logarithmic axes: what lies below is drawn here, zeros too, and the tick says so.
     pub floor: Option<f64>,
     /// Values that must be in sight.
     pub include: Vec<f64>,
@@ -69,8 +68,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Fits an axis to values; those that have no place on it (not finite; on a logarithmic axis
-    /// not positive and no floor) are left out.
+    /// Fits an axis to values; those that have no place on it are left out.
     pub fn new(axis: &Axis, values: impl IntoIterator<Item = f64>) -> Self {
         let floor = axis.floor.filter(|_| axis.log);
         let values = values.into_iter().chain(axis.include.iter().copied());
@@ -144,8 +142,7 @@ impl Scale {
         }
     }
 
-    /// The place of a value: 0 at the low end, 1 at the high one. `None` where it has no place on
-    /// this axis.
+    /// The place of a value: 0 at the low end, 1 at the high one; `None` where it has none.
     pub fn place(&self, value: f64) -> Option<f64> {
         let value = self.floor.map_or(value, |floor| value.max(floor));
         let unit = |v: f64| if self.log { v.ln() } else { v };

@@ -40,7 +40,7 @@ pub(super) fn dot(style: Style, place: Place) -> Mark {
         true => (style.color, (PAPER, 0.8)),
         false => (PAPER, (style.color, 1.8)),
     };
-    Mark::Shape(style.corners(place, MARKER), fill, Some(stroke))
+    Mark::Shape(style.corners(place, MARKER), fill, stroke)
 }
 
 /// The entry of a legend that explains the strokes.
@@ -72,8 +72,7 @@ impl Sheet {
         self.0.push(Mark::word(at, text, TEXT, anchor, color));
     }
 
-    /// A line of the grid across a plot, and its value below; a word that would touch the last one,
-    /// which ends at `end`, or leave the figure, is left out.
+    /// A line of the grid, and its value below if that touches neither the one before nor the edge.
     pub(super) fn tick(&mut self, x: f64, (top, bottom): (f64, f64), text: &str, end: &mut f64) {
         self.line([(x, top), (x, bottom)], GRID, 1.0, Dash::SOLID);
         let half = width(text, TEXT) / 2.0;
@@ -83,8 +82,7 @@ impl Sheet {
         }
     }
 
-    /// The name of the axis across, below the middle of a plot; a long one is moved so that it stays
-    /// within the figure.
+    /// The name of the axis across, below the middle of a plot, moved to stay within the figure.
     pub(super) fn axis(&mut self, (left, right): (f64, f64), bottom: f64, label: &str) {
         let half = width(label, TEXT) / 2.0;
         let middle = (left + right) / 2.0;

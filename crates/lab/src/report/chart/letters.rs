@@ -1,7 +1,4 @@
-//! The charts' letters: how wide words are.
-//!
-//! The font travels with the program (and within each page), so that what is measured here is what
-//! is seen everywhere.
+//! The charts' letters: how wide words are. The font travels with the program and with each page.
 
 use ttf_parser::Face;
 

@@ -1,8 +1,6 @@
-//! Charts as plain figures of polygons, lines and words, written as SVG for pages, as PDF for
-//! papers, and as PNG for places that show neither.
-//!
-//! Colours are a published palette for every kind of colour vision (`style`). Each series has a
-//! marker of its own as well, so that a print in grey still reads.
+//! Charts as plain figures of polygons, lines and words, written as SVG, PDF and PNG. Colours serve
+//! every kind of colour vision, and each series has a marker of its own: a print in grey still
+//! reads.
 
 pub(crate) mod axis;
 pub(crate) mod dots;
@@ -47,7 +45,7 @@ pub(crate) type Place = (f64, f64);
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mark {
     /// A closed shape: its corners, fill, and the colour and width of its outline.
-    Shape(Vec<Place>, &'static str, Option<(&'static str, f64)>),
+    Shape(Vec<Place>, &'static str, (&'static str, f64)),
     /// An open line: its points, colour, width, and how it is broken.
     Line(Vec<Place>, &'static str, f64, Dash),
     /// A word.
@@ -148,8 +146,7 @@ impl Figure {
         words.collect()
     }
 
-    /// Pairs of words that cover each other, and words that reach past the figure: none in a good
-    /// figure.
+    /// Words that cover each other or reach past the figure: none in a good figure.
     pub fn faults(&self) -> Vec<String> {
         let words = self.words();
         let mut faults = Vec::new();

@@ -1,6 +1,5 @@
-//! Figures as PDF, for papers: as wide as a column, curves as curves, words as text of the charts'
-//! own font, so that a reader can search and copy them. The title is left out; a paper's caption
-//! takes its place.
+//! Figures as PDF, for papers: as wide as a column, without the title, words as text of the charts'
+//! own font, so that a reader can search and copy them.
 
 use super::letters::{FONT, face, width};
 use super::style::Dash;
@@ -91,8 +90,7 @@ fn embed(file: &mut Pdf, [font, glyphs, descriptor, data, letters]: [Ref; 5]) {
     let packed = miniz_oxide::deflate::compress_to_vec_zlib(FONT, 6);
     file.stream(data, &packed).filter(Filter::FlateDecode);
     let mut map = UnicodeCmap::<u16>::new(Name(b"Letters"), GLYPHS);
-    // The planes in which the charts' signs are: Latin, punctuation, sub- and superscripts, arrows,
-    // mathematics.
+    // The charts' signs: Latin, punctuation, sub- and superscripts, arrows, mathematics.
     for letter in (0x20..0x2300).filter_map(char::from_u32) {
         if let Some(glyph) = face.glyph_index(letter) {
             map.pair(glyph.0, letter);
@@ -106,15 +104,9 @@ fn draw(content: &mut Content, mark: &Mark) {
         Mark::Shape(points, fill, stroke) => {
             let [r, g, b] = rgb(fill);
             content.set_fill_rgb(r, g, b);
-            if let Some((color, width)) = stroke {
-                pen(content, color, *width, Dash::SOLID);
-            }
+            pen(content, stroke.0, stroke.1, Dash::SOLID);
             path(content, points);
-            content.close_path();
-            match stroke {
-                Some(_) => content.fill_nonzero_and_stroke(),
-                None => content.fill_nonzero(),
-            };
+            content.close_path().fill_nonzero_and_stroke();
         }
         Mark::Line(points, color, width, dash) => {
             pen(content, color, *width, *dash);

@@ -1,5 +1,4 @@
-//! Figures as pixels, drawn from their SVG with the charts' own font: the same on every machine,
-//! whatever fonts it has.
+//! Figures as pixels, drawn from their SVG with the charts' own font, the same on every machine.
 
 use super::Figure;
 use super::letters::FONT;
@@ -46,7 +45,7 @@ mod tests {
     #[test]
     fn words_and_shapes_appear_where_they_stand() {
         let square = vec![(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0)];
-        let square = Mark::Shape(square, "#d55e00", None);
+        let square = Mark::Shape(square, "#d55e00", ("#d55e00", 0.1));
         let word = |at| Mark::word(at, "HHHH", 10.0, Anchor::Start, INK);
         let mut turned = word((30.0, 70.0));
         if let Mark::Word(word) = &mut turned {

@@ -1,5 +1,4 @@
-//! Colours, markers and dashes of series. Which search has which is told elsewhere: here is what
-//! there is to choose from.
+//! Colours, markers and dashes of series, to choose from.
 
 /// Ink of words and axes.
 pub const INK: &str = "#222222";
@@ -124,8 +123,7 @@ impl Style {
         if self.filled { full } else { 0.7 * full }
     }
 
-    /// The marker's corners about a place, of the area of a square of side `size`, larger where it
-    /// stands out.
+    /// The marker's corners about a place, as large as a square of side `size`, or larger if heavy.
     pub fn corners(self, (x, y): (f64, f64), size: f64) -> Vec<(f64, f64)> {
         let size = if self.heavy { 1.3 * size } else { size };
         self.marker.corners(x, y, size)

@@ -23,7 +23,7 @@ pub(crate) fn svg(figure: &Figure) -> String {
 fn element(mark: &Mark) -> Markup {
     match mark {
         Mark::Shape(points, fill, stroke) => html! {
-            path d=(path(points) + "Z") fill=(fill) stroke=[stroke.map(|s| s.0)] stroke-width=[stroke.map(|s| s.1)] {}
+            path d=(path(points) + "Z") fill=(fill) stroke=(stroke.0) stroke-width=(stroke.1) {}
         },
         Mark::Line(points, color, width, dash) => {
             let lengths: Vec<String> = dash.0.iter().map(f32::to_string).collect();

@@ -19,8 +19,7 @@ pub struct Point {
     pub spread: Option<(f64, f64)>,
     /// The ends of its interval up, where they are known.
     pub rise: Option<(f64, f64)>,
-    /// True if its interval is too wide: it is struck through, and has no bars, which would fill the
-    /// plot.
+    /// True if its interval is too wide: it is struck through, and has no bars.
     pub unresolved: bool,
     /// A word beside it, where there is room.
     pub label: Option<String>,
@@ -223,8 +222,7 @@ impl Drawing {
                 labels.extend(point.label.as_ref().map(|label| ((x, y), label)));
             }
         }
-        // Hollow ones below filled ones and larger ones below smaller ones, or they would hide what
-        // is near.
+        // Hollow ones and larger ones lie below, or they would hide what is near.
         dots.sort_by_key(|(order, _)| *order);
         self.sheet.0.extend(dots.into_iter().map(|(_, dot)| dot));
         self.sheet.0.extend(struck);

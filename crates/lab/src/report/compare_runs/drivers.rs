@@ -13,8 +13,7 @@ const TECHNIQUES: [&str; 5] = ["revolution", "extended", "beveled", "chamfered",
 /// The technique that no offset shows.
 const TEXTURED: &str = "textured";
 
-/// The technique of a record: what its view is named after, else that of its offset; whether the box
-/// cuts it.
+/// The technique of a record: its view's, else its offset's; whether the box cuts it.
 fn technique_of(scene: &str, technique: &str) -> String {
     let scene = scene.trim_end_matches(":close");
     if scene.ends_with(TEXTURED) {
@@ -35,9 +34,9 @@ fn place_of(technique: &str) -> usize {
 /// The figures of a cell.
 #[derive(Default)]
 struct Cell {
-    /// Logarithms of times over the RBM baseline's, by picture.
-    logs: Vec<f64>,
-    /// Logarithms of depth errors, h/512.
+    /// Times over the RBM baseline's, by picture.
+    times: Vec<f64>,
+    /// Depth errors above 0, h/512.
     depths: Vec<f64>,
     wrong: f64,
     pixels: f64,
@@ -46,23 +45,19 @@ struct Cell {
 impl Cell {
     /// `0.45 (0.30 to 0.62); 0.008; 0.001 %`.
     fn text(&self) -> String {
-        if self.logs.is_empty() {
+        if self.times.is_empty() {
             return "–".to_owned();
         }
-        let mean = |logs: &[f64]| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
-        let low = self.logs.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = self.logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mean = |values: &[f64]| stats::geometric(values).map_or(f64::NAN, |i| i.value);
+        let low = self.times.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.times.iter().copied().fold(0.0, f64::max);
         let depth = match self.depths.as_slice() {
             [] => "–".to_owned(),
             some => number(mean(some), 2),
         };
-        format!(
-            "**{}** ({} to {}); {depth}; {}",
-            number(mean(&self.logs), 2),
-            number(low.exp(), 2),
-            number(high.exp(), 2),
-            percent(self.wrong / self.pixels.max(1.0))
-        )
+        let [time, low, high] = [mean(&self.times), low, high].map(|v| number(v, 2));
+        let wrong = percent(self.wrong / self.pixels.max(1.0));
+        format!("**{time}** ({low} to {high}); {depth}; {wrong}")
     }
 }
 
@@ -92,11 +87,11 @@ pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
             let none = || folders.iter().map(|_| Cell::default()).collect();
             let cell = &mut rows.entry(key).or_insert_with(none)[column];
             let value = |name: &str| at(name).parse::<f64>().unwrap_or(0.0);
-            cell.logs.push(time.value.ln());
+            cell.times.push(time.value);
             cell.wrong += value("missed") + value("ghost");
             cell.pixels += value("width") * value("height");
             let depth = value("depth_p99_texels");
-            cell.depths.extend((depth > 0.0).then(|| depth.ln()));
+            cell.depths.extend((depth > 0.0).then_some(depth));
         }
     }
     let mut out = format!("| technique | stage | {} |\n", drivers.join(" | "));

@@ -91,8 +91,7 @@ impl Run {
         medians.collect()
     }
 
-    /// The passes' medians of a row (counted from 0), each over that of the RBM baseline which
-    /// shows the same picture in the same stage.
+    /// The passes' medians of a row, each over the RBM baseline's of the same picture and stage.
     pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
         let record = self.results.records.get(row)?;
         let baseline = |r: &[String]| {

@@ -73,8 +73,7 @@ pub(in crate::report) fn unresolved(context: &Context) -> Option<String> {
     })
 }
 
-/// The answer for each way of drawing by the default search; for other searches where the plan has
-/// it not.
+/// The answer for each way of the default search, or of others where the plan lacks it.
 fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
     let mut ratios = over(rows.iter().copied(), Over::Fragment);
     let default = |r: &Ratio| r.settings.method == Method::DEFAULT;
@@ -241,41 +240,43 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::compare::Spread;
+    use crate::method::MethodSettings;
     use crate::report::columns::tests::with_context;
     use crate::report::row::tests;
     use revmap::settings::Solver;
 
-    fn depth(p99: f64) -> Spread {
-        let (rms, max) = (p99, p99);
-        Spread { rms, p99, max }
-    }
-
     /// A row of a search in a stage of a picture; its passes take these times.
     fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
         let mut row = tests::timed(passes);
-        row.settings = crate::method::MethodSettings {
-            method,
-            stage,
-            ..crate::method::MethodSettings::default()
-        };
+        row.settings = MethodSettings::default().by(method).in_stage(stage);
         row.view = view;
         row.scene = format!("scene{view}");
-        row.errors.depth = Some(depth(0.01));
+        erring(row, 0.01)
+    }
+
+    fn erring(mut row: Row, p99: f64) -> Row {
+        let (rms, max) = (p99, p99);
+        row.errors.depth = Some(Spread { rms, p99, max });
         row
     }
 
-    fn stages_of(rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
+    /// The answers of a question, and the records of its table.
+    fn told(question: Question, rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
         with_context(rows, |context| {
-            let table = stages_table(context, context.rows);
-            (
-                Question::Stages.answers(context, context.rows),
-                table.records,
-            )
+            let rows = context.rows;
+            let table = match question {
+                Question::Stages => stages_table(context, rows),
+                Question::Rivals => rivals_table(context, rows),
+            };
+            (question.answers(context, rows), table.records)
         })
     }
 
-    /// Compute takes half the time of the fragment stage, over two pictures, while the machine
-    /// slows down between passes.
+    fn stages_of(rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
+        told(Question::Stages, rows)
+    }
+
+    /// Compute takes half the fragment stage's time, while the machine slows down between passes.
     #[test]
     fn a_planted_ratio_of_stages_is_answered_in_one_sentence() {
         use DrawStage::{Compute, Fragment};
@@ -287,42 +288,42 @@ mod tests {
             timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0, 10.0]),
         ];
         let (answers, records) = stages_of(&rows);
-        assert_eq!(
-            answers,
-            [
-                "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5), over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster."
-            ]
-        );
+        let wanted = "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5), over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster.";
+        assert_eq!(answers, [wanted]);
         assert_eq!(records.len(), 1, "live was drawn in one stage");
-        assert!(
-            records[0][1].starts_with("11.7 (") && records[0][2].starts_with("5.86 ("),
-            "{records:?}"
-        );
+        let [fragment, compute] = [&records[0][1], &records[0][2]];
+        assert!(fragment.starts_with("11.7 (") && compute.starts_with("5.86 ("));
         assert_eq!(records[0][3..5], ["0.5 (0.5 to 0.5)", "compute"]);
     }
 
     #[test]
     fn an_interval_that_holds_1_or_is_too_wide_has_no_winner() {
         use DrawStage::{Compute, Fragment};
-        let answer = |compute: &[f64]| {
-            let steady = [10.0, 10.0, 10.0];
-            let rows = [
-                timed(Method::DEFAULT, Fragment, 0, &steady),
-                timed(Method::DEFAULT, Compute, 0, compute),
-            ];
-            let (answers, records) = stages_of(&rows);
-            (answers[0].clone(), records[0].clone())
-        };
-        let (even, record) = answer(&[9.9, 10.2, 10.1]);
-        assert!(even.ends_with("over 1 picture: no difference is resolved."));
-        assert_eq!(record[4], "no difference resolved");
-        let (wide, record) = answer(&[2.0, 10.0, 5.0]);
-        assert!(
-            wide.contains("since the interval is wider than 25 %"),
-            "{wide}"
-        );
-        assert!(record[2].ends_with(", not resolved"), "{record:?}");
-        assert_eq!(record[4], "not resolved");
+        let steady = timed(Method::DEFAULT, Fragment, 0, &[10.0, 10.0, 10.0]);
+        for (compute, wanted, faster) in [
+            (
+                [9.9, 10.2, 10.1],
+                "over 1 picture: no difference is resolved.",
+                "no difference resolved",
+            ),
+            (
+                [2.0, 10.0, 5.0],
+                "the interval is wider than 25 % to either side.",
+                "not resolved",
+            ),
+            (
+                [15.0, 15.1, 15.0],
+                ": the fragment stage is faster.",
+                "fragment",
+            ),
+        ] {
+            let compute = timed(Method::DEFAULT, Compute, 0, &compute);
+            let (answers, records) = stages_of(&[steady.clone(), compute]);
+            assert!(answers[0].ends_with(wanted), "{answers:?}");
+            assert_eq!(records[0][4], faster);
+            let marked = records[0][2].ends_with(", not resolved");
+            assert_eq!(marked, faster == "not resolved", "{records:?}");
+        }
         let rows = [
             timed(Method::DEFAULT, Fragment, 0, &[10.0, 10.0]),
             timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0]),
@@ -335,9 +336,6 @@ mod tests {
         let (answers, _) = stages_of(&[rows.to_vec(), vec![lies]].concat());
         assert_eq!(answers.len(), 1);
         assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
-        let (slower, record) = answer(&[15.0, 15.1, 15.0]);
-        assert!(slower.ends_with(": the fragment stage is faster."));
-        assert_eq!(record[4], "fragment");
     }
 
     /// The quadric search is faster in one picture; a wider interval with a larger ratio does not
@@ -347,8 +345,7 @@ mod tests {
         use DrawStage::{Compute, Fragment};
         let quadric = Method::Search(Solver::Quadric);
         let live = Method::Search(Solver::Live);
-        let mut wrong = timed(live, Fragment, 0, &[1.0, 1.0, 1.0]);
-        wrong.errors.depth = Some(depth(1.5));
+        let wrong = erring(timed(live, Fragment, 0, &[1.0, 1.0, 1.0]), 1.5);
         let rows = [
             timed(Method::DEFAULT, Fragment, 0, &[5.0, 5.1, 5.0]),
             timed(quadric, Fragment, 0, &[10.0, 10.2, 10.0]),
@@ -358,19 +355,9 @@ mod tests {
             timed(Method::DEFAULT, Fragment, 1, &[9.0, 40.0, 20.0]),
             timed(quadric, Fragment, 1, &[5.0, 5.0, 5.0]),
         ];
-        let (answers, records) = with_context(&rows, |context| {
-            let table = rivals_table(context, context.rows);
-            (
-                Question::Rivals.answers(context, context.rows),
-                table.records,
-            )
-        });
-        assert_eq!(
-            answers,
-            [
-                "The default search takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved."
-            ]
-        );
+        let (answers, records) = told(Question::Rivals, &rows);
+        let wanted = "The default search takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved.";
+        assert_eq!(answers, [wanted]);
         let wanted = ["off", "800x600", "0.5 (0.5 to 0.5)", "quadric, scene0"];
         assert_eq!(records[0][..4], wanted);
         assert_eq!(records[0][4..], ["1.2 (1.2 to 1.2)", "quadric, scene0"]);

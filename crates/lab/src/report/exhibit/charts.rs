@@ -275,12 +275,8 @@ impl Chart {
         let drawn = |row: &&Row| {
             let (source, count) = (row.settings.map_source?, row.settings.map_rows?);
             let y = (column.cell)(context, row).value()?;
-            Some(item(
-                &format!("{}, drawn", source.name),
-                of_source(source),
-                count,
-                y,
-            ))
+            let name = format!("{}, drawn", source.name);
+            Some(item(&name, of_source(source), count, y))
         };
         let own = rows.iter().filter(|r| r.settings.method == method);
         let own = own.filter(|r| !is_rbm_baseline(&r.settings));
@@ -322,8 +318,7 @@ impl Chart {
         })
     }
 
-    /// Keeps words at both ends of each line, at what is on the front, and at meshes of a summary;
-    /// of all points the chart would drown in them.
+    /// Keeps words at both ends of each line, on the front, and at meshes of a summary.
     fn thin_labels(&self, series: &mut [Series], fronts: &[(DrawStage, Vec<(f64, f64)>)]) {
         for line in series {
             let last = line.points.len().saturating_sub(1);
@@ -344,8 +339,7 @@ impl Chart {
     }
 }
 
-/// The search whose drawn pictures are nearest to the truth: what is left of its error is the
-/// map's. Of those that read maps of every source.
+/// The search nearest to the truth, of those that read maps: what is left is the map's error.
 fn most_exact(rows: &[&Row]) -> Option<Method> {
     let own = rows.iter().filter(|r| r.settings.map_source.is_some());
     let own = own.filter(|r| !is_rbm_baseline(&r.settings));
@@ -353,8 +347,7 @@ fn most_exact(rows: &[&Row]) -> Option<Method> {
     errors.min_by(|a, b| a.1.total_cmp(&b.1)).map(|e| e.0)
 }
 
-/// The resolved points that no other of their stage beats. A stage without such points has no
-/// front.
+/// The resolved points of each stage that no other of it beats, where there are any.
 fn fronts(items: &[Item]) -> Vec<(DrawStage, Vec<(f64, f64)>)> {
     let of = |stage: DrawStage| {
         let own = items.iter().filter(|i| i.stage == stage);
@@ -382,8 +375,7 @@ fn ends(name: &str, cell: &Cell, row: &Row) -> Option<(f64, f64)> {
     }
 }
 
-/// The word beside a marker: a mesh's tessellation, or the difference from other ways of the same
-/// method.
+/// The word beside a marker: a mesh's tessellation, or what tells ways of one method apart.
 fn label(context: &Context, s: &MethodSettings) -> Option<String> {
     if is_rbm_baseline(s) {
         return None;

@@ -233,8 +233,7 @@ struct OnFront<'a> {
     worst: (f64, f64),
 }
 
-/// The ways of drawing that are on the front of depth error against time of at least one picture in
-/// their stage, the most frequent of each stage first.
+/// The ways that are on a front of some picture in their stage, the most frequent first.
 fn fronts(context: &Context, rows: &[&Row]) -> Text {
     let stages = [DrawStage::Fragment, DrawStage::Compute];
     let of = |stage| on_fronts(context, rows, stage);

@@ -12,14 +12,10 @@ use std::sync::atomic::AtomicBool;
 /// A way of drawing a view, ready to be timed.
 pub trait TimedRenderer {
     /// Draws one frame and waits for it.
-    ///
-    /// # Errors
-    /// Drawing fails.
     fn sample(&mut self) -> Result<Sample>;
 }
 
-/// A source of renderers and pictures: a Vulkan device, or a stand-in that tests the benchmark
-/// itself.
+/// A source of renderers and pictures: a Vulkan device, or a stand-in of tests.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
@@ -33,15 +29,9 @@ pub trait Bench {
     ) -> Result<Box<dyn TimedRenderer>>;
 
     /// One frame with all planes, and the bytes of its maps.
-    ///
-    /// # Errors
-    /// See [`Bench::timed_renderer`].
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;
 
     /// The truth.
-    ///
-    /// # Errors
-    /// The scene is wrong.
     fn truth(&mut self, view: &View, settings: &MethodSettings) -> Result<Frame>;
 }
 

@@ -105,10 +105,9 @@ pub fn distant() -> Result<View> {
     Ok(View::new("distant", scene))
 }
 
-/// `count` copies of ten solids in turn, of equal height, each turned by another angle; seen from
-/// within, over the heads of the first.
+/// `count` copies of ten solids in turn, each turned; seen from within, over the first heads.
 pub fn army(count: u32) -> Result<View> {
-    let views = suite::views(&Extent::All, &[25.0])?;
+    let views = suite::views(&Extent::ALL, &[25.0])?;
     let mut scene = views[0].scene.clone();
     let mut kinds: Vec<Object> = Vec::new();
     kinds.extend(views.into_iter().flat_map(|view| view.scene.objects));
@@ -149,8 +148,7 @@ pub fn army(count: u32) -> Result<View> {
     Ok(View::new(format!("army-{count}"), scene))
 }
 
-/// The camera of a flight over an army, `at` from 0 to 1: in a bow to the left and down among the
-/// solids, then up again.
+/// The camera of a flight over an army, `at` from 0 to 1: to the left and down, then up again.
 pub fn flight_camera(at: f64) -> Camera {
     let turn = std::f64::consts::TAU * at;
     let eye = DVec3::new(1.2 - 30.0 * at, 3.0 * turn.sin(), 1.7 + 0.5 * turn.cos());
@@ -179,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_field_holds_its_copies_side_by_side() {
-        let one = &suite::views(&Extent::One, &[25.0]).unwrap()[0];
+        let one = &suite::views(&Extent::First(1), &[25.0]).unwrap()[0];
         for count in [1, 10, 100, 1000, 10_000] {
             let view = field(one, count);
             view.scene.check().unwrap();

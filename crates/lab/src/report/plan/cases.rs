@@ -18,8 +18,7 @@ pub struct Case {
     pub view: usize,
     /// How it is drawn.
     pub settings: MethodSettings,
-    /// The entries of the plan that it belongs to: bits, by the places of their names in
-    /// [`Plan::sweeps`].
+    /// The plan's entries that it belongs to: bits, by their places in [`Plan::sweeps`].
     pub sweeps: u64,
 }
 
@@ -48,8 +47,7 @@ pub struct Plan {
     pub cases: Vec<Case>,
     /// Names of the entries, each once.
     pub sweeps: Vec<String>,
-    /// True if views are compared with each other: then all views of one size are drawn in turn,
-    /// not each view by itself.
+    /// True if all views of one size are drawn in turn, not each view by itself.
     pub mixed: bool,
     /// The picture that others are compared with.
     pub truth: Truth,
@@ -101,14 +99,9 @@ impl Plan {
         let mut all = Vec::new();
         for &(width, height) in &measure.sizes {
             for &stage in &measure.stages {
-                let base = MethodSettings {
-                    width,
-                    height,
-                    stage,
-                    planes: Planes::Color,
-                    tolerance: Tolerance::EXACT,
-                    ..MethodSettings::default()
-                };
+                // They are exact by default.
+                let base = MethodSettings::default().storing(Planes::Color);
+                let base = base.sized(width, height).in_stage(stage);
                 let methods = measure.methods(named).into_iter();
                 all.extend(methods.flat_map(|method| ways(seen, measure, base, method)));
             }
@@ -128,8 +121,7 @@ impl Plan {
         }
     }
 
-    /// The measurements that are taken in turn, A B A B: those of one view and size, or of one size
-    /// in a mixed plan.
+    /// What is measured in turn, A B A B: one view and size, or one size in a mixed plan.
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let key = |k: &usize| {
             let (view, width, height) = self.cases[*k].picture();
@@ -216,20 +208,19 @@ pub(in crate::report) fn grouped<T, K: PartialEq>(
 
 /// `solver` at the stage and size of `settings`, all else as drawing takes it.
 pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
-    MethodSettings {
-        width: settings.width,
-        height: settings.height,
-        stage: settings.stage,
-        planes: settings.planes,
-        method,
-        ..MethodSettings::default()
-    }
+    let plain = MethodSettings::default()
+        .by(method)
+        .storing(settings.planes);
+    plain
+        .in_stage(settings.stage)
+        .sized(settings.width, settings.height)
 }
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
 /// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
 pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
-    let beveled = view.technique().is_beveled();
+    // The papers take more steps where the offset changes with height.
+    let beveled = ["beveled", "chamfered", "mixed"].contains(&view.technique());
     MethodSettings {
         method: Method::Search(CIRCLE),
         max_steps: Some(if beveled { 25 } else { 20 }),
@@ -243,12 +234,7 @@ pub fn rbm_baseline(view: &View, settings: &MethodSettings) -> MethodSettings {
 
 /// A way of drawing apart from its size: what a summary over views and sizes is told by.
 pub fn variant(settings: &MethodSettings) -> MethodSettings {
-    MethodSettings {
-        width: 0,
-        height: 0,
-        planes: Planes::Color,
-        ..*settings
-    }
+    settings.sized(0, 0).storing(Planes::Color)
 }
 
 /// True if settings are those of [`rbm_baseline`].

@@ -71,8 +71,7 @@ pub struct Quick {
     pub flights: Option<Vec<Flight>>,
 }
 
-/// Ways of drawing: every combination of the lists. A list that is left out holds what drawing
-/// takes.
+/// Ways of drawing: every combination of the lists. Lists have defaults.
 #[derive(Clone, Debug, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Measure {
@@ -150,8 +149,7 @@ pub enum Kind {
     Unbounded,
     /// Those with a table of their own, whose rows are their bound.
     Tables,
-    /// `circle` and `live`, the most exact of those that read maps; where others are named, those
-    /// of them that read maps.
+    /// `circle` and `live`; where others are named, those of them that read maps.
     Maps,
 }
 
@@ -200,8 +198,7 @@ impl std::str::FromStr for Pick {
 }
 
 impl Measure {
-    /// The methods; `named`: those to take in place of the list's own searches and meshes. `None`
-    /// stands for the RBM baseline.
+    /// The methods, with `named` ones in place of the list's own. `None`: the RBM baseline.
     pub fn methods(&self, named: &[Method]) -> Vec<Option<Method>> {
         let none = named.is_empty();
         let searches = if none { &Method::ALL[..] } else { named };

@@ -6,8 +6,7 @@ use crate::method::{Edges, Method, MethodSettings};
 /// The RBM baseline's name in reports.
 pub const RBM_BASELINE: &str = "RBM baseline";
 
-/// Names ways of drawing as briefly as tells them apart: what is the same in all of them is left
-/// out.
+/// Names ways of drawing as briefly as tells them apart.
 #[derive(Clone, Debug)]
 pub struct Labels {
     steps: bool,

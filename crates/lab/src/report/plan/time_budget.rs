@@ -7,8 +7,7 @@ use std::time::Duration;
 #[serde(deny_unknown_fields, default)]
 pub struct TimeBudget {
     /// Seconds that all is meant to take. The least number of rounds is drawn even if that takes
-    /// longer, and of passes unless that takes longer than the limit: drivers that compile slowly
-    /// get two.
+    /// longer, and of passes unless that takes longer than the limit.
     pub seconds: f64,
     /// No pass begins that would end after so many seconds. Until then passes are added to
     /// pictures with a time that is not resolved. Not given: twice `seconds`.
@@ -60,8 +59,7 @@ impl TimeBudget {
         self.passes.0 == self.passes.1
     }
 
-    /// True if another pass as long as the `last` would end beyond the limit after `gone`, however
-    /// few the `passes` were.
+    /// True if another pass as long as the `last` would end beyond the limit after `gone`.
     pub(in crate::report) fn would_overrun(
         &self,
         passes: usize,

@@ -41,7 +41,7 @@ impl Default for Views {
     fn default() -> Self {
         Self {
             name: String::new(),
-            solids: Extent::One,
+            solids: Extent::First(1),
             elevations: vec![25.0],
             framings: vec![Framing::Whole],
             arrange: Arrangement::Alone,
@@ -82,8 +82,7 @@ pub struct Form {
     /// The same key as in scene files.
     #[serde(default = "whole")]
     pub chamfer: f64,
-    /// True if `extend` and `bevel` are fractions of the largest distance that the published
-    /// method's map of the solid holds.
+    /// True if `extend` and `bevel` are parts of the largest distance in the published map.
     pub relative: bool,
     /// True if the box cuts the solid.
     pub cut: bool,

@@ -53,8 +53,7 @@ fn what_cannot_be_trusted_counts_for_nothing() {
     let rows = [lies.clone(), fine.clone()];
     let ratios = over(&rows, Over::Baseline);
     assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
-    // A baseline that lies leaves nothing to compare with; that of the fragment stage is the one of
-    // both stages.
+    // A baseline that lies leaves nothing to compare with; one serves both stages.
     assert!(over(&[timed(&[20.0]), papers(lies)], Over::Baseline).is_empty());
     let mut compute = timed(&[20.0]);
     compute.settings.stage = DrawStage::Compute;
@@ -74,8 +73,7 @@ fn the_floor_is_taken_off() {
     assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
 }
 
-/// A run that was ended in its second pass: the picture that lacks the pass must not shift the
-/// mean.
+/// A picture that lacks a pass must not shift the mean.
 #[test]
 fn a_pass_that_was_ended_early_is_left_out() {
     let rows = two_views([2, 1]);
@@ -83,8 +81,7 @@ fn a_pass_that_was_ended_early_is_left_out() {
     assert!((time.value - 0.5).abs() < 1e-12 && time.high == f64::INFINITY);
 }
 
-/// Coarse meshes are fast and wrong: the ratio that counts is that to the coarsest which is
-/// not.
+/// The ratio that counts is that to the coarsest mesh which is not wrong.
 #[test]
 fn the_default_search_is_held_against_meshes() {
     let timed = |method, ms: f64, p99| {
@@ -112,8 +109,7 @@ fn the_default_search_is_held_against_meshes() {
     ];
     let wanted = wanted.map(|(n, ratio, no_worse)| (n.map(mesh), ratio, no_worse));
     assert_eq!(told.collect::<Vec<_>>(), wanted);
-    // Without a mesh that errs no more there is no such ratio, and without the default search
-    // none at all.
+    // Without a mesh that errs no more, or without the default search, there is no such ratio.
     assert_eq!(over(&rows[..2], Over::Mesh).len(), 1);
     assert!(over(&rows[1..], Over::Mesh).is_empty());
 }

@@ -1,13 +1,10 @@
 //! The catalogue.
 
-mod boxes;
-mod light;
-mod maps;
-mod placement;
-mod rays;
-mod shapes;
+mod solids;
+mod views;
 
 use super::case::{Case, Step};
+use crate::mosaic::painted;
 use crate::report::folder::{make, png, write_bytes};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
@@ -25,24 +22,8 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
     struct Catalogue {
         case: Vec<Case>,
     }
-    let broken =
-        |why: &dyn std::fmt::Display| Error::new(ErrorKind::Other, format!("cases.toml: {why}"));
     let catalogue = toml::from_str(include_str!("../cases.toml"));
     let Catalogue { case: mut all } = catalogue.map_err(|error| broken(&error))?;
-    let groups = [
-        placement::SCENES,
-        shapes::SCENES,
-        rays::SCENES,
-        boxes::SCENES,
-        light::SCENES,
-        maps::SCENES,
-    ];
-    for case in &mut all {
-        let scene = groups.iter().copied().flatten().find(|s| s.0 == case.name);
-        case.scene = scene
-            .ok_or_else(|| broken(&format!("{} has no scene", case.name)))?
-            .1;
-    }
     let is_known = |name: &&String| all.iter().any(|case| case.name == **name);
     if let Some(name) = names.iter().find(|name| !is_known(name)) {
         let known: Vec<_> = all.iter().map(|case| case.name.as_str()).collect();
@@ -53,31 +34,35 @@ pub fn named(names: &[String]) -> Result<Vec<Case>> {
     Ok(all)
 }
 
+fn broken(why: &dyn std::fmt::Display) -> Error {
+    Error::new(ErrorKind::Other, format!("cases.toml: {why}"))
+}
+
+/// The scene of a case at a value of its parameter.
+pub(super) fn step(case: &Case, value: f64) -> Result<Step> {
+    let mut scenes = views::SCENES.iter().chain(solids::SCENES);
+    let scene = scenes.find(|s| s.0 == case.name);
+    let scene = scene.ok_or_else(|| broken(&format!("{} has no scene", case.name)))?;
+    Ok(scene.1(value))
+}
+
 /// Writes the pictures that cases name into `folder`.
-///
-/// # Errors
-/// When a file cannot be written.
 pub fn write_files(folder: &Path) -> Result<()> {
     make(folder)?;
-    for side in shapes::PICTURE_ROWS {
-        let (border, ball) = (shapes::bordered(side), shapes::binary_ball(side));
+    for side in solids::PICTURE_ROWS {
+        let (border, ball) = (solids::bordered(side), solids::binary_ball(side));
         write_bytes(&folder.join(format!("border-{side}.png")), &png(&border)?)?;
         write_bytes(&folder.join(format!("ball-{side}.png")), &png(&ball)?)?;
     }
-    write_bytes(&folder.join("waves.png"), &png(&maps::waves())?)
+    write_bytes(&folder.join("waves.png"), &png(&solids::waves())?)
 }
 
 /// A grey picture; `dark` tells which pixels are solid.
 fn silhouette(width: u32, height: u32, dark: impl Fn(u32, u32) -> bool) -> Picture {
-    let pixel = |k: u32| {
-        let shade = if dark(k % width, k / width) { 0 } else { 255 };
+    painted([width as usize, height as usize], |x, y| {
+        let shade = if dark(x as u32, y as u32) { 0 } else { 255 };
         [shade, shade, shade, 255]
-    };
-    Picture {
-        width,
-        height,
-        rgba: (0..width * height).map(pixel).collect(),
-    }
+    })
 }
 
 /// A spindle with a waist: curved, slanting, level and upright parts.
@@ -108,19 +93,17 @@ pub(super) const GLASS: [[f64; 2]; 12] = [
     [0.0, 0.44],
 ];
 
+/// Point `k` of `count` and one more on a half turn about the middle of the box, `radius` away.
+pub(super) fn on_half_turn(k: usize, count: usize, radius: f64) -> [f64; 2] {
+    let angle = std::f64::consts::PI * (k as f64 / count as f64 - 0.5);
+    let end = k == 0 || k == count;
+    let r = if end { 0.0 } else { radius * angle.cos() };
+    [r, 0.5 + radius * angle.sin()]
+}
+
 /// A ball of 96 segments about the middle of the box.
 pub(super) fn ball(radius: f64) -> Vec<[f64; 2]> {
-    (0..=96)
-        .map(|k| {
-            let angle = std::f64::consts::PI * (f64::from(k) / 96.0 - 0.5);
-            let r = if k == 0 || k == 96 {
-                0.0
-            } else {
-                radius * angle.cos()
-            };
-            [r, 0.5 + radius * angle.sin()]
-        })
-        .collect()
+    (0..=96).map(|k| on_half_turn(k, 96, radius)).collect()
 }
 
 /// A cylinder on its box's floor.

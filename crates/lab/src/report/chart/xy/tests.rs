@@ -152,8 +152,7 @@ fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
     assert!(told(&chart));
 }
 
-/// Every unresolved point is struck through, and the legend says what that means; without one,
-/// nothing is.
+/// Every unresolved point is struck through, and the legend says what that means.
 #[test]
 fn unresolved_points_are_struck_through() {
     let strokes = |chart: &XyChart| {

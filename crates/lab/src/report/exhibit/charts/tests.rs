@@ -19,8 +19,7 @@ fn item(stage: DrawStage, x: f64, y: f64, unresolved: bool) -> Item {
     }
 }
 
-/// All of compute is beaten by the fragment stage, and has a front nevertheless; what is not
-/// resolved is on none.
+/// All of compute is beaten by the fragment stage, and has a front nevertheless.
 #[test]
 fn each_stage_has_a_front_of_its_own() {
     use DrawStage::{Compute, Fragment};
@@ -39,8 +38,7 @@ fn each_stage_has_a_front_of_its_own() {
     assert_eq!(fronts(&items[2..]), wanted[1..]);
 }
 
-/// A chart of growth shows a time that is not resolved, struck through and without a say in the
-/// law.
+/// A time that is not resolved is struck through and has no say in the law.
 #[test]
 fn charts_of_growth_mark_what_is_not_resolved() {
     let timed = |side: u32, passes: [f64; 3]| {

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use super::super::{Case, Lists, embedded, is_rbm_baseline};
+use super::super::{Case, Lists, embedded, is_rbm_baseline, suite};
 use super::*;
 use crate::method::MethodSettings;
 use crate::report::view::Framing;
@@ -48,10 +48,12 @@ fn every_plan_of_the_program_is_sound() {
         }
         assert!(text.starts_with("about = "), "{name}");
     }
+    let elevations = [0.0, 25.0, 60.0];
+    let all = suite::views(&suite::Extent::ALL, &elevations).unwrap();
+    assert_eq!((all.len(), all[1].name.as_str()), (24, "vase@25"));
 }
 
-/// Every column of the program's own tables and charts is there, and so is every entry of a plan
-/// that they choose; no exhibit is without a plan.
+/// Every column and entry that exhibits name is there; no exhibit is without a plan.
 #[test]
 fn every_exhibit_of_the_program_is_sound() {
     let plans = embedded::ALL.map(|(name, _)| embedded::plan(name).unwrap());
@@ -186,8 +188,7 @@ fn a_sweep_moves_one_axis_at_a_time() {
     assert_eq!(count(|s| s.method == Solver::Quadric), 2);
 }
 
-/// Every picture of the plan `sizes` has the default and its two rivals in both stages, at five
-/// sizes with each kind of shadows.
+/// Every picture of the plan `sizes` has the default and its two rivals in both stages.
 #[test]
 fn the_default_has_its_rivals_in_every_picture() {
     let file = embedded::plan("sizes").unwrap();

@@ -23,11 +23,8 @@ pub(in super::super) mod generated {
 pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
     let packed = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
     let start = generated::MODULE_BYTES.iter().take(n).sum();
-    unpacked(
-        packed
-            .get(start..)?
-            .get(..*generated::MODULE_BYTES.get(n)?)?,
-    )
+    let bytes = *generated::MODULE_BYTES.get(n)?;
+    unpacked(packed.get(start..)?.get(..bytes)?)
 }
 
 /// What a pipeline is made for.
@@ -214,8 +211,7 @@ impl MeshPipelines {
             .layout(self.layout)
             .render_pass(key.pass.raw);
         let none = vk::PipelineCache::null();
-        // SAFETY: `info` and all it points to live until the call returns; the pass lives as long
-        // as the device, which `self` holds.
+        // SAFETY: what `info` points to lives until the call returns, the pass with the device.
         let made = unsafe { (self.device.raw()).create_graphics_pipelines(none, &[info], None) };
         made.map(|all| all.first().copied().unwrap_or_default())
             .map_err(|(_, code)| vulkan("vkCreateGraphicsPipelines", code))
@@ -226,8 +222,7 @@ impl Drop for MeshPipelines {
     fn drop(&mut self) {
         let raw = self.device.raw();
         let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
-        // SAFETY: all that draws with them holds `self` and waits for its frames; null handles may
-        // be destroyed.
+        // SAFETY: all that draws holds `self` and waits for its frames; null handles are allowed.
         unsafe {
             for pipeline in made.values() {
                 raw.destroy_pipeline(*pipeline, None);

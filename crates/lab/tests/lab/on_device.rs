@@ -1,9 +1,11 @@
-//! The benchmark of anti-aliasing on a device, under the validation layers.
+//! Benchmarks of anti-aliasing and of a flight on a device, under the validation layers.
 
 use revmap::gpu::Device;
-use revmap::settings::DrawStage;
+use revmap::settings::{DrawStage, Tolerance};
 use revmap_lab::method::Edges;
+use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::DeviceBench;
+use revmap_lab::report::flight::{self, FlightTimes};
 use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::pictures::Sheets;
 use revmap_lab::report::plan::{Overrides, embedded};
@@ -66,4 +68,30 @@ fn four_samples_bring_meshes_closer_to_64_rays() {
     let [one, four] = [Edges::OneRay, Edges::Msaa].map(flip);
     println!("one ray: {one}, four samples: {four}");
     assert!(four > 0.9 * one && four < 1.3 * one, "{four} of {one}");
+}
+
+fn flight(device: &MethodDevice, stage: DrawStage, tolerance: f64) -> FlightTimes {
+    let mut settings = flight::settings(stage).sized(160, 90);
+    settings.tolerance = Tolerance::new(tolerance).unwrap();
+    flight::fly(device, &settings, 1600, 6, 3).unwrap()
+}
+
+#[test]
+fn flights_time_each_frame_and_hold_their_tolerance() {
+    let device = Device::open_validated(None).unwrap();
+    let methods = MethodDevice::new(device.clone()).unwrap();
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let fine = flight(&methods, stage, 0.25);
+        assert_eq!((fine.times.len(), fine.errors.len()), (6, 2));
+        assert!(fine.errors.iter().all(|(_, e)| e.pixels > 1000));
+        let worst = fine.worst();
+        assert!(worst.into_iter().all(|e| e <= 0.25), "{worst:?}");
+        let [median, slowest] = fine.frame_ms();
+        assert!(0.0 < median && median <= slowest);
+        assert_eq!(fine.table().records.len(), 6);
+        // A tolerance of many pixels must show, or nothing would be compared.
+        let coarse = flight(&methods, stage, 60.0);
+        assert!(coarse.worst()[0] > fine.worst()[0], "{:?}", coarse.worst());
+    }
+    device.check().unwrap();
 }
