@@ -4,8 +4,8 @@ use super::{FillRule, Outline, Profile};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
 
-/// Points this close to the axis, on either side, are moved onto it. `0.5 * sin(pi)` is not quite
-/// 0, and a sliver along the axis would count as surface.
+/// Points this close to the axis, on either side, in units of the largest radius, are moved onto
+/// it. `0.5 * sin(pi)` is not quite 0, and a sliver along the axis would count as surface.
 const AXIS_SLACK: f64 = 1e-9;
 
 /// See [`Profile::polygon`].
@@ -24,6 +24,8 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
             points.len()
         ));
     }
+    let widest = points.iter().fold(0.0f64, |m, p| m.max(p[0].abs()));
+    let slack = AXIS_SLACK * widest.min(1.0);
     let mut clean = Vec::with_capacity(points.len());
     for (i, &[r, z]) in points.iter().enumerate() {
         if !(r.is_finite() && z.is_finite()) {
@@ -31,7 +33,7 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
                 "point {i} [{r}, {z}] is not finite; give two numbers"
             ));
         }
-        if r < -AXIS_SLACK {
+        if r < -slack {
             return fault(format!(
                 "point {i} [{r}, {z}] crosses the axis; keep r >= 0 and give one half of the silhouette"
             ));
@@ -41,10 +43,10 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
                 "point {i} [{r}, {z}] is too far out; one object unit is the height of the box"
             ));
         }
-        clean.push(DVec2::new(if r < AXIS_SLACK { 0.0 } else { r }, z));
+        clean.push(DVec2::new(if r < slack { 0.0 } else { r }, z));
     }
     let outline = Outline::enclosed(&[clean], FillRule::NonZero);
-    if outline.area() < 1e-12 {
+    if outline.area() < 1e-12 * widest.min(1.0).powi(2) {
         return fault("the polygon has no area; give corners that enclose some".into());
     }
     Ok(Profile::new(outline, radius))

@@ -79,8 +79,8 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
         let asked = [
             levels(p),
             radii(p),
-            quadric[2].to_bits(),
-            quadric[3].to_bits(),
+            (p.quadric[2] as f32).to_bits(),
+            (p.quadric[3] as f32).to_bits(),
         ];
         [quadric.map(f32::to_bits), guard.map(f32::to_bits), asked]
     };

@@ -30,9 +30,12 @@ pub(super) const MARGIN: f64 = 1e-6;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct GpuPatch {
-    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 z + k2 z^2`.
+    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 h + k2 h^2`, where `h = z - level`.
     pub quadric: [f32; 4],
-    /// `[cz, cr, low, high]`: a point counts if `low <= cz z + cr r^2 <= high`.
+    /// `[level, cr, low, high]`: a point counts if `low <= |a| h + cr r^2 <= high`. The level is the
+    /// `z` of the end that is nearer to the axis. There `G` has its smallest terms, so a flat cone
+    /// keeps its tip: about `z = 0` the terms of its `G` are hundreds of times as large, and their
+    /// rounding joins its two sheets.
     pub guard: [f32; 4],
     /// `[z0, z1, patch, 0]`: the range of `z`, and the patch's number (exact up to 2^24).
     pub range: [f32; 4],
@@ -42,10 +45,17 @@ impl GpuPatch {
     /// The record of patch number `index`.
     #[must_use]
     pub fn new(patch: &QuadricPatch, index: usize) -> Self {
+        let [start, end] = [patch.start, patch.end];
+        let inner = if start.x < end.x { start } else { end };
+        let level = f64::from(inner.y as f32);
+        let [a, k0, k1, k2] = patch.quadric;
+        let constant = k0 + level * (k1 + level * k2);
         let [cz, cr, low, high] = patch.guard;
+        debug_assert!(cz == a.abs());
+        let guard = [level, cr, low - cz * level, high - cz * level];
         Self {
-            quadric: patch.quadric.map(|v| v as f32),
-            guard: [cz as f32, cr as f32, low as f32, high as f32],
+            quadric: [a, constant, k1 + 2.0 * level * k2, k2].map(|v| v as f32),
+            guard: guard.map(|v| v as f32),
             range: [patch.z[0] as f32, patch.z[1] as f32, index as f32, 0.0],
         }
     }

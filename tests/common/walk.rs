@@ -115,9 +115,10 @@ pub fn walk(tables: &Tables, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
             for k in run >> 12..(run >> 12) + (run & 0xfff) {
                 let record = &tables.records[k as usize];
                 walk.patches += 1;
-                let root = entering_root(record.quadric, side, [a, b, c], [o.z, v.z]);
-                let [cz, cr, from, to] = record.guard;
-                let place = cz * (o.z + root * v.z) + cr * square(root);
+                let [level, cr, from, to] = record.guard;
+                let above = o.z - level;
+                let root = entering_root(record.quadric, side, [a, b, c], [above, v.z]);
+                let place = record.quadric[0].abs() * (above + root * v.z) + cr * square(root);
                 let valid = place >= from && place <= to && root >= -slack;
                 if valid && root < best && root <= end + slack {
                     best = root;
@@ -145,9 +146,10 @@ pub fn contains(tables: &Tables, square: f32, z: f32) -> bool {
     }
     let run = tables.rows[((z * rows as f32) as usize).min(rows - 1)];
     let beyond = (run >> 12..(run >> 12) + (run & 0xfff)).filter(|&k| {
-        let GpuPatch { quadric, range, .. } = tables.records[k as usize];
-        let [a, k0, k1, k2] = quadric;
-        let p = -a * (k0 + z * (k1 + z * k2));
+        let record = tables.records[k as usize];
+        let (range, [a, k0, k1, k2]) = (record.range, record.quadric);
+        let above = z - record.guard[0];
+        let p = -a * (k0 + above * (k1 + above * k2));
         a != 0.0 && range[0] <= z && z < range[1] && p > square
     });
     beyond.count() % 2 == 1
@@ -213,11 +215,11 @@ pub fn trace_patches(
     let Some((root, record)) = walk.hit else {
         return if inside { face(1, 1.0) } else { None };
     };
-    let [a, _, k1, k2] = record.quadric;
+    let ([a, _, k1, k2], level) = (record.quadric, record.guard[0]);
     let p = o + v * root;
     Some(PatchHit {
         t: t[0] + f64::from(root),
-        normal: Vec3::new(2.0 * a * p.x, 2.0 * a * p.y, k1 + 2.0 * k2 * p.z).as_dvec3(),
+        normal: Vec3::new(2.0 * a * p.x, 2.0 * a * p.y, k1 + 2.0 * k2 * (p.z - level)).as_dvec3(),
         patch: Some(record.range[2] as u32),
     })
 }
@@ -265,12 +267,14 @@ pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) ->
                 let near = -o.dot(v) / v.length_squared();
                 let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
                 let flat = coefficients(o, v);
-                let root = entering_root(record.quadric, 1.0, flat, [o.z, v.z]);
-                let [cz, cr, low, high] = record.guard;
+                let [level, cr, low, high] = record.guard;
+                let above = o.z - level;
+                let root = entering_root(record.quadric, 1.0, flat, [above, v.z]);
                 let square = flat[2] + root * (2.0 * flat[1] + root * flat[0]);
                 let z = o.z + root * v.z;
                 let t = root + near as f32;
-                let valid = (low..=high).contains(&(cz * z + cr * square))
+                let place = record.quadric[0].abs() * (above + root * v.z) + cr * square;
+                let valid = (low..=high).contains(&place)
                     && (-HEIGHT_SLACK..=1.0 + HEIGHT_SLACK).contains(&z);
                 if valid && walk.hit.is_none_or(|(best, _)| t < best) {
                     walk.hit = Some((t, *record));

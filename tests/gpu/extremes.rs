@@ -172,3 +172,29 @@ fn flat_solids_are_drawn_by_the_tree() {
         in_both_stages(&scene, (3, 0.2 * width), &format!("radius {width}"));
     }
 }
+
+/// A solid that is small in its box is as exact as a large one: units do not matter.
+#[test]
+fn small_outlines_are_as_exact_as_large_ones() {
+    let corners = [[0.0, 0.1], [0.3, 0.12], [0.2, 0.5], [0.33, 0.7], [0.0, 0.9]];
+    for scale in [0.1, 1e-3, 1e-5, 1e-6] {
+        let of = |scale: f64| {
+            let polygon = corners.map(|p| p.map(|x| scale * x));
+            let eye = scale * eye(25.0, 1.9);
+            let mut scene = scene_of(Profile::polygon(&polygon, 0.5).unwrap(), eye);
+            scene.camera.target = scale * DVec3::new(0.0, 0.0, 0.5);
+            scene.objects[0].offset.extend = 0.02 * scale;
+            scene
+        };
+        let truth = reference(&of(1.0), &settings(STAGES[0], Solver::DEFAULT));
+        for stage in STAGES {
+            let mut frame = draw(&of(scale), &settings(stage, Solver::DEFAULT));
+            for distance in &mut frame.distance {
+                *distance = (f64::from(*distance) / scale) as f32;
+            }
+            check(&truth, &frame, (2, 0.02), &format!("{scale}, {stage:?}"));
+            let normal = errors(&truth, &frame, 512).normal.unwrap();
+            assert!(normal.rms < 0.2, "{scale}, {stage:?}: {}", normal.rms);
+        }
+    }
+}

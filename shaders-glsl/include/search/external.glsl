@@ -16,7 +16,8 @@
 //   (core/surface.glsl).
 // - `pixel`: width of a pixel at s = 0, object units.
 // - `steps`: number of look-ups of the map or of the table's rows.
-// - `quadric`: coefficients q of the hit patch, G = q.x r^2 + q.y + q.z z + q.w z^2. The gradient of G is the normal.
+// - `quadric`: q of the hit patch, G = q.x r^2 + q.z (z - q.y) + q.w (z - q.y)^2 + any constant. The gradient of G is
+//   the normal.
 // `starts_in_table` returns true if the ray begins within the solid; it reads only m.o and m.c.
 //
 // `patch_vector` (core/patch_tables.glsl) reads the table. object.patches.yzw holds three words about it, defined by

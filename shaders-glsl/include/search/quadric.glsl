@@ -9,11 +9,12 @@
 #include "core/patch_tables.glsl"
 
 // Returns the root at which the ray enters (G changes from positive to negative). NaN or out of range if there is none.
-float entering_root(Meridian m, vec4 q, float side)
+// `z`: height of m.o above the patch's own level, which keeps the cancellation in `ga` small.
+float entering_root(Meridian m, vec4 q, float z, float side)
 {
     float al = side * (q.x * m.a + q.w * m.v.z * m.v.z);
-    float be = side * (q.x * m.b + (0.5 * q.z + q.w * m.o.z) * m.v.z);
-    float ga = side * (q.x * m.c + (q.y + m.o.z * (q.z + m.o.z * q.w)));
+    float be = side * (q.x * m.b + (0.5 * q.z + q.w * z) * m.v.z);
+    float ga = side * (q.x * m.c + (q.y + z * (q.z + z * q.w)));
     float root = sqrt(be * be - al * ga);
     bool towards = be <= 0.0;
     return mix(-(be + root), ga, towards) / mix(al, root - be, towards);
@@ -29,13 +30,14 @@ const float HEIGHT_SLACK = 1e-3; // outside the box's height another sheet of a 
 // Replaces the nearest hit so far by the hit with patch `q`, if that is after `least` and nearer.
 void take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, inout vec4 quadric)
 {
-    float root = entering_root(m, q, 1.0);
+    float above = m.o.z - guard.x;
+    float root = entering_root(m, q, above, 1.0);
     float z = m.o.z + root * m.v.z;
-    float guarded = guard.x * z + guard.y * square_at(m, root);
+    float guarded = abs(q.x) * (above + root * m.v.z) + guard.y * square_at(m, root);
     bvec3 within = lessThanEqual(vec3(guard.z, guarded, abs(z - 0.5)), vec3(guarded, guard.w, 0.5 + HEIGHT_SLACK));
     bool nearer = all(within) && root > least && root < best;
     best = mix(best, root, nearer);
-    quadric = mix(quadric, q, bvec4(nearer));
+    quadric = mix(quadric, vec4(q.x, guard.x, q.zw), bvec4(nearer));
 }
 
 // Returns true if the ray starts in the solid: the number of patches outward of the start is odd.
@@ -47,15 +49,17 @@ bool starts_within(Meridian m)
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
         vec4 q = patch_vector(object.patches.y + 2u * record);
+        float above = m.o.z - patch_vector(object.patches.y + 2u * record + 1u).x;
         vec4 ranges = patch_vector(object.patches.z + (record >> 1));
         vec2 range = (record & 1u) == 0u ? ranges.xy : ranges.zw;
-        float p = -q.x * (q.y + m.o.z * (q.z + m.o.z * q.w));
+        float p = -q.x * (q.y + above * (q.z + above * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
     }
     return (beyond & 1u) != 0u;
 }
 
-// Returns FOUND or LEFT; `hit_quadric` is the patch that was hit. `span`: range of s in which rows are visited.
+// Returns FOUND or LEFT; `hit_quadric` is that of the patch that was hit, as quadric_normal() reads it. `span`: range of s
+// in which rows are visited.
 uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint steps, out vec4 hit_quadric)
 {
     const int rows = int(PATCH_ROWS);
@@ -111,12 +115,13 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             vec4 q = patch_vector(first + 2u * k);
             vec4 guard = patch_vector(first + 2u * k + 1u);
             ++steps;
-            float root = entering_root(m, q, side);
-            float guarded = guard.x * (m.o.z + root * m.v.z) + guard.y * square_at(m, root);
+            float above = m.o.z - guard.x;
+            float root = entering_root(m, q, above, side);
+            float guarded = abs(q.x) * (above + root * m.v.z) + guard.y * square_at(m, root);
             bool within = all(lessThanEqual(vec4(guard.z, guarded, -slack, root), vec4(guarded, guard.w, root, m.s_end + slack)));
             bool nearer = within && root < best;
             best = mix(best, root, nearer);
-            hit_quadric = mix(hit_quadric, q, bvec4(nearer));
+            hit_quadric = mix(hit_quadric, vec4(q.x, guard.x, q.zw), bvec4(nearer));
         }
         row = run == 0u ? row : (up ? border : border - 1);
         if (best <= leave || leave >= last || row < 0 || row >= rows) {
@@ -126,15 +131,16 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
         most = most_out;
         level = min(findLSB(border) >> 1, top);
     }
-    s = best;
+    s = max(best, 0.0); // a hit at the eye must not be behind it
     return best < 2e38 ? FOUND : LEFT;
 }
 
 // Returns the outward normal in object space, not normalised. A tip on the axis has no normal; there it is -m.v.
+// `q`: a patch's quadric with its level in place of the constant term, which the normal does not need.
 vec3 quadric_normal(Meridian m, float s, vec4 q)
 {
     vec3 p = m.o + s * m.v;
-    vec3 n = vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * p.z);
+    vec3 n = vec3(2.0 * q.x * p.xy, q.z + 2.0 * q.w * (p.z - q.y));
     return dot(n, n) > 1e-30 ? n : -m.v;
 }
 

@@ -40,9 +40,10 @@ impl MapKey {
     pub fn new(object: &Object, growth: &Growth, settings: &SearchSettings) -> Self {
         let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
-        // Texels of a grown box are as large as texels of the object's own box.
+        // Texels of a grown box are as large as texels of the object's own box, those of a shrunk
+        // box smaller.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
-        let rows = (f64::from(rows) * growth.height())
+        let rows = (f64::from(rows) * growth.height().max(1.0))
             .ceil()
             .min(MOST_ROWS.max(f64::from(rows))) as u32;
         let reach = reach(object, 2.0 / f64::from(rows.max(1)));

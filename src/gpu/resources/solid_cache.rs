@@ -95,7 +95,7 @@ impl Solid {
     ) -> Result<Arc<OffsetSurface>> {
         let key = SurfaceKey::Patches(bits(offset), level);
         shelved(&self.surfaces, key, || {
-            let tolerance = levels::bound(level) / growth.height();
+            let tolerance = levels::bound(level) / growth.height().max(1.0);
             let recipe = Recipe::Patches(self.contour(offset)?, level, tolerance);
             Ok(OffsetSurface::new(recipe))
         })

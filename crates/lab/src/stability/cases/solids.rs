@@ -71,6 +71,14 @@ pub(super) const SCENES: &[Scene] = &[
             .solid(&cone, "")
             .sized(161, 121)
     }),
+    ("shallow-lid", |climb| {
+        // A jar, near the tip of its lid.
+        let tip = 0.6 + climb;
+        let jar = [[0.0, 0.1], [0.4, 0.1], [0.4, 0.6], [0.0, tip]];
+        Step::through([-1.6, 0.7, 2.2], [0.0, 0.0, tip], 0.7)
+            .solid(&jar, "")
+            .sized(160, 120)
+    }),
     ("thin-discs", |thick| {
         let disc = |k: u32| {
             let z = 0.1 + 0.1 * f64::from(k);
