@@ -10,14 +10,15 @@ bool trace_cell(uvec2 pixel, out Hit hit)
 {
     take_over();
     PatchRow row = begin_row(varying_rays(), pixel, cell_sides);
-    [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-        vec4 quadric = cell_quadric[k];
-        vec4 guard = cell_guard[k];
-        if (FETCHED_CELLS != 0u) {
-            quadric = uintBitsToFloat(patch_tables[cell_record + 2u * k + 1u]);
-            guard = uintBitsToFloat(patch_tables[cell_record + 2u * k + 2u]);
+    // SwiftShader skips a loop without rounds, but executes both sides of a branch.
+    for (uint k = 0u; k < FETCHED_CELLS * PATCHES_PER_CELL; ++k) {
+        uint at = cell_record + 2u * k;
+        take_patch_of_row(row, uintBitsToFloat(patch_tables[at + 1u]), uintBitsToFloat(patch_tables[at + 2u]));
+    }
+    if (FETCHED_CELLS == 0u) {
+        [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+            take_patch_of_row(row, cell_quadric[k], cell_guard[k]);
         }
-        take_patch_of_row(row, quadric, guard);
     }
     return end_row(row, PATCHES_PER_CELL, hit);
 }

@@ -77,7 +77,8 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     int row = clamp(int(floor((m.o.z + t * m.v.z) * n)), 0, rows - 1);
     float most = square_at(m, t);
     float best = 3e38;
-    hit_quadric = vec4(0.0);
+    uint hit_record = 0u;
+    float hit_level = 0.0;
     for (;;) {
         // Traverse the tree to the next row whose patches the ray may hit.
         uint run = 0u;
@@ -112,8 +113,9 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
         }
         uint first = object.patches.y + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
-            vec4 q = patch_vector(first + 2u * k);
-            vec4 guard = patch_vector(first + 2u * k + 1u);
+            uint at = first + 2u * k;
+            vec4 q = patch_vector(at);
+            vec4 guard = patch_vector(at + 1u);
             ++steps;
             float above = m.o.z - guard.x;
             float root = entering_root(m, q, above, side);
@@ -121,7 +123,8 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             bool within = all(lessThanEqual(vec4(guard.z, guarded, -slack, root), vec4(guarded, guard.w, root, m.s_end + slack)));
             bool nearer = within && root < best;
             best = mix(best, root, nearer);
-            hit_quadric = mix(hit_quadric, vec4(q.x, guard.x, q.zw), bvec4(nearer));
+            hit_record = nearer ? at : hit_record;
+            hit_level = nearer ? guard.x : hit_level;
         }
         row = run == 0u ? row : (up ? border : border - 1);
         if (best <= leave || leave >= last || row < 0 || row >= rows) {
@@ -131,6 +134,9 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
         most = most_out;
         level = min(findLSB(border) >> 1, top);
     }
+    // Fetched again: fewer registers across the loop.
+    vec4 hit = patch_vector(hit_record);
+    hit_quadric = vec4(hit.x, hit_level, hit.zw);
     s = max(best, 0.0); // a hit at the eye must not be behind it
     return best < 2e38 ? FOUND : LEFT;
 }
