@@ -30,9 +30,9 @@ pub(super) const MARGIN: f64 = 1e-6;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct GpuPatch {
-    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 h + k2 h^2`, where `h = z - level`.
+    /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 h + k2 h^2`, where `h = z - anchor`.
     pub quadric: [f32; 4],
-    /// `[level, cr, low, high]`: a point counts if `low <= |a| h + cr r^2 <= high`. The level is the
+    /// `[anchor, cr, low, high]`: a point counts if `low <= |a| h + cr r^2 <= high`. The anchor is the
     /// `z` of the end that is nearer to the axis. There `G` has its smallest terms, so a flat cone
     /// keeps its tip: about `z = 0` the terms of its `G` are hundreds of times as large, and their
     /// rounding joins its two sheets.
@@ -47,14 +47,14 @@ impl GpuPatch {
     pub fn new(patch: &QuadricPatch, index: usize) -> Self {
         let [start, end] = [patch.start, patch.end];
         let inner = if start.x < end.x { start } else { end };
-        let level = f64::from(inner.y as f32);
+        let anchor = f64::from(inner.y as f32);
         let [a, k0, k1, k2] = patch.quadric;
-        let constant = k0 + level * (k1 + level * k2);
+        let constant = k0 + anchor * (k1 + anchor * k2);
         let [cz, cr, low, high] = patch.guard;
         debug_assert!(cz == a.abs());
-        let guard = [level, cr, low - cz * level, high - cz * level];
+        let guard = [anchor, cr, low - cz * anchor, high - cz * anchor];
         Self {
-            quadric: [a, constant, k1 + 2.0 * level * k2, k2].map(|v| v as f32),
+            quadric: [a, constant, k1 + 2.0 * anchor * k2, k2].map(|v| v as f32),
             guard: guard.map(|v| v as f32),
             range: [patch.z[0] as f32, patch.z[1] as f32, index as f32, 0.0],
         }

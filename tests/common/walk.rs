@@ -115,8 +115,8 @@ pub fn walk(tables: &Tables, o: Vec3, v: Vec3, end: f32, side: f32) -> Walk {
             for k in run >> 12..(run >> 12) + (run & 0xfff) {
                 let record = &tables.records[k as usize];
                 walk.patches += 1;
-                let [level, cr, from, to] = record.guard;
-                let above = o.z - level;
+                let [anchor, cr, from, to] = record.guard;
+                let above = o.z - anchor;
                 let root = entering_root(record.quadric, side, [a, b, c], [above, v.z]);
                 let place = record.quadric[0].abs() * (above + root * v.z) + cr * square(root);
                 let valid = place >= from && place <= to && root >= -slack;
@@ -215,11 +215,11 @@ pub fn trace_patches(
     let Some((root, record)) = walk.hit else {
         return if inside { face(1, 1.0) } else { None };
     };
-    let ([a, _, k1, k2], level) = (record.quadric, record.guard[0]);
+    let ([a, _, k1, k2], anchor) = (record.quadric, record.guard[0]);
     let p = o + v * root;
     Some(PatchHit {
         t: t[0] + f64::from(root),
-        normal: Vec3::new(2.0 * a * p.x, 2.0 * a * p.y, k1 + 2.0 * k2 * (p.z - level)).as_dvec3(),
+        normal: Vec3::new(2.0 * a * p.x, 2.0 * a * p.y, k1 + 2.0 * k2 * (p.z - anchor)).as_dvec3(),
         patch: Some(record.range[2] as u32),
     })
 }
@@ -267,8 +267,8 @@ pub fn trace_hull(hull: &ProxyHull, records: &[GpuPatch], o: DVec3, v: DVec3) ->
                 let near = -o.dot(v) / v.length_squared();
                 let (o, v) = ((o + v * near).as_vec3(), v.as_vec3());
                 let flat = coefficients(o, v);
-                let [level, cr, low, high] = record.guard;
-                let above = o.z - level;
+                let [anchor, cr, low, high] = record.guard;
+                let above = o.z - anchor;
                 let root = entering_root(record.quadric, 1.0, flat, [above, v.z]);
                 let square = flat[2] + root * (2.0 * flat[1] + root * flat[0]);
                 let z = o.z + root * v.z;

@@ -9,7 +9,7 @@
 #include "core/patch_tables.glsl"
 
 // Returns the root at which the ray enters (G changes from positive to negative). NaN or out of range if there is none.
-// `z`: height of m.o above the patch's own level, which keeps the cancellation in `ga` small.
+// `z`: height of m.o above the patch's anchor, which keeps the cancellation in `ga` small.
 float entering_root(Meridian m, vec4 q, float z, float side)
 {
     float al = side * (q.x * m.a + q.w * m.v.z * m.v.z);
@@ -78,7 +78,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     float most = square_at(m, t);
     float best = 3e38;
     uint hit_record = 0u;
-    float hit_level = 0.0;
+    float hit_anchor = 0.0;
     for (;;) {
         // Traverse the tree to the next row whose patches the ray may hit.
         uint run = 0u;
@@ -124,7 +124,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             bool nearer = within && root < best;
             best = mix(best, root, nearer);
             hit_record = nearer ? at : hit_record;
-            hit_level = nearer ? guard.x : hit_level;
+            hit_anchor = nearer ? guard.x : hit_anchor;
         }
         row = run == 0u ? row : (up ? border : border - 1);
         if (best <= leave || leave >= last || row < 0 || row >= rows) {
@@ -136,13 +136,13 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     }
     // Fetched again: fewer registers across the loop.
     vec4 hit = patch_vector(hit_record);
-    hit_quadric = vec4(hit.x, hit_level, hit.zw);
+    hit_quadric = vec4(hit.x, hit_anchor, hit.zw);
     s = max(best, 0.0); // a hit at the eye must not be behind it
     return best < 2e38 ? FOUND : LEFT;
 }
 
 // Returns the outward normal in object space, not normalised. A tip on the axis has no normal; there it is -m.v.
-// `q`: a patch's quadric with its level in place of the constant term, which the normal does not need.
+// `q`: a patch's quadric with its anchor in place of the constant term, which the normal does not need.
 vec3 quadric_normal(Meridian m, float s, vec4 q)
 {
     vec3 p = m.o + s * m.v;

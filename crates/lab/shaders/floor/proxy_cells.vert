@@ -18,5 +18,5 @@ void main()
 
     hand_over(i, frame.forward.w);
     first_quadric = uintBitsToFloat(patch_tables[at + 1u]);
-    first_quadric.y = uintBitsToFloat(patch_tables[at + 2u].x); // quadric_normal() reads the level
+    first_quadric.y = uintBitsToFloat(patch_tables[at + 2u].x); // quadric_normal() reads the anchor
 }
