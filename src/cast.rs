@@ -17,7 +17,9 @@
 
 use crate::error::Result;
 use crate::scene::{Cluster, GrownProfiles, Object, Placement};
-use crate::surface::{ContourSource, FitOptions, QuadricPatch, ROWS, extents, fit_patches};
+use crate::surface::{
+    ContourSource, FitOptions, QuadricPatch, ROWS, extents, fit_patches, touched,
+};
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -49,7 +51,7 @@ pub struct RayCaster {
 /// Crossings this near to a border of a cell count as the border, units of length of the ray in
 /// object space.
 const SKIN: f64 = 1e-10;
-/// Rows reach this far beyond their heights.
+/// A root this far beyond its row, as a part of the ray, still counts in it.
 const MARGIN: f64 = 1e-6;
 
 impl RayCaster {
@@ -67,7 +69,7 @@ impl RayCaster {
         let rows = ROWS as usize;
         let mut of_rows = vec![Vec::new(); rows];
         for (n, patch) in patches.iter().enumerate() {
-            for row in rows_of(patch.z[0] - MARGIN, patch.z[1] + MARGIN) {
+            for row in touched(patch, rows) {
                 of_rows[row].push(n as u32);
             }
         }

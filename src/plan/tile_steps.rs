@@ -59,7 +59,8 @@ impl FramePlan {
             Drawer::Fragments
         };
         let mut dealt = visible.deal(drawer, &layer_of, layers.len());
-        for (layer, tiles) in layers.iter().zip(&mut dealt.layers) {
+        let layers_of_lists = layers.iter().zip(&mut dealt.layers);
+        for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
             let patches = |&n: &u32| objects[n as usize].listed_patches();
             let patches = layer.objects.iter().map(patches).sum();
             if !with.gains_by_lists(tiles.listed.len() as u64, patches) {

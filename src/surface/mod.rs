@@ -36,8 +36,8 @@ pub use contour::{Contour, ContourSource};
 pub(crate) use cylinders::{CylinderPiece, InnerCylinders, OuterCylinders};
 pub use fit::{FitOptions, fit_patches};
 pub use hull::{Frustum, ProxyHull, ProxyHullOptions};
-pub(crate) use rows::extents;
 pub use rows::{GpuPatch, ROWS, Tables};
+pub(crate) use rows::{extents, touched};
 pub(crate) use solid_radii::{SOLID_ROWS, solid_radii};
 
 use glam::DVec2;

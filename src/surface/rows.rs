@@ -126,7 +126,7 @@ const MOST: usize = (1 << 12) - 1;
 const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// Rows that a patch touches. `rows`: number of all rows.
-fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
+pub(crate) fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
     let row = |z: f64| ((z * rows as f64).floor().max(0.0) as usize).min(rows - 1);
     row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN)
 }

@@ -54,10 +54,10 @@ pub struct Lists {
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
     #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
     pub elevation: Vec<f64>,
-    /// How much of the picture is solid: whole as the camera stands (the program's own solids fill
-    /// 9 to 23 % of it); close: the field of view narrowed until the solid's box is a quarter
-    /// larger than a picture of 4:3 (44 to 81 %), views named so; a close picture takes two to four
-    /// times as long [default: whole]
+    /// Framing of the views. Whole: as the camera stands; the program's own solids fill 9 to 23 % of
+    /// the picture. Close: a narrower field of view, in which the solid's box is a quarter larger
+    /// than a picture of 4:3 (44 to 81 %). A close picture takes two to four times as long
+    /// [default: whole]
     #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&Framing::NAMES))]
     pub framing: Vec<Framing>,
     /// How many of the solids that the program carries: one, three or all eight [default: three;

@@ -2,7 +2,7 @@
 //!
 //! The clock tells how long a frame takes; this tells how much work it is, and it is steadier on a machine that does other things beside.
 //! Every solid that the program carries, at 25 degrees, 800x600 (`--close`: so near that it fills the picture); searches are drawn in turn, and ratios are to
-//! the RBM baseline. `--crowd` and `--distant` draw copies at the default tolerance; `revmap bench --crowds` tells what a camera that moves asks of the CPU.
+//! the RBM baseline. `--crowd` and `--distant` draw copies at the default tolerance; `revmap bench --crowds` has the CPU's part of a new view.
 //! `--count N` draws N frames by the last method and prints nothing, for `perf stat`. Linux alone: it reads `/proc/self/task`.
 
 use revmap::gpu::Device;

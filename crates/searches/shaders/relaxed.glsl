@@ -1,7 +1,7 @@
 // Relaxed cone stepping (Policarpo and Oliveira 2007) over the rows of cones of cone_rows.glsl: cones that are as
 // wide as lets a ray come out of the surface no sooner than it leaves them. So a step may end within, and is halved
-// then. What its cones ask of rays, that they are straight in the half-plane and come from far off the axis, is not so:
-// surfaces are passed (docs/searches.md).
+// then. The cones assume rays that are straight in the half-plane and come from far off the axis. Rays here are
+// neither, so the search passes surfaces (docs/searches.md).
 #include "cone_rows.glsl"
 
 const int HALVINGS_OF_CONES = 12;
