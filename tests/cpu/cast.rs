@@ -60,7 +60,7 @@ fn objects() -> Vec<Object> {
 }
 
 /// Hits are those of the reference, to within the fit of the patches. Rays that graze a surface may
-/// miss it; they are counted, and few.
+/// miss it. Measured: at most 4 of 20,000 rays at one solid, the torus.
 #[test]
 fn casts_hit_what_the_reference_hits() {
     for object in objects() {
@@ -104,7 +104,7 @@ fn casts_hit_what_the_reference_hits() {
         }
         assert!(hits > rays / 5, "{}: {hits} of {rays}", object.name);
         assert!(
-            off <= rays / 500,
+            off <= 1 + rays / 4000,
             "{}: {off} of {hits} are off",
             object.name
         );

