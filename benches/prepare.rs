@@ -5,9 +5,7 @@
 use ash::vk;
 use divan::Bencher;
 use glam::DVec3;
-use revmap::gpu::{
-    DepthOrder, DepthTest, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View,
-};
+use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement};
 use revmap::settings::{Planes, SearchSettings};
@@ -42,17 +40,12 @@ fn place(n: usize, frame: usize) -> Placement {
 impl Crowd {
     fn new() -> Self {
         let device = Device::open(None).unwrap();
-        let output = Output::Pass(PassFormats {
-            begun: PassKind::Dynamic {
-                color: vec![vk::Format::R8G8B8A8_SRGB],
-                depth: vk::Format::D32_SFLOAT,
-                stencil: vk::Format::UNDEFINED,
-            },
-            samples: 1,
-            depth: DepthOrder::Normal,
-            depth_test: DepthTest::default(),
-            planes: Planes::Color,
-        });
+        let begun = PassKind::Dynamic {
+            color: vec![vk::Format::R8G8B8A8_SRGB],
+            depth: vk::Format::D32_SFLOAT,
+            stencil: vk::Format::UNDEFINED,
+        };
+        let output = Output::Pass(PassFormats::new(begun, Planes::Color));
         let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 2).unwrap();
         let profiles = [
             &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],

@@ -8,7 +8,7 @@ layout(depth_greater) out float gl_FragDepth;
 
 void main()
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
     Hit hit;
     bool found = trace_cell(pixel, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
@@ -16,7 +16,7 @@ void main()
         discard;
     }
 #if OUTPUT != OUTPUT_DEPTH
-    store(shade(varying_look(), varying_rays(), pixel, hit));
+    store(shade(varying_look(), varying_rays(), pixel, hit), pixel, hit);
 #endif
     // The triangle is never behind the surface that it wraps, except by rounding.
     float sense = ray_dir_00.w;

@@ -9,7 +9,7 @@ layout(depth_greater) out float gl_FragDepth;
 
 void main()
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
     take_over();
     take_over_tree();
     PixelRays rays = varying_rays();
@@ -23,7 +23,7 @@ void main()
         discard;
     }
 #if OUTPUT != OUTPUT_DEPTH
-    store(shade(varying_look(), rays, pixel, hit));
+    store(shade(varying_look(), rays, pixel, hit), pixel, hit);
 #endif
     gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
 }

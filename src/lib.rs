@@ -85,10 +85,9 @@
 //!     instance: &instance, physical, device: &device, queue_family, features,
 //!     queue: None, allocator: None, pipeline_cache: None,
 //! }) }?;
-//! let output = Output::Pass(PassFormats {
-//!     begun: PassKind::Dynamic { color: vec![color], depth, stencil: ash::vk::Format::UNDEFINED },
-//!     samples: 1, depth: DepthOrder::Reversed, depth_test: DepthTest::default(), planes: Planes::Color,
-//! });
+//! let begun = PassKind::Dynamic { color: vec![color], depth, stencil: ash::vk::Format::UNDEFINED };
+//! let depth = DepthOrder::Reversed;
+//! let output = Output::Pass(PassFormats { depth, ..PassFormats::new(begun, Planes::Color) });
 //! let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 2)?;
 //! let pawn = renderer.add(pawn)?;
 //! renderer.prewarm()?.compile()?; // from here on no frame compiles a pipeline

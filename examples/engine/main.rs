@@ -10,8 +10,7 @@ mod host;
 use glam::{DQuat, DVec3, Vec3};
 use host::{Fallible, Host, Mesh, Options, Stage};
 use revmap::gpu::{
-    self, DepthOrder, DepthTest, HostDevice, Output, PassFormats, PassKind, Requirements, View,
-    Viewport,
+    self, DepthOrder, HostDevice, Output, PassFormats, PassKind, Requirements, View, Viewport,
 };
 use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
@@ -56,16 +55,14 @@ fn main() -> Fallible<()> {
         Mesh::floor(&host, 2.5, 0.0, Vec3::new(0.35, 0.33, 0.3))?,
         Mesh::sphere(&host, 64, middle, 0.3, Vec3::new(0.2, 0.35, 0.6))?,
     ];
+    let begun = PassKind::Dynamic {
+        color: vec![host::COLOR],
+        depth: host::DEPTH,
+        stencil: ash::vk::Format::UNDEFINED,
+    };
     let output = Output::Pass(PassFormats {
-        begun: PassKind::Dynamic {
-            color: vec![host::COLOR],
-            depth: host::DEPTH,
-            stencil: ash::vk::Format::UNDEFINED,
-        },
-        samples: options.samples,
         depth: DepthOrder::Reversed,
-        depth_test: DepthTest::default(),
-        planes: Planes::Color,
+        ..PassFormats::new(begun, Planes::Color)
     });
     let mut renderer =
         gpu::Renderer::new(&device, output, &SearchSettings::default(), host::FRAMES)?;

@@ -10,10 +10,10 @@ use crate::gpu::device::create;
 use crate::gpu::device::instance::Instance;
 use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::output::{DepthTest, Output, PassFormats, PassKind};
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
-use crate::plan::{Conditions, DepthOrder, PlanObject, shape_of};
+use crate::plan::{Conditions, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
 use crate::shader::{Kind, ShadowCasters, Variant, catalogued};
@@ -115,6 +115,7 @@ impl PipelineCompiler {
                 own_vectors: 0,
                 least_pixels: 0,
                 occlusion_culling: true,
+                ray_spread: 0.0,
                 casts: false,
                 host_depths: false,
             },
@@ -186,16 +187,13 @@ impl PipelineCompiler {
     fn output(&self, stage: DrawStage, planes: Planes) -> Result<Output> {
         Ok(match stage {
             DrawStage::Compute => Output::Compute(planes),
-            DrawStage::Fragment => Output::Pass(PassFormats {
-                begun: PassKind::RenderPass {
+            DrawStage::Fragment => Output::Pass(PassFormats::new(
+                PassKind::RenderPass {
                     pass: self.pipelines.own_pass(planes, false, 1)?,
                     subpass: 0,
                 },
-                samples: 1,
-                depth: DepthOrder::Normal,
-                depth_test: DepthTest::default(),
                 planes,
-            }),
+            )),
         })
     }
 

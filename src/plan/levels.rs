@@ -101,7 +101,7 @@ struct InPicture {
 impl InPicture {
     fn new(object: &Object, view: &View, all: bool) -> Self {
         Self {
-            projector: (!all && !view.parallel).then(|| Projector::new(view)),
+            projector: (!all && !view.parallel).then(|| Projector::new(view, 0.0)),
             shape: Cylinder {
                 axis: DVec2::ZERO,
                 radius: object.profile.radius * SQRT_2,

@@ -87,6 +87,8 @@ pub(crate) struct Conditions {
     /// Same value as
     /// [`SearchSettings::occlusion_culling`](crate::settings::SearchSettings::occlusion_culling).
     pub occlusion_culling: bool,
+    /// Largest distance of a ray from its pixel's centre, pixels: 0 without rays through samples.
+    pub ray_spread: f64,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.

@@ -29,7 +29,7 @@ impl FramePlan {
         let batches: Vec<Batch> = (numbers.iter())
             .map(|&n| batch(&objects[n], with))
             .collect();
-        let projector = Projector::new(view);
+        let projector = Projector::new(view, with.ray_spread);
         let visible = Visible::new(view, &projector, &batches);
         let mut layers = Vec::new();
         let mut layer_of = Vec::with_capacity(numbers.len());

@@ -50,6 +50,17 @@ pub struct View {
     pub(crate) viewport: Viewport,
     pub(crate) parallel: bool,
     pub(crate) mask: u32,
+    /// Shift of the picture by the projection's jitter, pixels.
+    pub(crate) jitter: DVec2,
+    /// The view of the last frame.
+    pub(crate) last: Option<LastView>,
+}
+
+/// The view of the last frame, for motion: the rows of the map from the world to `(x w, y w, w)`,
+/// where x and y are a position in the picture without jitter, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LastView {
+    pub rows: [DVec4; 3],
 }
 
 impl View {
@@ -95,6 +106,8 @@ impl View {
             order: DepthOrder::Normal,
             parallel: false,
             mask: u32::MAX,
+            jitter: DVec2::ZERO,
+            last: None,
             viewport: Viewport {
                 x: 0.0,
                 y: 0.0,
@@ -108,6 +121,47 @@ impl View {
     #[must_use]
     pub fn with_mask(self, mask: u32) -> Self {
         Self { mask, ..self }
+    }
+
+    /// The same view with a jitter that its projection contains: the shift of the picture, pixels, x
+    /// to the right and y downwards. Motion leaves it out.
+    #[must_use]
+    pub fn with_jitter(self, shift: [f64; 2]) -> Self {
+        let jitter = DVec2::from(shift);
+        Self { jitter, ..self }
+    }
+
+    /// The same view after a frame of the view `last`, whose viewport may differ. Motion is that
+    /// from `last`; without it, only objects move.
+    #[must_use]
+    pub fn with_last(self, last: &Self) -> Self {
+        let last = Some(LastView {
+            rows: last.pixel_rows(),
+        });
+        Self { last, ..self }
+    }
+
+    /// The same view with depths shifted by `bias`, in units of the depth buffer: positive is
+    /// farther in [`DepthOrder::Normal`] and nearer in [`DepthOrder::Reversed`]. For shadow maps.
+    /// The bias of a rasteriser does not reach depths that a shader writes.
+    #[must_use]
+    pub fn with_depth_bias(mut self, bias: f64) -> Self {
+        self.depth[0] += bias;
+        self
+    }
+
+    /// The rows of [`LastView`] for this view.
+    pub(crate) fn pixel_rows(&self) -> [DVec4; 3] {
+        let rows = self.clip_from_world.transpose();
+        let v = &self.viewport;
+        let of = |clip: DVec4, from: f64, size: f64, jitter: f64| {
+            clip * (0.5 * size) + rows.w_axis * (from + 0.5 * size - jitter)
+        };
+        [
+            of(rows.x_axis, v.x, v.width, self.jitter.x),
+            of(rows.y_axis, v.y, v.height, self.jitter.y),
+            rows.w_axis,
+        ]
     }
 
     /// The view of a host's matrices, which act on column vectors. `projection * view` takes a
@@ -189,6 +243,8 @@ impl View {
             viewport,
             parallel: false,
             mask: u32::MAX,
+            jitter: DVec2::ZERO,
+            last: None,
         })
     }
 
@@ -238,6 +294,8 @@ impl View {
             viewport,
             parallel: true,
             mask: u32::MAX,
+            jitter: DVec2::ZERO,
+            last: None,
         })
     }
 

@@ -1,6 +1,6 @@
 //! Checks a scene's values. Every message gives the key as in a scene file.
 
-use super::{Camera, Light, Lighting, Object, Offset, Placement, Scene};
+use super::{Camera, Light, Lighting, Material, Object, Offset, Placement, Scene};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -184,6 +184,17 @@ fn object(object: &Object) -> Result<()> {
                 specular.shininess
             ),
         ));
+    }
+    if let Some(material) = object.material {
+        let Material {
+            roughness,
+            metalness,
+        } = material;
+        for (key, value) in [("roughness", roughness), ("metalness", metalness)] {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(fail(key, format!("is {value:?}; give 0 to 1")));
+            }
+        }
     }
     number("bump", object.texturing.bump)?;
     for factor in object.texturing.repeat {

@@ -36,7 +36,7 @@ pub use camera::CameraFrame;
 pub(crate) use clusters::Cluster;
 pub use copies::Copies;
 pub use growth::{GrownObject, GrownProfiles, Growth};
-pub use object::{BumpForm, Clip, Object, Specular, Texturing};
+pub use object::{BumpForm, Clip, Material, Object, Specular, Texturing};
 
 use glam::{DQuat, DVec3};
 

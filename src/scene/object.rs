@@ -22,6 +22,9 @@ pub struct Object {
     pub color: [f32; 3],
     /// Strength and exponent of the Blinn-Phong highlight.
     pub specular: Specular,
+    /// Roughness and metalness, for hosts that shade by themselves. `None` gives the roughness that
+    /// fits the highlight's exponent, and no metal.
+    pub material: Option<Material>,
     /// Textures of the surface.
     pub texturing: Texturing,
     /// Extension, bevel and chamfer.
@@ -59,6 +62,7 @@ impl Object {
             map_rows: Self::MAP_ROWS,
             color: Self::COLOR,
             specular: Specular::default(),
+            material: None,
             texturing: Texturing::default(),
             offset: Offset::default(),
             clip: Clip::default(),
@@ -80,13 +84,15 @@ impl Object {
             }
         }
         let (a, b) = (&self.texturing, &other.texturing);
-        let look = (self.color, self.specular, self.offset, self.axis);
+        let look = (self.color, self.specular, self.material);
+        let form = (self.offset, self.axis);
         let shape = (self.map_rows, self.repeat, self.mirror, self.clip);
         let covering = (a.bump, a.bump_form, a.projection, a.repeat);
         Arc::ptr_eq(&self.profile, &other.profile)
             && self.name == other.name
             && self.file == other.file
-            && look == (other.color, other.specular, other.offset, other.axis)
+            && look == (other.color, other.specular, other.material)
+            && form == (other.offset, other.axis)
             && shape == (other.map_rows, other.repeat, other.mirror, other.clip)
             && covering == (b.bump, b.bump_form, b.projection, b.repeat)
             && one(&a.color_map, &b.color_map)
@@ -111,6 +117,17 @@ impl Object {
             return value(&self.placement);
         }
         self.instances.clusters().least(bound, value)
+    }
+
+    /// Its material, or the one that fits its highlight: a microfacet distribution of roughness
+    /// sqrt(2 / (exponent + 2)) is as wide (Walter et al. 2007, *Microfacet models for refraction
+    /// through rough surfaces*).
+    #[must_use]
+    pub fn material(&self) -> Material {
+        self.material.unwrap_or(Material {
+            roughness: (2.0 / (self.specular.shininess.max(0.0) + 2.0)).sqrt(),
+            metalness: 0.0,
+        })
     }
 
     /// Position of the axis, object units from the middle of the box.
@@ -161,6 +178,24 @@ impl Default for Specular {
             strength: 0.25,
             shininess: 32.0,
         }
+    }
+}
+
+/// What a host that shades by itself reads of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// 0 (a mirror) to 1.
+    pub roughness: f32,
+    /// 0 or 1, or between them.
+    pub metalness: f32,
+}
+
+impl Material {
+    /// Two numbers of 16 bits, as `unpackUnorm2x16` reads them.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 65535
+    pub(crate) fn bits(self) -> u32 {
+        let part = |v: f32| (v.clamp(0.0, 1.0) * 65535.0).round() as u32;
+        part(self.roughness) | part(self.metalness) << 16
     }
 }
 

@@ -1,9 +1,11 @@
 //! Settings define *how* a scene is drawn; the [`Scene`](crate::scene::Scene) defines *what* is
 //! drawn.
 
+mod planes;
 mod tolerance;
 
 pub use crate::names::name_of;
+pub use planes::{Plane, PlaneList, Planes};
 pub use tolerance::Tolerance;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -165,20 +167,6 @@ impl FromStr for Solver {
     fn from_str(text: &str) -> Result<Self> {
         Self::named(text, &Self::ALL)
     }
-}
-
-/// The requested planes of a frame; others are neither computed nor stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Planes {
-    /// Colour only, 8-bit sRGB.
-    Color,
-    /// Depth only, for shadow maps. In a host's pass only.
-    Depth {
-        /// True for depth along parallel rays, as for a directional light.
-        parallel: bool,
-    },
-    /// Everything a [`Frame`](crate::frame::Frame) holds, in 32-bit floats.
-    All,
 }
 
 /// Settings of a drawing.

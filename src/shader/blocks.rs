@@ -32,7 +32,7 @@ pub struct FrameBlock {
     pub forward: [f32; 4],
     /// Linear RGB; w: depth value of the near plane.
     pub ambient: [f32; 4],
-    /// Width, height, number of lights, unused.
+    /// Width, height, number of lights, first record of the last frame's placements among instances.
     pub size: [u32; 4],
     /// Clip x is x of a pixel's corner times the first value, plus the second. Clip y is y times
     /// the third value, plus the fourth.
@@ -86,7 +86,7 @@ pub struct ObjectBlock {
     /// Tables of the quadric search: where they begin, first record, first range, bits of the unit
     /// of `r^2`. Tables of another search: where they begin, and the search's three facts.
     pub patches: [u32; 4],
-    /// First frustum of the cells; unused; first vector of the patches that are listed; first row
+    /// First frustum of the cells; roughness and metalness, 16 bits each; first vector of the patches that are listed; first row
     /// of the box's sides.
     pub parts: [u32; 4],
 }

@@ -88,6 +88,8 @@ pub enum Output {
     Color,
     /// Every plane of a frame.
     Planes,
+    /// The planes of a host's list.
+    List,
     /// Only depth.
     Depth,
     /// Only depth, along parallel rays.
@@ -139,7 +141,7 @@ impl Module {
             S::External => S::External,
             _ => S::Live,
         };
-        let shaded = matches!(self.output, Output::Color | Output::Planes);
+        let shaded = self.output <= Output::List;
         Self {
             search,
             output: if shaded { Output::Color } else { Output::Depth },
@@ -170,13 +172,14 @@ impl Module {
         }
         if self.features == Features::Full {
             all.push(("REPEATED", "1"));
-            if self.output <= Output::Planes {
+            if self.output <= Output::List {
                 all.push(("SHADOWED", "1"));
             }
         }
         match self.output {
             Output::Color => {}
             Output::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
+            Output::List => all.push(("OUTPUT", "OUTPUT_LIST")),
             Output::Depth => all.push(("OUTPUT", "OUTPUT_DEPTH")),
             Output::DepthOrtho => all.extend([("OUTPUT", "OUTPUT_DEPTH"), ("ORTHO", "1")]),
         }
@@ -216,7 +219,8 @@ fn has(search: Search, features: Features, output: Output) -> bool {
     match (output, features) {
         (Output::Color, Features::Plain) => true,
         (Output::Color, Features::Textured) | (Output::Planes, Features::Plain) => main,
-        (Output::Planes, Features::Textured) => false,
+        (Output::Planes, Features::Textured) | (Output::List, Features::Plain) => false,
+        (Output::List, _) => main,
         (Output::Color | Output::Planes, Features::Full) => true,
         (Output::Depth | Output::DepthOrtho, features) => main && features != Features::Textured,
     }
@@ -248,8 +252,9 @@ pub fn modules() -> Vec<Module> {
             vertex(Entry::QuadVertex, Search::External);
         }
     }
-    for output in [O::Color, O::Planes, O::Depth, O::DepthOrtho] {
-        let shaded = matches!(output, O::Color | O::Planes);
+    for output in [O::Color, O::Planes, O::List, O::Depth, O::DepthOrtho] {
+        let shaded = output <= O::List;
+        let compute = output <= O::Planes;
         for features in [Features::Plain, Features::Textured, Features::Full] {
             let mut add = |entry, search| {
                 all.push(Module {
@@ -260,14 +265,14 @@ pub fn modules() -> Vec<Module> {
                 });
             };
             // Shadows and replicas walk the tree.
-            let on_patches = (features, output) != (Features::Full, O::Color);
+            let on_patches = output == O::Planes || features != Features::Full;
             for search in SEARCHES.into_iter().filter(|s| has(*s, features, output)) {
                 add(Entry::Tree, search);
-                if shaded {
+                if compute {
                     add(Entry::TileTree, search);
                     add(Entry::TileCopies, search);
                 }
-                if shaded && on_patches && search == Search::Quadric {
+                if compute && on_patches && search == Search::Quadric {
                     add(Entry::TilePatches, search);
                 }
             }

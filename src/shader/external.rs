@@ -97,7 +97,9 @@ impl External {
         let output = match module.output {
             catalogue::Output::Color => Output::Color,
             catalogue::Output::Planes => Output::Planes,
-            catalogue::Output::Depth | catalogue::Output::DepthOrtho => return None,
+            catalogue::Output::List | catalogue::Output::Depth | catalogue::Output::DepthOrtho => {
+                return None;
+            }
         };
         Some(SearchModule {
             pass,

@@ -5,6 +5,7 @@ mod blocks;
 mod catalogue;
 mod external;
 mod module;
+mod outputs;
 mod variant;
 
 pub use blocks::{
@@ -16,6 +17,7 @@ pub use catalogue::{Module, Search};
 #[cfg(feature = "other-shaders")]
 pub use module::catalogued;
 pub use module::{depth_less, words};
+pub use outputs::with_locations;
 pub(crate) use variant::is_beveled;
 pub use variant::{Kind, ShadowCasters, Variant};
 

@@ -17,7 +17,7 @@ use std::mem::{offset_of, size_of};
 use std::sync::Arc;
 
 /// The number of modules.
-const MODULES: usize = 70;
+const MODULES: usize = 75;
 
 /// Opcodes and decorations of the SPIR-V specification that these tests read.
 pub(crate) mod op {

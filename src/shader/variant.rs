@@ -158,6 +158,7 @@ impl Variant {
         let output = match planes {
             Planes::Color | Planes::Depth { .. } => Output::Color,
             Planes::All => Output::Planes,
+            Planes::List(_) => Output::List,
         };
         let shaded = Self {
             search: search(settings, solver),
@@ -169,7 +170,7 @@ impl Variant {
             bump,
             projection: match texturing.projection {
                 // No code reads coordinates.
-                _ if !textured && output == Output::Color => g::PROJECTION_CYLINDRICAL,
+                _ if !textured && output != Output::Planes => g::PROJECTION_CYLINDRICAL,
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
                 Projection::Spherical => g::PROJECTION_SPHERICAL,
@@ -229,7 +230,7 @@ impl Variant {
     /// True if colours are stored, not only depths.
     #[must_use]
     pub const fn is_shaded(&self) -> bool {
-        matches!(self.output, Output::Color | Output::Planes)
+        matches!(self.output, Output::Color | Output::Planes | Output::List)
     }
 
     /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have

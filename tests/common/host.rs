@@ -11,8 +11,8 @@ use ash::vk;
 pub use engine::*;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
-    DepthOrder, DepthTest, Device, HostDevice, Output, PassFormats, PassKind, Renderer,
-    Requirements, View, Viewport,
+    DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, Requirements, View,
+    Viewport,
 };
 use revmap::settings::{Planes, SearchSettings};
 use std::cell::RefCell;
@@ -113,11 +113,9 @@ pub fn renderer(device: &Device, stage: &Stage, search: &SearchSettings, slots: 
         },
     };
     let output = Output::Pass(PassFormats {
-        begun,
         samples: stage.options.samples,
         depth: order(&stage.options),
-        depth_test: DepthTest::default(),
-        planes: Planes::Color,
+        ..PassFormats::new(begun, Planes::Color)
     });
     Renderer::new(device, output, search, slots).unwrap()
 }

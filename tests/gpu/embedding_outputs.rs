@@ -9,8 +9,7 @@ use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, DepthTest, Device, DrawPath, Offscreen, Output, PassFormats,
-    Renderer, View,
+    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
 };
 use revmap::scene::{Clip, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
@@ -64,13 +63,7 @@ fn seen(view: DMat4, projection: DMat4) -> View {
 
 /// A pass without colour attachments.
 fn depth_pass(planes: Planes) -> Output {
-    Output::Pass(PassFormats {
-        begun: dynamic(&[]),
-        samples: 1,
-        depth: DepthOrder::Normal,
-        depth_test: DepthTest::default(),
-        planes,
-    })
+    Output::Pass(PassFormats::new(dynamic(&[]), planes))
 }
 
 /// Depths of a scene, drawn into a host's shadow map.

@@ -17,11 +17,9 @@ fn view(scene: &Scene, options: &Options) -> View {
 
 fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
     let output = Output::Pass(PassFormats {
-        begun: dynamic(&[host::COLOR]),
-        samples: 1,
         depth: order(options),
         depth_test,
-        planes: Planes::Color,
+        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
     });
     let search = SearchSettings::exact();
     let mut renderer = Renderer::new(device, output, &search, host::FRAMES).unwrap();

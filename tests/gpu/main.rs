@@ -17,6 +17,7 @@ mod commands;
 mod crowds;
 mod embedding;
 mod embedding_crowds;
+mod embedding_lists;
 mod embedding_outputs;
 mod embedding_visibility;
 mod exhausted;

@@ -11,8 +11,7 @@ use ash::vk::Handle as _;
 use glam::DVec3;
 use revmap::error::ErrorKind::{self, Unsupported, Usage};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, DepthTest, Device, HostDevice, ObjectId, Output, PassFormats,
-    PassKind, Renderer, View,
+    ComputeTarget, Device, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer, View,
 };
 use revmap::scene::{Camera, Lighting, Object, Shadow};
 use revmap::settings::{Planes, SearchSettings};
@@ -26,11 +25,8 @@ const NONE: vk::Format = vk::Format::UNDEFINED;
 
 fn pass(begun: PassKind, samples: u32, planes: Planes) -> Output {
     Output::Pass(PassFormats {
-        begun,
         samples,
-        depth: DepthOrder::Normal,
-        depth_test: DepthTest::default(),
-        planes,
+        ..PassFormats::new(begun, planes)
     })
 }
 

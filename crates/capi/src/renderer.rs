@@ -12,9 +12,7 @@ use crate::handle::{Handle, alone, create, handle};
 use crate::pointers::{described, list, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
-use revmap::gpu::{
-    ComputeTarget, DepthTest, Output, PassFormats, PassKind, PreparedFrame, Renderer,
-};
+use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, Renderer};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -102,11 +100,9 @@ impl RevmapPass {
             }
         };
         Ok(PassFormats {
-            begun,
             samples: self.samples,
             depth: enums::depth_order(self.depth_order)?,
-            depth_test: DepthTest::default(),
-            planes: enums::planes(self.planes)?,
+            ..PassFormats::new(begun, enums::planes(self.planes)?)
         })
     }
 }

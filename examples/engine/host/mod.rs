@@ -1,6 +1,8 @@
 //! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here
 //! is revmap's.
 
+#[allow(dead_code)] // the deferred host and tests take it
+pub mod attachments;
 pub mod memory;
 mod mesh;
 mod pass;

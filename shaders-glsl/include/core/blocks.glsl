@@ -17,7 +17,7 @@ struct Frame {
     vec4 dir_y;   // change of the ray per row
     vec4 forward; // unit; w: sense of depth, 1 where depth grows away from the eye, else -1
     vec4 ambient; // linear RGB; w: depth value of the near plane
-    uvec4 size;   // width, height, number of lights, unused
+    uvec4 size;   // width, height, number of lights, first record of the last frame's placements
     vec4 pixels;  // clip x = x * (x of a pixel's corner) + y; clip y = z * (y of a pixel's corner) + w
     Light lights[MAX_LIGHTS];
 };
@@ -55,7 +55,7 @@ struct Object {
     uvec4 instances; // first, count, index of the shape map among those of shadows
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
-    uvec4 parts;     // first frustum; unused; first vector of the listed patches; first vector of the rows of sides
+    uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches; first vector of the rows of sides
 };
 
 // An object padded to the largest alignment of uniform buffer offsets on any device.

@@ -30,19 +30,19 @@ PixelRays pixel_rays(Instance i)
     return rays;
 }
 
-// Returns the ray's origin in the plane at depth `base`.
-vec3 ray_origin(PixelRays rays, uvec2 pixel)
+// Returns the ray's origin in the plane at depth `base`. `pixel`: distance from the centre of pixel (0, 0).
+vec3 ray_origin(PixelRays rays, vec2 pixel)
 {
     float spread = ORTHO != 0 ? 1.0 : rays.base;
-    return rays.origin + spread * (float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y);
+    return rays.origin + spread * (pixel.x * rays.dir_x + pixel.y * rays.dir_y);
 }
 
-vec3 ray_direction(PixelRays rays, uvec2 pixel)
+vec3 ray_direction(PixelRays rays, vec2 pixel)
 {
     if (ORTHO != 0) {
         return rays.dir_00;
     }
-    return rays.dir_00 + float(pixel.x) * rays.dir_x + float(pixel.y) * rays.dir_y;
+    return rays.dir_00 + pixel.x * rays.dir_x + pixel.y * rays.dir_y;
 }
 
 // Returns the width of a pixel at depth `t`, in units of depth.

@@ -46,7 +46,7 @@ vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo,
     return color;
 }
 
-Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
+Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
 {
     Shaded s;
     vec3 scale = look.scale_shininess.xyz;
@@ -114,7 +114,7 @@ Shaded shade(Look look, PixelRays rays, uvec2 pixel, Hit hit)
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
             Light light = turned_to(look.rotation, frame_block.lights[n]);
-            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, pixel);
+            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, uvec2(pixel));
         }
     }
     s.color = vec4(color, 1.0);

@@ -15,6 +15,7 @@
 #define OUTPUT_COLOR 0
 #define OUTPUT_PLANES 1 // every plane of a frame
 #define OUTPUT_DEPTH 2  // no shading at all
+#define OUTPUT_LIST 3   // planes by a host's list
 
 // Macros that build.rs does not define are 0.
 #ifndef SEARCH

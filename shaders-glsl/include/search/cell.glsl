@@ -6,7 +6,7 @@
 #include "stage/cell_varyings.glsl"
 #include "search/patch_row.glsl"
 
-bool trace_cell(uvec2 pixel, out Hit hit)
+bool trace_cell(vec2 pixel, out Hit hit)
 {
     take_over();
     PatchRow row = begin_row(varying_rays(), pixel, cell_sides);

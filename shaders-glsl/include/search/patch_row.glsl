@@ -13,7 +13,7 @@ struct PatchRow {
 };
 
 // `sides`: sides of the box, relative to the axis. No ray may be in the solid before it enters them.
-PatchRow begin_row(PixelRays rays, uvec2 pixel, vec4 sides)
+PatchRow begin_row(PixelRays rays, vec2 pixel, vec4 sides)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);

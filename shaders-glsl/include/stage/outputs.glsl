@@ -1,4 +1,4 @@
-// Outputs of a fragment for a hit: depth only, its colour, or every plane.
+// Outputs of a fragment for a hit: depth only, its colour, every plane of a frame, or the planes of a list.
 #ifndef OUTPUTS_GLSL
 #define OUTPUTS_GLSL
 #if OUTPUT != OUTPUT_DEPTH
@@ -11,26 +11,66 @@ layout(location = 1) out vec4 normal_distance;
 layout(location = 2) out vec4 shading_normal_u;
 layout(location = 3) out vec4 albedo_v;
 #endif
+#if OUTPUT == OUTPUT_LIST
+// src/shader/outputs.rs moves these to the host's locations and makes the unused ones private.
+layout(location = 1) out vec4 base_color;
+layout(location = 2) out vec4 world_normal;
+layout(location = 3) out vec2 octahedral_normal;
+layout(location = 4) out vec2 material; // roughness, metalness
+layout(location = 5) out vec2 motion;   // pixels, from this frame's position to the last frame's
+layout(location = 6) out uvec2 identity; // number of the object, number of the copy
+#endif
 
 // Adds the look-ups of a pixel, with or without a hit.
-void count_steps(uvec2 pixel, uint steps, bool exhausted)
+void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES
-    atomicAdd(pixel_words[second_word(pixel)], steps);
+    atomicAdd(pixel_words[second_word(uvec2(pixel))], steps);
     if (exhausted) {
-        atomicOr(pixel_words[second_word(pixel)], EXHAUSTED_BIT);
+        atomicOr(pixel_words[second_word(uvec2(pixel))], EXHAUSTED_BIT);
     }
 #endif
 }
 
+#if OUTPUT == OUTPUT_LIST
+// Returns a unit vector as a point of the square -1..1 (Meyer et al. 2010).
+vec2 octahedral(vec3 n)
+{
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 sense = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
+    return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * sense;
+}
+
+// Returns the way in pixels from a hit to where it was in the last frame. The hit moves along its normal by the change
+// of the extension; src/gpu/resources/motion.rs makes the rows.
+vec2 motion_of(uint instance, vec2 pixel, Hit hit)
+{
+    Instance before = instances[frame.size.w + instance];
+    PixelRays rays = varying_rays();
+    vec3 p = ray_origin(rays, pixel) + hit.t * ray_direction(rays, pixel);
+    vec4 at = vec4(p + before.origin.z * unit(hit.normal), 1.0);
+    vec3 projected = vec3(dot(before.position_sx, at), dot(before.rotation, at), dot(before.scale_depth, at));
+    return projected.xy / projected.z - pixel - before.origin.xy;
+}
+#endif
+
 #if OUTPUT != OUTPUT_DEPTH
-void store(Shaded s)
+void store(Shaded s, vec2 pixel, Hit hit)
 {
     color = s.color;
 #if OUTPUT == OUTPUT_PLANES
     normal_distance = vec4(s.normal, s.distance);
     shading_normal_u = vec4(s.shading_normal, s.uv.x);
     albedo_v = vec4(s.albedo, s.uv.y);
+#endif
+#if OUTPUT == OUTPUT_LIST
+    uint instance = uint(look_ambient.w);
+    base_color = vec4(s.albedo, 1.0);
+    world_normal = vec4(s.shading_normal, 0.0);
+    octahedral_normal = octahedral(s.shading_normal);
+    material = unpackUnorm2x16(object.parts.y);
+    motion = motion_of(instance, pixel, hit);
+    identity = uvec2(instances[instance].object.x, instance - object.instances.x);
 #endif
 }
 #endif

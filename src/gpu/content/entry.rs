@@ -3,7 +3,7 @@
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::TextureSet;
-use crate::scene::{GrownObject, Growth, Object};
+use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
@@ -28,6 +28,45 @@ pub(in crate::gpu) struct Entry {
     pub mask: u32,
     /// The renderer's version at the last change.
     pub version: u64,
+    pub history: History,
+}
+
+/// What is known of an object's last frame.
+#[derive(Clone, Debug)]
+pub(in crate::gpu) enum History {
+    /// There was no last frame.
+    New,
+    /// Its values were those of this frame.
+    Still,
+    /// Its values were these.
+    Moved(LastValues),
+}
+
+/// An object's values of the last frame, for motion.
+#[derive(Clone, Debug)]
+pub(in crate::gpu) struct LastValues {
+    pub placement: Placement,
+    pub instances: Copies,
+    pub extend: f64,
+}
+
+impl LastValues {
+    pub fn of(object: &Object) -> Self {
+        Self {
+            placement: object.placement,
+            instances: object.instances.clone(),
+            extend: object.offset.extend,
+        }
+    }
+
+    /// The placements, if there are as many as `now`.
+    pub fn placements(&self, now: usize) -> Option<&[Placement]> {
+        let all = match self.instances.is_empty() {
+            true => std::slice::from_ref(&self.placement),
+            false => &self.instances,
+        };
+        (all.len() == now).then_some(all)
+    }
 }
 
 /// Resources that follow from an object's values, whatever the view.
@@ -62,6 +101,7 @@ impl Entry {
             instances,
             mask: u32::MAX,
             version,
+            history: History::New,
         }
     }
 
@@ -148,7 +188,7 @@ impl Entry {
                 .map_or([0; 4], |(at, s)| s.tables().block(at)),
             parts: [
                 frusta.unwrap_or(0),
-                0,
+                object.material().bits(),
                 begin(Part::Patches).unwrap_or(0),
                 frusta.zip(surface).map_or(0, |(at, s)| {
                     at + s.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS

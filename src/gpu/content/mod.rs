@@ -38,6 +38,8 @@ pub(super) struct Content {
     /// one search.
     all_fall_back: bool,
     pub casters: ShadowCasters,
+    /// Entries that are new or were changed since the last frame, if motion is drawn.
+    pub moved: Vec<u32>,
     /// Counts changes.
     pub version: u64,
     /// The plan of the last view.
@@ -72,6 +74,7 @@ impl Content {
             changed: Vec::new(),
             all_fall_back: false,
             casters: ShadowCasters::default(),
+            moved: Vec::new(),
             version: 1,
             plan: None,
             target_has_depths: true,

@@ -2,7 +2,7 @@
 //! entry.
 
 use super::Content;
-use super::entry::Entry;
+use super::entry::{Entry, History, LastValues};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::Object;
 use range_alloc::RangeAllocator;
@@ -30,6 +30,13 @@ pub(in crate::gpu) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
 pub(in crate::gpu) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
 
 impl ObjectId {
+    /// The object's number in pictures of [`Plane::Identity`](crate::settings::Plane::Identity). No
+    /// two objects of a renderer have the same one at a time.
+    #[must_use]
+    pub const fn number(self) -> u32 {
+        self.number
+    }
+
     /// The id as one number, never 0, for interfaces that carry plain numbers.
     #[must_use]
     pub const fn to_bits(self) -> u64 {
@@ -215,7 +222,23 @@ impl Content {
         let gone = || Error::new(ErrorKind::Usage, "the object was removed");
         let entry = self.objects.at_mut(id.number).ok_or_else(gone)?;
         entry.version = version;
+        if self.output.planes().has_motion() && matches!(entry.history, History::Still) {
+            entry.history = History::Moved(LastValues::of(entry.latest()));
+            self.moved.push(id.number);
+        }
         Ok(entry)
+    }
+
+    /// Makes the present values those of the last frame.
+    pub fn end_frame(&mut self) {
+        let moved = std::mem::take(&mut self.moved);
+        self.version += u64::from(!moved.is_empty());
+        for number in moved {
+            if let Some(entry) = self.objects.at_mut(number) {
+                entry.history = History::Still;
+                entry.version = self.version;
+            }
+        }
     }
 
     /// Gives an object room for exactly this many copies.

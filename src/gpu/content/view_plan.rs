@@ -74,6 +74,7 @@ impl Content {
             own_vectors: self.device.chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
+            ray_spread: self.output.ray_spread(),
             casts: self.casts(),
             host_depths: self.is_compute() && self.target_has_depths,
         }

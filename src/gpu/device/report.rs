@@ -114,6 +114,7 @@ impl Candidate {
             sampler_anisotropy: vk::Bool32::from(self.anisotropy().is_some()),
             shader_clip_distance: vk::Bool32::from(self.clips()),
             large_points: vk::Bool32::from(self.large_points()),
+            sample_rate_shading: self.features.sample_rate_shading,
             multi_draw_indirect: self.features.multi_draw_indirect,
             draw_indirect_first_instance: self.features.draw_indirect_first_instance,
             ..Default::default()

@@ -18,8 +18,8 @@ use crate::gpu::offscreen::target::Target;
 use crate::gpu::open::Device;
 use crate::gpu::renderer::Renderer;
 use crate::gpu::renderer::costs::ObjectCost;
-use crate::gpu::vk::output::{DepthTest, Output, PassFormats, PassKind};
-use crate::plan::{DepthOrder, DrawPath, View};
+use crate::gpu::vk::output::{Output, PassFormats, PassKind};
+use crate::plan::{DrawPath, View};
 use crate::scene::{CameraFrame, Object, Scene};
 use crate::settings::{DrawStage, Planes, SearchSettings, Settings};
 use ash::vk;
@@ -102,8 +102,8 @@ impl Offscreen {
             let message = "compute draws one sample a pixel; give the stage fragment";
             return Err(Error::new(ErrorKind::Usage, message).at_key("samples"));
         }
-        if matches!(settings.planes, Planes::Depth { .. }) {
-            let message = "depth alone is drawn in a host's pass; give color or all";
+        if !matches!(settings.planes, Planes::Color | Planes::All) {
+            let message = "depths and lists are drawn in a host's pass; give color or all";
             return Err(Error::new(ErrorKind::Usage, message));
         }
         let size = (settings.width, settings.height);
@@ -130,14 +130,14 @@ impl Offscreen {
         let output = match settings.stage {
             DrawStage::Compute => Output::Compute(settings.planes),
             _ => Output::Pass(PassFormats {
-                begun: PassKind::RenderPass {
-                    pass: raw,
-                    subpass: 0,
-                },
                 samples,
-                depth: DepthOrder::Normal,
-                depth_test: DepthTest::default(),
-                planes: settings.planes,
+                ..PassFormats::new(
+                    PassKind::RenderPass {
+                        pass: raw,
+                        subpass: 0,
+                    },
+                    settings.planes,
+                )
             }),
         };
         let mut renderer = Renderer::new(device, output, &SearchSettings::from(settings), 1)?;

@@ -20,7 +20,7 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
                 *color = linear.color(rgba);
             }
         }
-        Planes::Depth { .. } => {}
+        Planes::Depth { .. } | Planes::List(_) => {}
         Planes::All => {
             let [color, normal, shading, albedo, steps, ..] = planes else {
                 return Ok(frame);

@@ -175,7 +175,7 @@ impl Target {
             let half = 4 * u64::from(self.width) * u64::from(self.height);
             let second = match self.planes {
                 Planes::Color => ComputeTarget::color_word(background),
-                Planes::Depth { .. } | Planes::All => 0,
+                _ => 0,
             };
             words.barrier(cmd, Usage::TransferRead, Usage::TransferWrite);
             // SAFETY: `cmd` is recording and both ranges are within the buffer.
@@ -369,7 +369,7 @@ fn clear_values(planes: Planes, background: [f32; 4]) -> Vec<vk::ClearColorValue
     let color = |float32| vk::ClearColorValue { float32 };
     match planes {
         Planes::Color => vec![color(background)],
-        Planes::Depth { .. } => Vec::new(),
+        Planes::Depth { .. } | Planes::List(_) => Vec::new(),
         Planes::All => vec![
             color(background),
             color([0.0, 0.0, 0.0, f32::INFINITY]),

@@ -73,7 +73,7 @@ impl Renderer {
             let message = format!("{slots} slots for frames in flight; give 1 to {MOST_SLOTS}");
             return Err(Error::new(ErrorKind::Usage, message));
         }
-        output.check(&device.shared, settings.solver)?;
+        output.check(&device.shared, settings)?;
         settings.check()?;
         let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();

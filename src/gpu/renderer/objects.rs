@@ -17,6 +17,9 @@ impl Renderer {
         self.content.version += 1;
         let id = self.content.objects.add(object, self.content.version)?;
         self.content.changed.push(id.number);
+        if self.content.output.planes().has_motion() {
+            self.content.moved.push(id.number);
+        }
         Ok(id)
     }
 
@@ -126,6 +129,13 @@ impl Renderer {
         }
         entry.object.instances = instances;
         Ok(())
+    }
+
+    /// Ends a frame of all views: the next frame's motion is that from the present values. Call it
+    /// before the next frame's changes. Objects that were added since the last call begin without
+    /// motion. Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
+    pub fn end_frame(&mut self) {
+        self.content.end_frame();
     }
 
     /// Sets lights and shadows for all objects.

@@ -4,19 +4,27 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::color_formats;
-use crate::settings::{Planes, Solver};
+use crate::gpu::vk::render_pass::attachments;
+use crate::maps::MapFormat;
+use crate::settings::{Plane, Planes, SearchSettings, Solver};
 use ash::vk;
 
 impl Output {
     /// Returns an error for an output that the device or the solver cannot draw.
-    pub(crate) fn check(&self, device: &Shared, solver: Solver) -> Result<()> {
-        let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
+    pub(crate) fn check(&self, device: &Shared, settings: &SearchSettings) -> Result<()> {
+        let exact = matches!(
+            settings.solver,
+            Solver::Exact | Solver::Quadric | Solver::Live
+        );
         let in_pass = matches!(self, Self::Pass(_));
-        if matches!(self.planes(), Planes::Depth { .. }) && !(in_pass && exact) {
-            let message =
-                "depth alone is drawn in a pass, by exact, quadric or live; give one of them";
+        let all_outputs = matches!(self.planes(), Planes::Color | Planes::All);
+        if !(all_outputs || in_pass && exact) {
+            let message = "depth alone and lists are drawn in a pass, by exact, quadric or live; give one of them";
             return Err(usage("planes", message.into()));
+        }
+        if matches!(self.planes(), Planes::List(_)) && settings.map_format == MapFormat::Rgba8 {
+            let message = "lists of planes read no map in rgba8; take r16 or r32";
+            return Err(usage("map_format", message.into()));
         }
         let Self::Pass(pass) = self else {
             return Ok(());
@@ -29,7 +37,7 @@ impl Output {
                 "all planes in a pass need the feature fragmentStoresAndAtomics; enable it",
             ));
         }
-        pass.check_samples()?;
+        pass.check_samples(device)?;
         match &pass.begun {
             PassKind::RenderPass { pass: raw, .. } => pass.check_render_pass(device, *raw),
             PassKind::Dynamic {
@@ -68,7 +76,11 @@ impl Output {
 }
 
 impl PassFormats {
-    fn check_samples(&self) -> Result<()> {
+    fn check_samples(&self, device: &Shared) -> Result<()> {
+        if self.sample_rays && device.chosen.features.sample_rate_shading == vk::FALSE {
+            let message = "rays through samples need the feature sampleRateShading; enable it";
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
         if [1, 2, 4, 8].contains(&self.samples) {
             return Ok(());
         }
@@ -93,20 +105,29 @@ impl PassFormats {
         depth: vk::Format,
         stencil: vk::Format,
     ) -> Result<()> {
-        let wanted = color_formats(self.planes).len();
+        let wanted = attachments(self.planes);
         if color.len() != wanted {
             let (planes, count) = (self.planes, color.len());
             let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
             return Err(usage("color", message));
         }
+        let most = device.limits().max_color_attachments;
+        if wanted > most as usize {
+            let message = format!("{wanted} planes; the device draws into {most} at once");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
+        }
         use vk::ImageUsageFlags as U;
-        for &format in color {
+        for (&format, number) in color.iter().zip(0..) {
+            let plane = match self.planes {
+                Planes::List(list) => list.planes()[number],
+                _ => Plane::Color,
+            };
             if format == vk::Format::UNDEFINED || has_depth(format) || has_stencil(format) {
                 let message = format!("{format:?} holds no colours; give a format that does");
                 return Err(usage("color", message));
             }
-            if is_integer(format) {
-                let message = format!("{format:?} holds integers; give fractions or floats");
+            if let Some(wanted) = misfit(plane, format) {
+                let message = format!("{format:?} does not hold {plane:?}; give {wanted}");
                 return Err(usage("color", message));
             }
             self.check_format(device, format, U::COLOR_ATTACHMENT)?;
@@ -184,8 +205,23 @@ fn has_stencil(format: vk::Format) -> bool {
     )
 }
 
-/// Reads the name of the format in the specification, whose last part is the numeric type.
-fn is_integer(format: vk::Format) -> bool {
+/// The kind of format that a plane needs, unless `format` is one. Reads the name of the format in
+/// the specification, whose last part is the numeric type.
+fn misfit(plane: Plane, format: vk::Format) -> Option<&'static str> {
     let name = format!("{format:?}");
-    name.contains("_UINT") || name.contains("_SINT")
+    let is = |types: &[&str]| types.iter().any(|of| name.contains(of));
+    let (fits, wanted) = match plane {
+        Plane::Identity => (
+            name.starts_with("R32G32") && is(&["_UINT"]),
+            "R32G32_UINT or R32G32B32A32_UINT",
+        ),
+        Plane::Normal | Plane::OctahedralNormal => {
+            (is(&["_SNORM", "_SFLOAT"]), "a signed or float format")
+        }
+        Plane::Motion => (is(&["_SFLOAT"]), "a float format"),
+        Plane::Color | Plane::BaseColor | Plane::Material => {
+            (!is(&["_UINT", "_SINT"]), "fractions or floats")
+        }
+    };
+    (!fits).then_some(wanted)
 }

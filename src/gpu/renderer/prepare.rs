@@ -7,6 +7,7 @@ use super::slot::{BoundPlan, BoundStep};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{frame_block, instance_block};
+use crate::gpu::resources::motion::last_block;
 use crate::plan::View;
 use crate::shader::Kind;
 use crate::shader::{OBJECT_STRIDE, ObjectBlock};
@@ -86,7 +87,8 @@ impl Renderer {
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
-        to.write_frame(&frame_block(view, &self.content.lighting))?;
+        let last_record = self.content.objects.instances();
+        to.write_frame(&frame_block(view, &self.content.lighting, last_record))?;
         to.serial += 1;
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
@@ -158,9 +160,11 @@ impl Renderer {
     fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
         let casts = self.content.casts();
         let to = &mut self.slots[slot];
+        let motion = self.content.output.planes().has_motion();
+        let instances = self.content.objects.instances();
         to.fit(
             self.content.objects.number_count(),
-            self.content.objects.instances(),
+            u64::from(instances) * if motion { 2 } else { 1 },
         )?;
         to.write_plan(&plan.frame)?;
         // Instance blocks depend on the view.
@@ -185,7 +189,12 @@ impl Renderer {
             let mut write = |copy: u32| {
                 let placement = &placements[copy as usize];
                 let block = instance_block(entry.drawn(), placement, number, view);
-                to.write_instance(entry.instances.start + copy, &block)
+                let at = entry.instances.start + copy;
+                if motion {
+                    let last = last_block(entry, copy as usize, view);
+                    to.write_instance(instances + at, &last)?;
+                }
+                to.write_instance(at, &block)
             };
             match copies {
                 Some(shown) => shown.iter().try_for_each(|&copy| write(copy))?,

@@ -95,9 +95,9 @@ impl FrameSlot {
 
     /// Makes room for this many objects and instances. The caller must ensure that no frame reads
     /// the buffers.
-    pub fn fit(&mut self, objects: usize, instances: u32) -> Result<()> {
+    pub fn fit(&mut self, objects: usize, instances: u64) -> Result<()> {
         let objects = objects as u64 * u64::from(OBJECT_STRIDE);
-        let instances = u64::from(instances) * size_of::<InstanceBlock>() as u64;
+        let instances = instances * size_of::<InstanceBlock>() as u64;
         for (buffer, bytes, name) in [
             (&mut self.objects, objects, "objects"),
             (&mut self.instances, instances, "instances"),

@@ -59,8 +59,9 @@ pub(crate) fn instance_block(
     }
 }
 
-/// The frame's block: eye, rays, lights, depths.
-pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
+/// The frame's block: eye, rays, lights, depths. `last_record`: first of the records of
+/// [`last_block`](super::motion::last_block) among instances.
+pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) -> FrameBlock {
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
         let towards = -light.direction.normalize_or_zero().as_vec3();
@@ -93,7 +94,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting) -> FrameBlock {
             size[0],
             size[1],
             u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS),
-            0,
+            last_record,
         ],
         #[allow(clippy::cast_possible_truncation)]
         pixels: [

@@ -20,15 +20,33 @@ pub enum Output {
 pub struct PassFormats {
     /// Kind of pass: a render pass or dynamic rendering.
     pub begun: PassKind,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres at any sample
-    /// count.
+    /// Samples of every attachment: 1, 2, 4 or 8.
     pub samples: u32,
+    /// True for a ray through each sample, so that silhouettes are smooth and every sample of a
+    /// pixel is right; a pixel costs as many rays. Needs the feature `sampleRateShading`. False for
+    /// one ray through the pixel's centre, which all samples share.
+    pub sample_rays: bool,
     /// The end of the depth range that is near.
     pub depth: DepthOrder,
     /// The depth test of every draw.
     pub depth_test: DepthTest,
     /// The planes that the fragment shader writes, one per attachment.
     pub planes: Planes,
+}
+
+impl PassFormats {
+    /// A pass of one sample, with normal depths that are tested and written.
+    #[must_use]
+    pub fn new(begun: PassKind, planes: Planes) -> Self {
+        Self {
+            begun,
+            samples: 1,
+            sample_rays: false,
+            depth: DepthOrder::Normal,
+            depth_test: DepthTest::default(),
+            planes,
+        }
+    }
 }
 
 /// The depth test of a pass's draws.
@@ -81,6 +99,14 @@ impl Output {
         match self {
             Self::Pass(pass) => pass.planes,
             Self::Compute(planes) => *planes,
+        }
+    }
+
+    /// Largest distance of a ray from its pixel's centre, pixels.
+    pub(crate) fn ray_spread(&self) -> f64 {
+        match self {
+            Self::Pass(pass) if pass.sample_rays => std::f64::consts::FRAC_1_SQRT_2,
+            _ => 0.0,
         }
     }
 

@@ -5,11 +5,19 @@ use crate::gpu::vk::call::Call;
 use crate::settings::Planes;
 use ash::vk;
 
-/// Formats of the colour attachments of the fragment path, in order of location.
+/// The number of colour attachments.
+pub(crate) fn attachments(planes: Planes) -> usize {
+    match planes {
+        Planes::List(list) => list.planes().len(),
+        _ => color_formats(planes).len(),
+    }
+}
+
+/// Formats of the colour attachments of off-screen frames, in order of location.
 pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
     match planes {
         Planes::Color => &[vk::Format::R8G8B8A8_SRGB],
-        Planes::Depth { .. } => &[],
+        Planes::Depth { .. } | Planes::List(_) => &[],
         Planes::All => &[vk::Format::R32G32B32A32_SFLOAT; 4],
     }
 }

@@ -28,6 +28,9 @@ pub(crate) struct Projector {
     pub(super) ends: [i32; 4],
     /// A pixel's longer side at unit depth.
     pixel: f64,
+    /// Margin of a rectangle on each side, in pixels: more than the roundings of 32 bits, and the
+    /// largest distance of a pixel's rays from its centre.
+    pub(super) margin: f64,
 }
 
 /// Steps of one object unit along an object's axes, and the position of its axis at `z = 0`, both
@@ -50,14 +53,15 @@ pub(crate) struct ScreenBounds {
     pub near: f32,
 }
 
-/// Margin of a rectangle on each side, in pixels: more than the roundings of 32 bits.
-pub(super) const MARGIN: f64 = 1.0 / 16.0;
+/// Margin of a rectangle of pixels whose rays go through their centres.
+const MARGIN: f64 = 1.0 / 16.0;
 /// Relative margin of depths, towards the safe side.
 pub(super) const SLACK: f64 = 1e-5;
 
 impl Projector {
-    /// Makes the projector of a perspective view.
-    pub fn new(view: &View) -> Self {
+    /// Makes the projector of a perspective view. `spread`: largest distance of a ray from its
+    /// pixel's centre, pixels.
+    pub fn new(view: &View, spread: f64) -> Self {
         let row = |d: DVec3| {
             let d = d / d.length_squared();
             d + view.forward * (0.5 - view.dir_00.dot(d))
@@ -76,6 +80,7 @@ impl Projector {
             low: low + 0.5,
             high: high - 0.5,
             pixel: view.dir_x.length().max(view.dir_y.length()),
+            margin: MARGIN + spread,
         }
     }
 
@@ -102,11 +107,11 @@ impl Projector {
         }
     }
 
-    /// A length in object units that covers at least [`MARGIN`] pixels everywhere on a cylinder.
+    /// A length in object units that covers at least the margin everywhere on a cylinder.
     pub fn margin(&self, axes: &ProjectedAxes, of: &Cylinder) -> f64 {
         let [x, y, z] = axes.along.map(|way| way.z);
         let deep = of.radius * (x.abs() + y.abs()) + (z * of.low).max(z * of.high);
-        MARGIN * self.pixel * (axes.middle.z + deep) / axes.least_scale
+        self.margin * self.pixel * (axes.middle.z + deep) / axes.least_scale
     }
 
     /// The bounds of a cylinder. Returns none if no pixel's ray can meet it.
@@ -143,12 +148,14 @@ impl Projector {
                         square(i, i) - 2.0 * edge * square(i, 2) + edge * edge * square(2, 2);
                     side(&discs[0]).max(side(&discs[1])) + wide.max(0.0).sqrt() < 0.0
                 };
-                if beyond(self.low[i] - MARGIN, 1.0) || beyond(self.high[i] + MARGIN, -1.0) {
+                if beyond(self.low[i] - self.margin, 1.0)
+                    || beyond(self.high[i] + self.margin, -1.0)
+                {
                     return None;
                 }
             }
-            let first = first_pixel(low - MARGIN).max(self.ends[i]);
-            let last = last_pixel(high + MARGIN).min(self.ends[i + 2]);
+            let first = first_pixel(low - self.margin).max(self.ends[i]);
+            let last = last_pixel(high + self.margin).min(self.ends[i + 2]);
             if first > last {
                 return None;
             }
@@ -172,12 +179,12 @@ impl Projector {
         }
         let mut pixels = [0u16; 4];
         for (i, row) in [x, y].into_iter().enumerate() {
-            let [first, last] = [self.low[i] - MARGIN, self.high[i] + MARGIN];
+            let [first, last] = [self.low[i] - self.margin, self.high[i] + self.margin];
             let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             if near > 1e-3 * far {
                 // The projected middle, and the largest distance of any copy from it.
                 let at = around.middle.dot(row) / around.middle.dot(depth);
-                let off = around.along(row - depth * at)[1] / near + 2.0 * MARGIN;
+                let off = around.along(row - depth * at)[1] / near + 2.0 * self.margin;
                 (low, high) = (at - off, at + off);
             } else if around.along(row - depth * first)[1] < 0.0
                 || around.along(row - depth * last)[0] > 0.0
@@ -266,7 +273,7 @@ mod tests {
                     DVec4::X,
                 );
                 let view = View::from_matrices(look, lens, viewport, DepthOrder::Normal).unwrap();
-                let projector = Projector::new(&view);
+                let projector = Projector::new(&view, 0.0);
                 let ends = |from: f64, size: f64| {
                     let inside = |k: &i32| (from..=from + size).contains(&(f64::from(*k) + 0.5));
                     let all: Vec<u32> = (0..200).filter(inside).map(|k| k as u32).collect();
@@ -302,7 +309,7 @@ mod tests {
     fn clusters_below_a_pixel_have_sound_rectangles() {
         let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);
         let view = View::from_camera(&camera, (64, 48), [1.0, 1e4]).unwrap();
-        let projector = Projector::new(&view);
+        let projector = Projector::new(&view, 0.0);
         let shape = Cylinder {
             axis: DVec2::ZERO,
             radius: 0.4,

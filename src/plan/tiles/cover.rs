@@ -2,7 +2,7 @@
 //! per pixel and one depth per row. One depth per row is enough because, on a field, the copies in
 //! a row of pixels have similar depths.
 
-use super::bounds::{MARGIN, ProjectedAxes, SLACK, first_pixel, last_pixel};
+use super::bounds::{ProjectedAxes, SLACK, first_pixel, last_pixel};
 use crate::surface::{CylinderPiece, InnerCylinders};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -16,6 +16,8 @@ pub(super) struct Cover {
     /// Unit: squares.
     columns: Range<u32>,
     down: u32,
+    /// Same value as the projector's.
+    margin: f64,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -51,11 +53,12 @@ pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
 
 impl Cover {
     /// An empty cover of these columns of squares and `down` rows.
-    pub fn new(columns: Range<u32>, down: u32) -> Self {
+    pub fn new(columns: Range<u32>, down: u32, margin: f64) -> Self {
         Self {
             squares: vec![Square::default(); columns.len() * down as usize],
             columns,
             down,
+            margin,
         }
     }
 
@@ -187,7 +190,7 @@ impl Cover {
         self.polygon(&corners.map(|(a, b)| middle + x * a + y * b));
     }
 
-    /// Marks the pixels whose centres are in a flat convex polygon inside the solid.
+    /// Marks the pixels whose rays all meet a flat convex polygon inside the solid.
     fn polygon<const N: usize>(&mut self, corners: &[DVec3; N]) {
         let mut flat = [DVec2::ZERO; N];
         let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0f64);
@@ -198,10 +201,10 @@ impl Cover {
         let depth = (depth * (1.0 + SLACK)) as f32;
         // Many distant polygons contain the centre of no pixel.
         let ends = [self.columns.start, self.columns.end].map(|x| (x * SIDE) as i32);
-        let left = first_pixel(low.x + MARGIN).max(ends[0]);
-        let right = last_pixel(high.x - MARGIN).min(ends[1] - 1);
-        let mut first = first_pixel(low.y + MARGIN).max(0);
-        let mut last = last_pixel(high.y - MARGIN).min((self.down * SIDE) as i32 - 1);
+        let left = first_pixel(low.x + self.margin).max(ends[0]);
+        let right = last_pixel(high.x - self.margin).min(ends[1] - 1);
+        let mut first = first_pixel(low.y + self.margin).max(0);
+        let mut last = last_pixel(high.y - self.margin).min((self.down * SIDE) as i32 - 1);
         if first > last || left > right {
             return;
         }
@@ -215,7 +218,7 @@ impl Cover {
         for k in 0..N {
             let (p, q) = (flat[k], flat[(k + 1) % N]);
             let n = (q - p).perp() * area.signum();
-            let least = n.dot(p) + MARGIN * (n.x.abs() + n.y.abs());
+            let least = n.dot(p) + self.margin * (n.x.abs() + n.y.abs());
             if n.x.abs() > 1e-9 * n.y.abs() {
                 let bounds = if n.x > 0.0 { &mut lows } else { &mut highs };
                 bounds[k] = [least / n.x, -n.y / n.x];
@@ -271,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_polygon_covers_the_pixels_within_and_hides_what_is_behind() {
-        let mut cover = Cover::new(0..4, 4);
+        let mut cover = Cover::new(0..4, 4, 1.0 / 16.0);
         let at = |x: f64, y: f64| DVec3::new(2.0 * x, 2.0 * y, 2.0);
         cover.polygon(&[at(3.0, 4.0), at(21.0, 4.0), at(21.0, 20.0), at(3.0, 20.0)]);
         let open = |cover: &Cover, near| {

@@ -36,7 +36,7 @@ impl<'a> Strip<'a> {
         Self {
             projector,
             batches,
-            cover: Cover::new(columns, down),
+            cover: Cover::new(columns, down, projector.margin),
             rows: Vec::new(),
             listed: vec![Vec::new(); down.div_ceil(BLOCK) as usize],
             copies: Vec::new(),
@@ -208,7 +208,7 @@ mod tests {
         ] {
             let camera = Camera::new(DVec3::from_array(eye), DVec3::from_array(target));
             let view = View::from_camera(&camera, (333, 210), [0.1, 1e3]).unwrap();
-            let projector = Projector::new(&view);
+            let projector = Projector::new(&view, 0.0);
             let candidates = Candidates::new(&projector, &batches);
             let closed = AtomicUsize::new(usize::MAX);
             let found = Visible::of(&candidates, |strip, candidates| {

@@ -9,7 +9,8 @@ use revmap::error::{Error, Result};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{
-    BumpForm, Camera, Clip, Light, Object, Offset, Placement, Scene, Shadow, Specular, Texturing,
+    BumpForm, Camera, Clip, Light, Material, Object, Offset, Placement, Scene, Shadow, Specular,
+    Texturing,
 };
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,8 @@ pub(super) const CAMERA: &str = "eye target up fov_y";
 pub(super) const LIGHT: &str = "direction color radius";
 /// Keys of `[[object]]`.
 pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
-    profile_smooth radius map_rows color color_map specular shininess height_map bump bump_form \
+    profile_smooth radius map_rows color color_map specular shininess roughness \
+    metalness height_map bump bump_form \
     projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
     instances";
 /// `R` of a polygon's box unless the file gives another.
@@ -97,6 +99,14 @@ impl Reader {
         } = &mut object.specular;
         keys.set("specular", strength)?;
         keys.set("shininess", shininess)?;
+        let (roughness, metalness) = (keys.get("roughness")?, keys.get("metalness")?);
+        if roughness.is_some() || metalness.is_some() {
+            let own = object.material();
+            object.material = Some(Material {
+                roughness: roughness.unwrap_or(own.roughness),
+                metalness: metalness.unwrap_or(own.metalness),
+            });
+        }
         object.texturing = self.texturing(&keys, object.file.as_deref())?;
         let Offset {
             extend,

@@ -5,7 +5,7 @@ use super::reader::{CAMERA, LIGHT, OBJECT};
 use super::*;
 use glam::DQuat;
 use revmap::maps::Projection;
-use revmap::scene::{BumpForm, Light, Offset, Placement, Shadow, Specular, Texturing};
+use revmap::scene::{BumpForm, Light, Material, Offset, Placement, Shadow, Specular, Texturing};
 use std::sync::Arc;
 
 const CAMERA_LINES: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
@@ -107,6 +107,7 @@ color = [0.1, 0.2, 0.3]
 color_map = "t.png"
 specular = 0.75
 shininess = 9
+roughness = 0.25
 height_map = "t.png"
 bump = 0.02
 bump_form = "papers"
@@ -152,6 +153,7 @@ instances = "copies.csv"
         object.map_rows => 64;
         object.color => [0.1, 0.2, 0.3];
         object.specular => Specular { strength: 0.75, shininess: 9.0 };
+        object.material => Some(Material { roughness: 0.25, metalness: 0.0 });
         color.levels[0].texels[0] => [9, 8, 7, 255];
         slopes.size() => [4, 2];
         (bump, bump_form) => (0.02, BumpForm::Papers);

@@ -12,7 +12,7 @@ layout(depth_greater) out float gl_FragDepth;
 
 void main()
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    vec2 pixel = gl_FragCoord.xy - 0.5;
     take_over();
     PixelRays rays = varying_rays();
     Meridian m;
@@ -27,6 +27,6 @@ void main()
     hit.exhausted = false;
     hit.at_border = false;
     count_steps(pixel, hit.steps, hit.exhausted);
-    store(shade(varying_look(), rays, pixel, hit));
+    store(shade(varying_look(), rays, pixel, hit), pixel, hit);
     gl_FragDepth = gl_FragCoord.z; // written, as the search does
 }

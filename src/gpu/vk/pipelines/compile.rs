@@ -4,9 +4,10 @@ use super::Pipelines;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::color_formats;
+use crate::gpu::vk::render_pass::attachments;
 use crate::plan::DepthOrder;
-use crate::shader::{Kind, Module, Search, Variant, depth_less, words};
+use crate::settings::{Plane, Planes};
+use crate::shader::{Kind, Module, Search, Variant, depth_less, with_locations, words};
 use ash::vk;
 
 impl Pipelines {
@@ -61,17 +62,33 @@ impl Pipelines {
         words(module).ok_or_else(none)
     }
 
-    fn module(
+    fn module(&self, variant: &Variant, module: &Module) -> Result<ShaderModule<'_>> {
+        self.shader(&self.words(variant, module)?)
+    }
+
+    /// The fragments of a pass: for its depth order, and with its attachments.
+    fn fragments(
         &self,
         variant: &Variant,
         module: &Module,
-        order: DepthOrder,
+        pass: &PassFormats,
     ) -> Result<ShaderModule<'_>> {
         let mut words = self.words(variant, module)?;
-        if order == DepthOrder::Reversed {
+        if pass.depth == DepthOrder::Reversed {
             words = depth_less(&words);
         }
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        if let Planes::List(list) = pass.planes {
+            let mut locations = [None; Plane::COUNT];
+            for (plane, location) in list.planes().iter().zip(0..) {
+                locations[plane.location() as usize] = Some(location);
+            }
+            words = with_locations(&words, &locations);
+        }
+        self.shader(&words)
+    }
+
+    fn shader(&self, words: &[u32]) -> Result<ShaderModule<'_>> {
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's, or what the host promised.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
@@ -87,7 +104,7 @@ impl Pipelines {
         module: &Module,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let module = self.module(variant, module, DepthOrder::Normal)?;
+        let module = self.module(variant, module)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .flags(self.flags)
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
@@ -105,8 +122,8 @@ impl Pipelines {
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
-        let vertex = self.module(variant, vertex, DepthOrder::Normal)?;
-        let fragment = self.module(variant, fragment, pass.depth)?;
+        let vertex = self.module(variant, vertex)?;
+        let fragment = self.fragments(variant, fragment, pass)?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
@@ -124,7 +141,9 @@ impl Pipelines {
             .scissor_count(1);
         let raster = rasterization(is_quads);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples));
+            .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples))
+            .sample_shading_enable(pass.sample_rays)
+            .min_sample_shading(1.0);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(pass.depth_test.write)
@@ -135,7 +154,7 @@ impl Pipelines {
         let blends = vec![
             vk::PipelineColorBlendAttachmentState::default()
                 .color_write_mask(vk::ColorComponentFlags::RGBA);
-            color_formats(pass.planes).len()
+            attachments(pass.planes)
         ];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()

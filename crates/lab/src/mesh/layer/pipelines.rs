@@ -133,7 +133,7 @@ impl MeshPipelines {
         let (fragment, attachments) = match key.pass.planes {
             Planes::All => (2, 4),
             // An off-screen frame has at least colour.
-            Planes::Color | Planes::Depth { .. } => (1, 1),
+            Planes::Color | Planes::Depth { .. } | Planes::List(_) => (1, 1),
         };
         let stage = |stage, module: usize| {
             vk::PipelineShaderStageCreateInfo::default()
