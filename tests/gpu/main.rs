@@ -19,6 +19,7 @@ mod embedding;
 mod embedding_crowds;
 mod embedding_lists;
 mod embedding_outputs;
+mod embedding_samples;
 mod embedding_visibility;
 mod exhausted;
 mod extremes;

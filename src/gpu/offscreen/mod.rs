@@ -55,7 +55,7 @@ pub struct OffscreenOptions {
     /// lights and the range of depths are the scene's. Default: false.
     pub guests_only: bool,
     /// Samples of a pixel in the fragment stage, 1, 2, 4 or 8; a frame holds their means. Default:
-    /// 1. Rays go through pixel centres at any count.
+    /// 1. Each sample has a ray.
     pub samples: u32,
 }
 
@@ -131,6 +131,7 @@ impl Offscreen {
             DrawStage::Compute => Output::Compute(settings.planes),
             _ => Output::Pass(PassFormats {
                 samples,
+                sample_rays: samples > 1,
                 ..PassFormats::new(
                     PassKind::RenderPass {
                         pass: raw,

@@ -1,0 +1,125 @@
+//! Several samples in a host's pass: a ray through each makes silhouettes as smooth as the samples,
+//! and leaves no sample of a solid to what is behind it.
+#![allow(unsafe_code)]
+
+use crate::common::host::{self, Options, Stage, borrow, dynamic, open};
+use crate::common::{draw, sized};
+use crate::embedding::{options, three};
+use glam::DMat4;
+use revmap::frame::Frame;
+use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
+use revmap::scene::{Placement, Scene};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
+use revmap_lab::compare::flip_map;
+use revmap_lab::samples::averaged;
+
+/// Pixels of a degree of the visual field, as FLIP's default.
+const PIXELS_PER_DEGREE: f64 = 67.0;
+
+/// Solids, copies and pixels of one copy.
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let mut small = three();
+    let spot = |n: u32| Placement {
+        position: glam::DVec3::new(
+            f64::from(n / 20) * 0.16 - 1.2,
+            f64::from(n % 20) * 0.16 - 1.5,
+            0.0,
+        ),
+        scale: glam::DVec3::splat(0.1),
+        ..Placement::default()
+    };
+    small.objects.truncate(1);
+    small.objects[0].instances = (0..300).map(spot).collect();
+    vec![("three", three()), ("copies", small)]
+}
+
+/// The host's picture by four samples.
+fn picture(host: &host::Host, device: &Device, scene: &Scene, sample_rays: bool) -> Frame {
+    let samples = 4;
+    let options = Options {
+        samples,
+        ..options()
+    };
+    let mut stage = Stage::new(host, options).unwrap();
+    let output = Output::Pass(PassFormats {
+        samples,
+        sample_rays,
+        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
+    });
+    let search = SearchSettings::exact();
+    let mut renderer = Renderer::new(device, output, &search, host::FRAMES).unwrap();
+    renderer.set_lighting(&scene.lighting()).unwrap();
+    for object in &scene.objects {
+        renderer.add(object.clone()).unwrap();
+    }
+    let size = (options.width, options.height);
+    let view = View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap();
+    host::frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
+    let mut frame = Frame::new(options.width, options.height, [0.0; 4]).unwrap();
+    let linear = |byte: u8| {
+        let v = f32::from(byte) / 255.0;
+        match v <= 0.04045 {
+            true => v / 12.92,
+            false => ((v + 0.055) / 1.055).powf(2.4),
+        }
+    };
+    let bytes = stage.read().unwrap().0;
+    for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks::<4>().0) {
+        *color = [linear(rgba[0]), linear(rgba[1]), linear(rgba[2]), 1.0];
+    }
+    frame
+}
+
+/// The picture of so many rays a pixel.
+fn rays(scene: &Scene, count: u32) -> Frame {
+    let settings = Settings {
+        stage: DrawStage::Fragment,
+        planes: Planes::Color,
+        antialias: false,
+        ..sized(options().width, options().height)
+    };
+    averaged(count, scene, |shifted| Ok(draw(shifted, &settings))).unwrap()
+}
+
+fn mean_flip(truth: &Frame, frame: &Frame) -> f64 {
+    let map = flip_map(truth, frame, PIXELS_PER_DEGREE);
+    map.iter().copied().map(f64::from).sum::<f64>() / map.len() as f64
+}
+
+fn rms(truth: &Frame, frame: &Frame) -> f32 {
+    let colors = truth.color.iter().zip(&frame.color);
+    let squares = colors.flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).powi(2)));
+    (squares.sum::<f32>() / truth.color.len() as f32).sqrt()
+}
+
+fn largest(truth: &Frame, frame: &Frame) -> f32 {
+    let colors = truth.color.iter().zip(&frame.color);
+    let apart = colors.flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
+    apart.fold(0.0, f32::max)
+}
+
+/// Rays through samples come much nearer to 64 rays than one ray for all samples, and no pixel is
+/// far off.
+#[test]
+fn rays_through_samples_smooth_silhouettes() {
+    let host = open();
+    let device = borrow(&host);
+    for (name, scene) in scenes() {
+        let truth = rays(&scene, 64);
+        let [one, each] = [false, true].map(|rays| picture(&host, &device, &scene, rays));
+        let four = rays(&scene, 4);
+        let flips = [&one, &each].map(|frame| mean_flip(&truth, frame));
+        let [one_off, each_off, four_off] = [&one, &each, &four].map(|frame| rms(&truth, frame));
+        let largest = largest(&truth, &each);
+        println!(
+            "{name}: FLIP {flips:.4?}, rms {one_off:.4}, through samples {each_off:.4} (four rays {four_off:.4}), largest {largest:.3}"
+        );
+        assert!(flips[1] < 0.7 * flips[0], "{name}: {flips:?}");
+        assert!(
+            each_off < 0.4 * one_off && each_off < 1.1 * four_off,
+            "{name}"
+        );
+        // No pixel is farther off than a quarter of it.
+        assert!(largest < 0.25, "{name}: {largest}");
+    }
+}
