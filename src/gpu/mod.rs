@@ -30,7 +30,7 @@ pub use offscreen::{Guest, Offscreen, OffscreenOptions, Times};
 pub use open::{Device, HostDevice, Requirements};
 pub use renderer::Renderer;
 pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
-pub use renderer::prepare::PreparedFrame;
+pub use renderer::prepare::{FrameStatistics, PreparedFrame};
 pub use renderer::prewarm::Prewarm;
 pub use vk::call::{allocation_error, vulkan_error};
 pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind};

@@ -9,6 +9,8 @@ use crate::gpu::device::report::{DeviceReport, candidates, choose, inspect, refu
 use crate::gpu::device::{Shared, create};
 use crate::gpu::memory::Buffer;
 use crate::gpu::resources::geometry::Geometry;
+#[cfg(feature = "other-shaders")]
+use crate::gpu::vk::debug::DebugLabels;
 use crate::gpu::vk::pipelines::Pipelines;
 #[cfg(feature = "other-shaders")]
 use crate::gpu::vk::pipelines::ShaderSource;
@@ -148,11 +150,23 @@ impl Device {
             functions: shared.functions.clone(),
             chosen: shared.chosen.clone(),
             budget: MemoryBudget::default(),
+            debug_labels: DebugLabels::default(),
             host_types: shared.host_types,
             instance: None,
             opened: Some(shared.clone()),
         };
         Ok(own.into())
+    }
+
+    /// Labels the commands and names the buffers of all renderers from now on, for debuggers of
+    /// frames. A device that was opened with validation does so by itself.
+    ///
+    /// # Safety
+    /// The call loads functions. The caller must ensure that the host's instance was made with
+    /// `VK_EXT_debug_utils`.
+    pub unsafe fn enable_debug_labels(&self) {
+        let shared = &self.shared;
+        shared.debug_labels.enable(&shared.functions, &shared.raw);
     }
 
     /// Limits the bytes of all buffers and images on the device, including those of pictures.
@@ -186,6 +200,9 @@ impl Device {
         });
         match made {
             Ok(mut shared) => {
+                if instance.messages.is_some() {
+                    shared.debug_labels.enable(&instance.raw, &raw);
+                }
                 shared.instance = Some(instance);
                 Ok(shared.into())
             }

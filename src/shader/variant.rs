@@ -12,6 +12,7 @@ use super::generated as g;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
+use std::ffi::CStr;
 
 /// The geometry that a pipeline draws: a proxy (the first two), or tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -34,6 +35,20 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Its name in lists of commands.
+    #[must_use]
+    pub const fn label(self) -> &'static CStr {
+        match self {
+            Self::Cells => c"revmap cells",
+            Self::Boxes => c"revmap boxes",
+            Self::Quads => c"revmap quads of tiles",
+            Self::TileLists => c"revmap lists of patches",
+            Self::TilePatches => c"revmap tiles of listed patches",
+            Self::TileTree => c"revmap tiles of one copy",
+            Self::TileCopies => c"revmap tiles of several copies",
+        }
+    }
+
     /// True if its invocations walk the tree of patches, or search a map.
     #[must_use]
     pub const fn walks(self) -> bool {

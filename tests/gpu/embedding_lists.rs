@@ -86,7 +86,7 @@ impl<'a> Lists<'a> {
             unsafe {
                 let frame = self.renderer.prepare(cmd, 0, view).unwrap();
                 let record = || self.renderer.record(cmd, &frame).unwrap();
-                self.into.draw(cmd, &clears, record);
+                self.into.draw(cmd, &clears, false, record);
             }
         });
     }

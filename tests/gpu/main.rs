@@ -20,6 +20,7 @@ mod embedding_crowds;
 mod embedding_lists;
 mod embedding_outputs;
 mod embedding_samples;
+mod embedding_tools;
 mod embedding_visibility;
 mod exhausted;
 mod extremes;

@@ -44,7 +44,8 @@ impl<'a> Attachments<'a> {
         self.colors.iter().chain([&self.depth])
     }
 
-    /// Clears everything, records `draws` in a pass, and copies the results out.
+    /// Clears everything, records `draws` in a pass, and copies the results out. `secondary`: all
+    /// draws are secondary commands.
     ///
     /// # Safety
     /// `cmd` is recording outside of a pass; the attachments live until it has run.
@@ -52,6 +53,7 @@ impl<'a> Attachments<'a> {
         &self,
         cmd: vk::CommandBuffer,
         clears: &[vk::ClearColorValue],
+        secondary: bool,
         draws: impl FnOnce(),
     ) {
         let raw = &self.host.device;
@@ -76,16 +78,14 @@ impl<'a> Attachments<'a> {
         let depth_stencil = depth_clear;
         let depth = attachment(&self.depth, vk::ClearValue { depth_stencil });
         let info = vk::RenderingInfo::default()
+            .flags(match secondary {
+                true => vk::RenderingFlags::CONTENTS_SECONDARY_COMMAND_BUFFERS,
+                false => vk::RenderingFlags::empty(),
+            })
             .render_area(area)
             .layer_count(1)
             .color_attachments(&colors)
             .depth_attachment(&depth);
-        let viewport = vk::Viewport {
-            width: area.extent.width as f32,
-            height: area.extent.height as f32,
-            max_depth: 1.0,
-            ..Default::default()
-        };
         let (undefined, copied) = (
             vk::ImageLayout::UNDEFINED,
             vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
@@ -97,8 +97,9 @@ impl<'a> Attachments<'a> {
                 .map(|a| a.image.barrier(undefined, a.image.drawn()));
             self.barrier(cmd, &begun.collect::<Vec<_>>());
             raw.cmd_begin_rendering(cmd, &info);
-            raw.cmd_set_viewport(cmd, 0, &[viewport]);
-            raw.cmd_set_scissor(cmd, 0, &[area]);
+            if !secondary {
+                set_viewport(self.host, cmd, &self.options);
+            }
             draws();
             raw.cmd_end_rendering(cmd);
             let ended = self.all().map(|a| a.image.barrier(a.image.drawn(), copied));
@@ -133,5 +134,24 @@ impl<'a> Attachments<'a> {
         let raw = &self.host.device;
         // SAFETY: `cmd` is recording, outside of a pass.
         unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &memory, &[], images) };
+    }
+}
+
+/// Sets viewport and scissor to the whole picture.
+///
+/// # Safety
+/// `cmd` is recording.
+pub unsafe fn set_viewport(host: &Host, cmd: vk::CommandBuffer, options: &Options) {
+    let area = vk::Rect2D::default().extent(options.extent());
+    let viewport = vk::Viewport {
+        width: area.extent.width as f32,
+        height: area.extent.height as f32,
+        max_depth: 1.0,
+        ..Default::default()
+    };
+    // SAFETY: as the caller promised.
+    unsafe {
+        host.device.cmd_set_viewport(cmd, 0, &[viewport]);
+        host.device.cmd_set_scissor(cmd, 0, &[area]);
     }
 }

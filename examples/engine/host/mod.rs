@@ -55,7 +55,7 @@ pub struct Host {
     pub features: vk::PhysicalDeviceFeatures,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Mutex<Vec<String>>>,
-    _entry: ash::Entry,
+    entry: ash::Entry,
 }
 
 unsafe extern "system" fn keep(
@@ -147,11 +147,15 @@ impl Host {
                     features,
                     messenger,
                     messages,
-                    _entry: entry,
+                    entry,
                 });
             }
             Err(refused)
         }
+    }
+
+    pub fn entry(&self) -> &ash::Entry {
+        &self.entry
     }
 
     /// What the validation layers have said since the last call.

@@ -6,6 +6,7 @@ pub(crate) mod report;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
+use crate::gpu::vk::debug::DebugLabels;
 use crate::gpu::vk::pipelines::Pipelines;
 use ash::vk;
 use budget::MemoryBudget;
@@ -27,6 +28,7 @@ pub(crate) struct Shared {
     /// The physical device, with the features that are on.
     pub chosen: Candidate,
     pub budget: MemoryBudget,
+    pub debug_labels: DebugLabels,
     /// Bits of the memory types that are host-visible and coherent, but not device-local.
     pub host_types: u32,
     /// `None` for a borrowed device.
@@ -80,6 +82,7 @@ impl Shared {
             queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
             functions: instance.clone(),
             budget: MemoryBudget::default(),
+            debug_labels: DebugLabels::default(),
             host_types: host_types(instance, chosen.physical),
             chosen,
             raw,

@@ -68,6 +68,7 @@ impl Buffer {
             allocation: None,
             device: device.clone(),
         };
+        device.debug_labels.name(raw, name);
         // SAFETY: the buffer is live.
         let mut requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         if requirements.memory_type_bits & types != 0 {

@@ -48,6 +48,8 @@ pub struct Renderer {
     pub(super) target: Option<(ComputeTarget, u64)>,
     /// The owner of its pipelines, if they are not shared.
     pub(super) owner: u64,
+    /// True if `prepare` compiles nothing.
+    pub(super) hides: bool,
     pub(super) device: Arc<Shared>,
 }
 
@@ -82,6 +84,7 @@ impl Renderer {
                 .map(|_| FrameSlot::new(&device))
                 .collect::<Result<_>>()?,
             target: None,
+            hides: false,
             owner: device.pipelines()?.owner(&output),
             content: Content::new(&device, geometry, output, settings)?,
             device,
@@ -146,6 +149,14 @@ impl Renderer {
             }
         }
         [shapes, self.content.textures.bytes()]
+    }
+
+    /// With `true`, [`Renderer::prepare`] compiles no pipeline. Whatever needs one that is not
+    /// compiled stays hidden until [`Prewarm::compile`](crate::gpu::Prewarm::compile) has made it on
+    /// another thread; [`FrameStatistics::hidden`](crate::gpu::FrameStatistics::hidden) counts what
+    /// is left out. Default: false.
+    pub fn hide_until_compiled(&mut self, hides: bool) {
+        self.hides = hides;
     }
 
     /// Sets the memory that compute writes to, from the next prepared frame on.

@@ -24,9 +24,34 @@ pub struct PreparedFrame {
     pub(in crate::gpu) slot: usize,
     pub(in crate::gpu) serial: u64,
     reads_depths: bool,
+    statistics: FrameStatistics,
+}
+
+/// What a prepared frame records.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStatistics {
+    /// Objects of which a part may show.
+    pub objects: u32,
+    /// Draws, those of one indirect command counted one by one.
+    pub draws: u32,
+    /// Dispatches.
+    pub dispatches: u32,
+    /// Draws and dispatches that are left out, because their pipelines are not compiled
+    /// ([`Renderer::hide_until_compiled`]).
+    pub hidden: u32,
+    /// Quads, and work groups of dispatches whose number the host knows.
+    pub tiles: u32,
+    /// Bytes of the slot's buffers.
+    pub slot_bytes: u64,
 }
 
 impl PreparedFrame {
+    /// What the frame records.
+    #[must_use]
+    pub fn statistics(&self) -> FrameStatistics {
+        self.statistics
+    }
+
     /// Returns true if compute compares with the depths of its target and writes its own depths
     /// there. If false, the target's depths may hold anything.
     #[must_use]
@@ -75,7 +100,7 @@ impl Renderer {
         self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
         let anew = {
             let bound = self.slots[slot].bound.as_ref();
-            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.plan, &plan))
+            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0)
         };
         if anew {
             self.slots[slot].bound = None;
@@ -95,6 +120,7 @@ impl Renderer {
             slot,
             serial: to.serial,
             reads_depths: plan.frame.compares_depths,
+            statistics: to.statistics(),
         })
     }
 
@@ -123,6 +149,7 @@ impl Renderer {
         let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
         let buffers = self.content.geometry.lock()?.store(read)?;
         let pipelines = self.device.pipelines()?;
+        let output = &self.content.output;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let mut steps = Vec::with_capacity(frame.steps.len());
         for step in &frame.steps {
@@ -139,12 +166,10 @@ impl Renderer {
             };
             let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
             steps.push(BoundStep {
-                pipeline: pipelines.get(
-                    step.variant,
-                    step.kind,
-                    &self.content.output,
-                    self.owner,
-                )?,
+                pipeline: match self.hides {
+                    true => pipelines.known(step.variant, step.kind, output, self.owner)?,
+                    false => Some(pipelines.get(step.variant, step.kind, output, self.owner)?),
+                },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });

@@ -40,17 +40,20 @@ impl Renderer {
         unsafe {
             let indices = bound.buffers.indices.raw;
             raw.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
-            for (n, step) in bound.plan.frame.steps.iter().enumerate() {
-                self.bind_step(cmd, point, slot, bound, n)?;
-                match &step.call {
-                    Call::Draws(range) => self.draw(cmd, slot, bound, range.start, range.end),
-                    Call::Quads(range) => {
-                        let count = vertices * (range.end - range.start);
-                        raw.cmd_draw(cmd, count, 1, vertices * range.start, 0);
-                    }
-                    Call::Dispatch(..) | Call::Indirect(..) => {}
+        }
+        for (n, step) in bound.plan.frame.steps.iter().enumerate() {
+            self.with_step(cmd, point, slot, bound, n, || match &step.call {
+                // SAFETY: as the caller promised.
+                Call::Draws(range) => unsafe {
+                    self.draw(cmd, slot, bound, range.start, range.end);
+                },
+                Call::Quads(range) => {
+                    let count = vertices * (range.end - range.start);
+                    // SAFETY: as the caller promised.
+                    unsafe { raw.cmd_draw(cmd, count, 1, vertices * range.start, 0) };
                 }
-            }
+                Call::Dispatch(..) | Call::Indirect(..) => {}
+            })?;
         }
         Ok(())
     }
@@ -95,10 +98,11 @@ impl Renderer {
                 }
                 phase = step.phase;
             }
-            self.bind_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n)?;
-            // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long as
-            // the caller promised.
-            unsafe { self.dispatch(cmd, slot, step) };
+            self.with_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n, || {
+                // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long
+                // as the caller promised.
+                unsafe { self.dispatch(cmd, slot, step) };
+            })?;
         }
         Ok(())
     }
@@ -192,21 +196,31 @@ impl Renderer {
         unsafe { raw.cmd_push_constants(cmd, layout, stage, 0, bytes) };
     }
 
-    /// Binds the pipeline and the sets of a step.
-    fn bind_step(
+    /// Binds the pipeline and the sets of a step and records its commands under a label. A step
+    /// whose pipeline is not compiled is left out.
+    fn with_step(
         &self,
         cmd: vk::CommandBuffer,
         point: vk::PipelineBindPoint,
         slot: &FrameSlot,
         bound: &BoundPlan,
         step: usize,
+        commands: impl FnOnce(),
     ) -> Result<()> {
         let BoundStep {
-            pipeline,
+            pipeline: Some(pipeline),
             textures,
             offsets,
-        } = &bound.steps[step];
-        self.bind_sets(cmd, point, slot, *pipeline, textures.set, offsets)
+        } = &bound.steps[step]
+        else {
+            return Ok(());
+        };
+        let label = bound.plan.frame.steps[step].kind.label();
+        self.device.labelled(cmd, label, || {
+            self.bind_sets(cmd, point, slot, *pipeline, textures.set, offsets)?;
+            commands();
+            Ok(())
+        })
     }
 
     pub(in crate::gpu) fn bind_sets(

@@ -1,6 +1,7 @@
 //! The resources that only one prepared frame reads: blocks, instances, tiles, draws, and the sets
 //! that bind them. The slot also keeps alive all else that its commands read.
 
+use super::prepare::FrameStatistics;
 use crate::error::Result;
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
@@ -11,7 +12,7 @@ use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
-use crate::plan::{FramePlan, View};
+use crate::plan::{Call, DrawPath, FramePlan, View};
 use crate::shader::{FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock, ShadowBlock};
 use ash::vk;
 use std::sync::Arc;
@@ -50,9 +51,18 @@ pub(crate) struct BoundPlan {
     pub buffers: TableBuffers,
 }
 
+impl BoundPlan {
+    /// The number of steps whose pipelines are not compiled yet.
+    pub fn hidden(&self) -> usize {
+        let missing = |step: &&BoundStep| step.pipeline.is_none();
+        self.steps.iter().filter(missing).count()
+    }
+}
+
 /// The bindings of a step.
 pub(crate) struct BoundStep {
-    pub pipeline: vk::Pipeline,
+    /// `None` if it is not compiled yet.
+    pub pipeline: Option<vk::Pipeline>,
     pub textures: Arc<TextureSet>,
     /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
     /// solid.
@@ -123,6 +133,40 @@ impl FrameSlot {
             &self.draws,
         ];
         all.iter().map(|buffer| buffer.bytes).sum()
+    }
+
+    /// What the slot's commands record.
+    pub fn statistics(&self) -> FrameStatistics {
+        let Some(bound) = &self.bound else {
+            return FrameStatistics::default();
+        };
+        let frame = &bound.plan.frame;
+        let mut all = FrameStatistics {
+            objects: frame
+                .paths
+                .iter()
+                .filter(|p| **p != DrawPath::Nothing)
+                .count() as u32,
+            hidden: bound.hidden() as u32,
+            slot_bytes: self.bytes(),
+            ..FrameStatistics::default()
+        };
+        let steps = frame.steps.iter().zip(&bound.steps);
+        for (step, _) in steps.filter(|(_, bound)| bound.pipeline.is_some()) {
+            match &step.call {
+                Call::Draws(range) => all.draws += range.end - range.start,
+                Call::Quads(range) => {
+                    all.draws += 1;
+                    all.tiles += range.end - range.start;
+                }
+                Call::Dispatch(groups, _) => {
+                    all.dispatches += 1;
+                    all.tiles += groups;
+                }
+                Call::Indirect(..) => all.dispatches += 1,
+            }
+        }
+        all
     }
 
     pub fn write_frame(&mut self, block: &FrameBlock) -> Result<()> {

@@ -2,6 +2,7 @@
 //! of descriptors, outputs, pipelines.
 
 pub(crate) mod call;
+pub(crate) mod debug;
 pub(crate) mod descriptors;
 pub(crate) mod output;
 pub(crate) mod pipelines;

@@ -140,17 +140,17 @@ impl Pipelines {
         output: &Output,
         owner: u64,
     ) -> Result<vk::Pipeline> {
+        if let Some(made) = self.known(variant, kind, output, owner)? {
+            return Ok(made);
+        }
+        // Compilation holds no lock, so that others can compile meanwhile.
+        let made = self.compile(&variant, kind, output)?;
         let key = Key {
             variant,
             kind,
             output: output.clone(),
             owner,
         };
-        if let Some(made) = self.made()?.get(&key) {
-            return Ok(*made);
-        }
-        // Compilation holds no lock, so that others can compile meanwhile.
-        let made = self.compile(&variant, kind, output)?;
         let mut all = self.made()?;
         if let Some(before) = all.get(&key) {
             // SAFETY: nothing else has seen the new pipeline.
@@ -160,6 +160,23 @@ impl Pipelines {
         all.insert(key, made);
         self.compiled.fetch_add(1, Ordering::Relaxed);
         Ok(made)
+    }
+
+    /// Returns the same pipeline as [`Pipelines::get`] if it is compiled.
+    pub fn known(
+        &self,
+        variant: Variant,
+        kind: Kind,
+        output: &Output,
+        owner: u64,
+    ) -> Result<Option<vk::Pipeline>> {
+        let key = Key {
+            variant,
+            kind,
+            output: output.clone(),
+            owner,
+        };
+        Ok(self.made()?.get(&key).copied())
     }
 
     /// Returns the owner of pipelines for an output: 0 for shared ones, else a new owner. A host
