@@ -32,7 +32,7 @@ mod solid_radii;
 mod tree;
 
 pub use chain::Chain;
-pub use contour::{Contour, ContourSource};
+pub use contour::{Contour, ContourSource, MOST_SEGMENTS};
 pub(crate) use cylinders::{CylinderPiece, InnerCylinders, OuterCylinders};
 pub use fit::{FitOptions, fit_patches};
 pub use hull::{Frustum, ProxyHull, ProxyHullOptions};

@@ -48,6 +48,16 @@ impl Layer {
         self.alpha + self.beta * z
     }
 
+    /// True if each point within `reach` of `middle` is hidden: some part of the surface is nearer
+    /// than the offset there. A curve there meets no visible part of another, because both have the
+    /// same offset where they meet. Without this test the curves of a fine pattern under a wide
+    /// offset would all meet each other.
+    fn hides(&self, tree: &Tree, middle: DVec2, reach: f64) -> bool {
+        // A distance changes by at most the way, the offset by at most `beta` times it.
+        let omega = self.offset(middle.y).abs() - (1.0 + self.beta.abs()) * reach;
+        tree.any_nearer(middle, omega - NEARER)
+    }
+
     /// The point, moved exactly onto a border of layer or half-plane if it is within `SHORT` of it.
     fn snapped(&self, mut p: DVec2) -> DVec2 {
         for z in [self.low, self.high] {
@@ -75,6 +85,8 @@ pub(super) struct Corner {
 /// Conics are divided into parts that turn less than this, so that each part is about as large as
 /// its chord.
 const SWEEP: f64 = 0.5;
+/// Pieces of a conic that are tested for being hidden.
+const PIECES: u32 = 8;
 /// Largest distance of a conic from its chords, object units.
 const SAGITTA: f64 = 1e-6;
 /// Least difference of distances that counts as nearer: some roundings of coordinates of size 1.
@@ -120,11 +132,11 @@ impl Trimmer {
             // The corner before a segment that is not the corner after its predecessor: a curve
             // begins on the axis.
             if let Some(corner) = before {
-                self.conic(&layer, corner, feature - 1);
+                self.conic(&layer, corner, feature - 1, tree);
             }
-            self.line(&layer, s, feature);
+            self.line(&layer, s, feature, tree);
             if let Some(corner) = after {
-                self.conic(&layer, corner, feature + 1);
+                self.conic(&layer, corner, feature + 1, tree);
             }
         }
         self.cuts.clear();
@@ -134,7 +146,7 @@ impl Trimmer {
         self.keep(&layer, tree, parts);
     }
 
-    fn line(&mut self, layer: &Layer, s: &Segment, feature: u32) {
+    fn line(&mut self, layer: &Layer, s: &Segment, feature: u32, tree: &Tree) {
         let normal = -(s.b - s.a).perp().normalize_or_zero();
         let divisor = 1.0 - layer.beta * normal.y;
         if divisor.abs() < 1e-9 {
@@ -149,15 +161,18 @@ impl Trimmer {
         let Some((a, b)) = clip_line(a, b, layer) else {
             return;
         };
-        self.candidates.push(Candidate {
+        let candidate = Candidate {
             curve: Curve::Line { a, b },
             low: a.min(b) - SHORT,
             high: a.max(b) + SHORT,
             feature,
-        });
+        };
+        if !layer.hides(tree, 0.5 * (a + b), 0.5 * a.distance(b) + SHORT) {
+            self.candidates.push(candidate);
+        }
     }
 
-    fn conic(&mut self, layer: &Layer, corner: &Corner, feature: u32) {
+    fn conic(&mut self, layer: &Layer, corner: &Corner, feature: u32, tree: &Tree) {
         let focus = corner.point;
         let size = layer.offset(focus.y);
         let (from, to) = (corner.angle, corner.angle + corner.turn);
@@ -212,9 +227,32 @@ impl Trimmer {
             }
             let [a, b] = curve.ends(layer);
             let chord = a.distance(b);
-            if chord < SHORT {
+            if chord < SHORT || layer.hides(tree, inside, chord) {
                 continue;
             }
+            // The part between the first and the last pieces that may show.
+            let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(PIECES);
+            let shows = |k: &u32| {
+                let [a, middle, b] = [at(*k), 0.5 * (at(*k) + at(k + 1)), at(k + 1)]
+                    .map(|x| curve.point(layer.beta, x));
+                !layer.hides(tree, middle, a.distance(b))
+            };
+            let (Some(first), Some(last)) = ((0..PIECES).find(shows), (0..PIECES).rfind(shows))
+            else {
+                continue;
+            };
+            let (from, to) = (
+                at(first),
+                if last + 1 == PIECES { to } else { at(last + 1) },
+            );
+            let curve = Curve::Conic {
+                focus,
+                size,
+                from,
+                to,
+            };
+            let [a, b] = curve.ends(layer);
+            let chord = a.distance(b);
             self.candidates.push(Candidate {
                 curve,
                 low: a.min(b) - chord,

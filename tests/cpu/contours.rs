@@ -5,9 +5,12 @@ use crate::common::shapes::offset;
 use crate::common::walk::guards;
 use glam::DVec2;
 use proptest::prelude::*;
+use revmap::error::ErrorKind;
 use revmap::profile::Outline;
 use revmap::scene::Offset;
-use revmap::surface::{Contour, ContourSource, FitOptions, ROWS, Tables, fit_patches};
+use revmap::surface::{
+    Contour, ContourSource, FitOptions, MOST_SEGMENTS, ROWS, Tables, fit_patches,
+};
 
 /// Twice the winding number of the boundary round a point, with the axis as boundary: 2 inside.
 fn turns(contour: &Contour, q: DVec2) -> f64 {
@@ -90,6 +93,46 @@ proptest! {
         let bevel = if sign { bevel } else { -bevel };
         sound(&outline, Offset { extend, bevel, chamfer })?;
     }
+}
+
+/// A checkerboard of cells that touch at their corners, under offsets of many cells: nearly all
+/// curves are hidden behind others.
+#[test]
+fn fine_patterns_under_wide_offsets() {
+    let (across, up) = (16, 32);
+    let size = 1.0 / f64::from(up);
+    let dark = (0..across * up).filter(|n| (n % across + n / across) % 2 == 0);
+    let cell = |n: u32| {
+        let low = DVec2::new(f64::from(n % across), f64::from(n / across)) * size;
+        let corner = |x: f64, y: f64| low + DVec2::new(x, y) * size;
+        vec![
+            corner(0.0, 0.0),
+            corner(1.0, 0.0),
+            corner(1.0, 1.0),
+            corner(0.0, 1.0),
+        ]
+    };
+    let outline = Outline {
+        loops: dark.map(cell).collect(),
+    };
+    for (extend, bevel) in [(0.0, 0.38), (0.1, 0.0), (0.05, -0.2), (0.3, 0.9)] {
+        sound(&outline, offset(extend, bevel, 1.0)).unwrap();
+    }
+}
+
+/// An outline of more segments than the stated limit is refused by kind.
+#[test]
+fn outlines_beyond_the_limit_are_refused() {
+    let points = (0..=MOST_SEGMENTS).map(|n| {
+        let height = n as f64 / MOST_SEGMENTS as f64;
+        DVec2::new(0.2 + 0.1 * (n % 2) as f64, height)
+    });
+    let outline = Outline {
+        loops: vec![points.collect()],
+    };
+    let error = ContourSource::new(&outline).err().unwrap();
+    assert_eq!(error.kind, ErrorKind::TooLarge);
+    assert!(error.message.contains("1048577 segments"), "{error}");
 }
 
 /// Patches are connected, face outwards, and are within their tolerance of the contour.
