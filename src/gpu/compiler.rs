@@ -129,9 +129,11 @@ impl PipelineCompiler {
     /// The pipelines that draw a look.
     #[must_use]
     pub fn pipelines(&self, look: &Look, stage: DrawStage, solver: Solver) -> Vec<PipelineChoice> {
-        let depth_alone = matches!(look.planes, Planes::Depth { .. });
+        let of_host = !matches!(look.planes, Planes::Color | Planes::All);
         let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
-        if (depth_alone && (stage == DrawStage::Compute || !exact))
+        let listed = matches!(look.planes, Planes::List(_));
+        if (of_host && (stage == DrawStage::Compute || !exact))
+            || (listed && look.format == MapFormat::Rgba8)
             || (look.format == MapFormat::Rgba8 && !solver.reads_map())
         {
             return Vec::new();

@@ -47,6 +47,16 @@ pub fn open() -> Checked {
     open_with(|features| features)
 }
 
+/// A host without validation, for measurements.
+pub fn open_unchecked() -> Host {
+    Host::open(false, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, needs.features))
+    })
+    .unwrap()
+}
+
 /// A host with some of the features that the library requires.
 pub fn open_with(
     some: impl Fn(vk::PhysicalDeviceFeatures) -> vk::PhysicalDeviceFeatures,
@@ -140,4 +150,30 @@ pub fn frame(
             |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
         )
         .unwrap();
+}
+
+/// Records commands, submits them and waits.
+pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
+    let device = &host.device;
+    // SAFETY: everything is created here, waited for, then destroyed.
+    unsafe {
+        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
+        let pool = device.create_command_pool(&pool, None).unwrap();
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(pool)
+            .command_buffer_count(1);
+        let cmd = device.allocate_command_buffers(&info).unwrap()[0];
+        device
+            .begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())
+            .unwrap();
+        record(cmd);
+        device.end_command_buffer(cmd).unwrap();
+        let all = [cmd];
+        let submit = vk::SubmitInfo::default().command_buffers(&all);
+        device
+            .queue_submit(host.queue, &[submit], vk::Fence::null())
+            .unwrap();
+        device.queue_wait_idle(host.queue).unwrap();
+        device.destroy_command_pool(pool, None);
+    }
 }

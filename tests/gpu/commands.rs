@@ -2,10 +2,11 @@
 //! pipelines and texture sets, whatever the number of objects and copies.
 
 use crate::common::host::memory::HostBuffer;
+use crate::common::host::once;
 use crate::common::host::{lent, open};
 use crate::common::{placement, scene_of, shapes};
 use crate::embedding::assert_silent;
-use crate::embedding_outputs::{barrier, once};
+use crate::embedding_outputs::barrier;
 use ash::vk;
 use glam::DVec3;
 use revmap::gpu::{Device, HostDevice, Offscreen};

@@ -3,10 +3,10 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::attachments::Attachments;
+use crate::common::host::once;
 use crate::common::host::{self, Host, Options, borrow, dynamic, open, viewport};
 use crate::common::{draw, sized};
 use crate::embedding::{options, three};
-use crate::embedding_outputs::once;
 use ash::vk;
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use revmap::cast::RayCaster;
@@ -87,6 +87,7 @@ impl<'a> Lists<'a> {
                 let frame = self.renderer.prepare(cmd, 0, view).unwrap();
                 let record = || self.renderer.record(cmd, &frame).unwrap();
                 self.into.draw(cmd, &clears, false, record);
+                self.into.copy(cmd);
             }
         });
     }

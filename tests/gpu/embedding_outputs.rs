@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::memory::{HostBuffer, HostImage};
-use crate::common::host::{self, Host, borrow, dynamic, open, viewport};
+use crate::common::host::{self, Host, borrow, dynamic, once, open, viewport};
 use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
 use crate::embedding::{BACKGROUND, options, three, upright};
 use ash::vk;
@@ -15,32 +15,6 @@ use revmap::scene::{Clip, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
 use revmap_searches::CIRCLE;
-
-/// Records commands, submits them and waits.
-pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
-    let device = &host.device;
-    // SAFETY: everything is created here, waited for, then destroyed.
-    unsafe {
-        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
-        let pool = device.create_command_pool(&pool, None).unwrap();
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(pool)
-            .command_buffer_count(1);
-        let cmd = device.allocate_command_buffers(&info).unwrap()[0];
-        device
-            .begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())
-            .unwrap();
-        record(cmd);
-        device.end_command_buffer(cmd).unwrap();
-        let all = [cmd];
-        let submit = vk::SubmitInfo::default().command_buffers(&all);
-        device
-            .queue_submit(host.queue, &[submit], vk::Fence::null())
-            .unwrap();
-        device.queue_wait_idle(host.queue).unwrap();
-        device.destroy_command_pool(pool, None);
-    }
-}
 
 pub fn barrier(host: &Host, cmd: vk::CommandBuffer) {
     let access = vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::MEMORY_READ;

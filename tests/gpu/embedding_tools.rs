@@ -3,9 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::attachments::Attachments;
+use crate::common::host::once;
 use crate::common::host::{self, Host, Options, Stage, borrow, dynamic, lent, open};
 use crate::embedding::{drawn, options, renderer, three};
-use crate::embedding_outputs::once;
 use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
@@ -128,7 +128,7 @@ unsafe extern "system" fn device_function(
 #[test]
 fn commands_have_labels_where_a_host_enables_them() {
     let host = open();
-    let entry = host.entry();
+    let entry = &host.entry;
     let handle = host.instance.handle();
     let load = |wanted: &CStr| match wanted.to_bytes() {
         b"vkGetDeviceProcAddr" => device_function as *const _,
@@ -245,6 +245,7 @@ fn two_threads_record_two_renderers() {
         unsafe {
             let frame = alone.prepare(cmd, 0, &view).unwrap();
             wanted.draw(cmd, &clears, false, || alone.record(cmd, &frame).unwrap());
+            wanted.copy(cmd);
         }
     });
     let (found, mut both) = (into(), parts.each_ref().map(made));
@@ -261,6 +262,7 @@ fn two_threads_record_two_renderers() {
             let commands = secondary.each_ref().map(|s| s.commands);
             let execute = || host.device.cmd_execute_commands(cmd, &commands);
             found.draw(cmd, &clears, true, execute);
+            found.copy(cmd);
         }
     });
     assert!(found.color(0).iter().any(|byte| *byte != 0));

@@ -2,10 +2,11 @@
 //! before it is recorded.
 
 use crate::common::host::memory::HostBuffer;
+use crate::common::host::once;
 use crate::common::host::{self, Options, Stage, borrow, open};
 use crate::common::{eye, placement, scene_of, shapes};
 use crate::embedding::options;
-use crate::embedding_outputs::{barrier, once, target};
+use crate::embedding_outputs::{barrier, target};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use revmap::error::ErrorKind;

@@ -3,9 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
+use crate::common::host::once;
 use crate::common::host::{borrow, lent, open, open_with};
 use crate::common::{device, shapes};
-use crate::embedding_outputs::once;
 use ash::vk;
 use ash::vk::Handle as _;
 use glam::DVec3;

@@ -44,8 +44,8 @@ impl<'a> Attachments<'a> {
         self.colors.iter().chain([&self.depth])
     }
 
-    /// Clears everything, records `draws` in a pass, and copies the results out. `secondary`: all
-    /// draws are secondary commands.
+    /// Clears everything and records `draws` in a pass. `secondary`: all draws are secondary
+    /// commands.
     ///
     /// # Safety
     /// `cmd` is recording outside of a pass; the attachments live until it has run.
@@ -86,10 +86,7 @@ impl<'a> Attachments<'a> {
             .layer_count(1)
             .color_attachments(&colors)
             .depth_attachment(&depth);
-        let (undefined, copied) = (
-            vk::ImageLayout::UNDEFINED,
-            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
-        );
+        let undefined = vk::ImageLayout::UNDEFINED;
         // SAFETY: as the caller promised.
         unsafe {
             let begun = self
@@ -102,11 +99,23 @@ impl<'a> Attachments<'a> {
             }
             draws();
             raw.cmd_end_rendering(cmd);
+        }
+    }
+
+    /// Records copies of everything, to be read once the commands have run.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside of a pass, after [`Attachments::draw`].
+    pub unsafe fn copy(&self, cmd: vk::CommandBuffer) {
+        let copied = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        // SAFETY: as the caller promised.
+        unsafe {
             let ended = self.all().map(|a| a.image.barrier(a.image.drawn(), copied));
             self.barrier(cmd, &ended.collect::<Vec<_>>());
             for of in self.all() {
-                let region = [of.image.region(&self.options)];
-                raw.cmd_copy_image_to_buffer(cmd, of.image.raw, copied, of.read.raw, &region);
+                let (region, to) = ([of.image.region(&self.options)], of.read.raw);
+                let raw = &self.host.device;
+                raw.cmd_copy_image_to_buffer(cmd, of.image.raw, copied, to, &region);
             }
             self.barrier(cmd, &[]);
         }

@@ -80,6 +80,18 @@ impl<'a> HostImage<'a> {
         format: vk::Format,
         samples: u32,
     ) -> Fallible<Self> {
+        let more = vk::ImageUsageFlags::empty();
+        Self::with_usage(host, options, format, samples, more)
+    }
+
+    /// An image that is also used in other ways than by a pass and for reading back.
+    pub fn with_usage(
+        host: &'a Host,
+        options: &Options,
+        format: vk::Format,
+        samples: u32,
+        more: vk::ImageUsageFlags,
+    ) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
         let (aspect, usage) = if format == DEPTH {
             (vk::ImageAspectFlags::DEPTH, U::DEPTH_STENCIL_ATTACHMENT)
@@ -96,9 +108,9 @@ impl<'a> HostImage<'a> {
                 .array_layers(1)
                 .samples(vk::SampleCountFlags::from_raw(samples))
                 .usage(if samples == 1 {
-                    usage | U::TRANSFER_SRC
+                    usage | more | U::TRANSFER_SRC
                 } else {
-                    usage
+                    usage | more
                 });
             let raw = host.device.create_image(&info, None)?;
             let needs = host.device.get_image_memory_requirements(raw);

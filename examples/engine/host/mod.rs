@@ -1,7 +1,7 @@
 //! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here
 //! is revmap's.
 
-#[allow(dead_code)] // the deferred host and tests take it
+#[allow(dead_code)] // for the deferred host, tests and benches
 pub mod attachments;
 pub mod memory;
 mod mesh;
@@ -55,7 +55,8 @@ pub struct Host {
     pub features: vk::PhysicalDeviceFeatures,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Mutex<Vec<String>>>,
-    entry: ash::Entry,
+    #[allow(dead_code)] // tests load functions by it
+    pub entry: ash::Entry,
 }
 
 unsafe extern "system" fn keep(
@@ -152,10 +153,6 @@ impl Host {
             }
             Err(refused)
         }
-    }
-
-    pub fn entry(&self) -> &ash::Entry {
-        &self.entry
     }
 
     /// What the validation layers have said since the last call.

@@ -110,7 +110,7 @@ impl Target {
         };
         if stage != DrawStage::Compute || planes == Planes::All {
             for format in color_formats(planes) {
-                target.images.push(image("plane", *format, one, usage)?);
+                target.images.push(image("plane", format, one, usage)?);
             }
         }
         if stage != DrawStage::Compute {
@@ -123,7 +123,7 @@ impl Target {
             let depth = image("depth", DEPTH_FORMAT, samples, usage)?;
             if samples != one {
                 for format in color_formats(planes) {
-                    let samples = image("samples", *format, samples, U::COLOR_ATTACHMENT)?;
+                    let samples = image("samples", format, samples, U::COLOR_ATTACHMENT)?;
                     target.sampled.push(samples);
                 }
             }

@@ -2,23 +2,29 @@
 
 use crate::error::Result;
 use crate::gpu::vk::call::Call;
-use crate::settings::Planes;
+use crate::settings::{Plane, Planes};
 use ash::vk;
 
 /// The number of colour attachments.
 pub(crate) fn attachments(planes: Planes) -> usize {
-    match planes {
-        Planes::List(list) => list.planes().len(),
-        _ => color_formats(planes).len(),
-    }
+    color_formats(planes).len()
 }
 
-/// Formats of the colour attachments of off-screen frames, in order of location.
-pub(crate) fn color_formats(planes: Planes) -> &'static [vk::Format] {
+/// Formats of the library's own colour attachments, in order of location.
+pub(crate) fn color_formats(planes: Planes) -> Vec<vk::Format> {
+    use vk::Format as F;
     match planes {
-        Planes::Color => &[vk::Format::R8G8B8A8_SRGB],
-        Planes::Depth { .. } | Planes::List(_) => &[],
-        Planes::All => &[vk::Format::R32G32B32A32_SFLOAT; 4],
+        Planes::Color => vec![F::R8G8B8A8_SRGB],
+        Planes::Depth { .. } => Vec::new(),
+        Planes::All => vec![F::R32G32B32A32_SFLOAT; 4],
+        Planes::List(list) => {
+            let format = |plane: &Plane| match plane {
+                Plane::Color | Plane::BaseColor | Plane::Normal => F::R16G16B16A16_SFLOAT,
+                Plane::OctahedralNormal | Plane::Material | Plane::Motion => F::R16G16_SFLOAT,
+                Plane::Identity => F::R32G32_UINT,
+            };
+            list.planes().iter().map(format).collect()
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use revmap::gpu::compiler::Look;
 use revmap::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Light, Lighting, Object, Shadow};
-use revmap::settings::Planes;
+use revmap::settings::{Plane, PlaneList, Planes};
 use std::sync::Arc;
 
 /// Each technique by its name, with an example scene. The first has nothing besides its shape; the
@@ -29,6 +29,13 @@ pub fn techniques() -> Result<Vec<(&'static str, Look)>> {
         change(&mut look);
         (name, look)
     };
+    let buffer = PlaneList::new(&[
+        Plane::BaseColor,
+        Plane::OctahedralNormal,
+        Plane::Material,
+        Plane::Motion,
+        Plane::Identity,
+    ])?;
     Ok(vec![
         changed("revolution", &|_| ()),
         // The same code draws solids that contain the eye.
@@ -50,6 +57,7 @@ pub fn techniques() -> Result<Vec<(&'static str, Look)>> {
         changed("hard shadows", &|look| look.lighting.shadow = Shadow::Hard),
         changed("soft shadows", &|look| look.lighting.shadow = Shadow::Soft),
         changed("every plane", &|look| look.planes = Planes::All),
+        changed("G-buffer", &|look| look.planes = Planes::List(buffer)),
         changed("depth alone", &|look| {
             look.planes = Planes::Depth { parallel: false };
         }),

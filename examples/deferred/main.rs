@@ -1,0 +1,251 @@
+//! A small deferred renderer: a G-buffer of its own formats into which it draws meshes and revolved
+//! solids, light and temporal anti-aliasing in compute. The anti-aliasing follows the solids' motion
+//! vectors.
+//!
+//! `cargo run --release --example deferred -- out` writes the last frame of a movement with and
+//! without motion vectors, and the mean of 64 jittered frames of that moment, as PNG files into
+//! `out/`.
+#![allow(unsafe_code)] // raw handles enter here: each use says what it promises
+
+#[path = "../engine/host/mod.rs"]
+#[allow(dead_code, unused_imports)] // the forward host takes the rest
+mod host;
+mod passes;
+
+use glam::{DMat4, DQuat, DVec2, DVec3, Vec3, Vec4};
+use host::{Fallible, Host, Mesh, Options};
+use passes::{Blend, Passes};
+use revmap::frame::Frame;
+use revmap::gpu::{
+    self, DepthOrder, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer, Requirements,
+    View, Viewport,
+};
+use revmap::scene::{Material, Object, Placement};
+use revmap::settings::{PlaneList, Planes, SearchSettings};
+use revmap_files::ProfileAxis;
+use std::sync::Arc;
+
+const OPTIONS: Options = Options {
+    width: 640,
+    height: 400,
+    dynamic: true,
+    samples: 1,
+    reversed: false,
+};
+/// Frames of the movement.
+const FRAMES: u32 = 24;
+/// Frames of the truth.
+const RAYS: u32 = 64;
+/// FLIP's default.
+const PIXELS_PER_DEGREE: f64 = 67.0;
+/// The weight of a new frame.
+const WEIGHT: f32 = 0.12;
+
+fn main() -> Fallible<()> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
+    std::fs::create_dir_all(&folder)?;
+    let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
+    let host = Host::open(validate, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, needs.features))
+    })?;
+    // SAFETY: the host outlives the device; all handles are its own, opened with these features.
+    let device = unsafe {
+        gpu::Device::borrow(&HostDevice {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &host.device,
+            queue_family: host.family,
+            queue: None,
+            features: host.features,
+            allocator: None,
+            pipeline_cache: None,
+        })
+    }?;
+    let mut pictures = Vec::new();
+    for name in ["with-motion", "without-motion", "64-frames"] {
+        let mut engine = Engine::new(&host, &device)?;
+        for frame in 0..FRAMES {
+            let blend = match frame {
+                0 => Blend::FIRST,
+                _ => Blend {
+                    weight: WEIGHT,
+                    follows: name != "without-motion",
+                    clips: true,
+                },
+            };
+            engine.frame(f64::from(frame), jitter(frame), &blend)?;
+        }
+        if name == "64-frames" {
+            for n in 0..RAYS {
+                let blend = Blend {
+                    weight: 1.0 / (n as f32 + 1.0),
+                    follows: false,
+                    clips: false,
+                };
+                engine.frame(f64::from(FRAMES - 1), jitter(n), &blend)?;
+            }
+        }
+        let picture = engine.passes.read()?;
+        let path = format!("{folder}/deferred-{name}.png");
+        host::write_png(&path, &OPTIONS, &srgb(&picture))?;
+        println!("{path}");
+        pictures.push(picture);
+    }
+    let [with, without, truth] = pictures.try_into().map_err(|_| "three pictures")?;
+    let name = &device.report().name;
+    let [with, without] = [flip(&truth, &with)?, flip(&truth, &without)?];
+    println!(
+        "{name}: FLIP against {RAYS} frames: {with:.4} with motion vectors, {without:.4} without"
+    );
+    match host.take_messages().first() {
+        Some(message) => Err(message.clone().into()),
+        None => Ok(()),
+    }
+}
+
+/// Positions of samples in a pixel, from its centre (Halton's sequence of bases 2 and 3).
+fn jitter(frame: u32) -> DVec2 {
+    let radical = |base: u32| {
+        let (mut n, mut part, mut sum) = (frame + 1, 1.0, 0.0);
+        while n > 0 {
+            part /= f64::from(base);
+            sum += part * f64::from(n % base);
+            n /= base;
+        }
+        sum
+    };
+    DVec2::new(radical(2), radical(3)) - 0.5
+}
+
+struct Engine<'a> {
+    passes: Passes<'a>,
+    renderer: Renderer,
+    solids: Vec<ObjectId>,
+    meshes: [Mesh<'a>; 2],
+    last: Option<(View, DMat4)>,
+}
+
+impl<'a> Engine<'a> {
+    fn new(host: &'a Host, device: &gpu::Device) -> Fallible<Self> {
+        let planes = PlaneList::new(&passes::PLANES)?;
+        let begun = PassKind::Dynamic {
+            color: passes::FORMATS.to_vec(),
+            depth: host::DEPTH,
+            stencil: ash::vk::Format::UNDEFINED,
+        };
+        let output = Output::Pass(PassFormats::new(begun, Planes::List(planes)));
+        let mut renderer = Renderer::new(device, output, &SearchSettings::default(), 1)?;
+        let mut solids = Vec::new();
+        for (name, color, metalness) in [
+            ("king", [0.9, 0.7, 0.35], 1.0),
+            ("rook", [0.55, 0.15, 0.1], 0.0),
+            ("pawn", [0.8, 0.8, 0.75], 0.0),
+        ] {
+            let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
+            let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
+            let mut object = Object::new(name, profile);
+            object.color = color;
+            object.material = Some(Material {
+                roughness: 0.35,
+                metalness,
+            });
+            solids.push(renderer.add(object)?);
+        }
+        let middle = Vec3::new(-0.9, 0.35, 0.25);
+        Ok(Self {
+            passes: Passes::new(host, OPTIONS)?,
+            renderer,
+            solids,
+            meshes: [
+                Mesh::floor(host, 2.5, 0.0, Vec3::new(0.35, 0.33, 0.3))?,
+                Mesh::sphere(host, 48, middle, 0.25, Vec3::new(0.2, 0.35, 0.6))?,
+            ],
+            last: None,
+        })
+    }
+
+    /// One solid falls over as it slides, one swells, one moves across; the eye moves, too.
+    fn frame(&mut self, time: f64, jitter: DVec2, blend: &Blend) -> Fallible<()> {
+        let part = time / f64::from(FRAMES);
+        let turned = DQuat::from_rotation_y(1.2 * part);
+        let placements = [
+            (DVec3::new(-0.3 + 0.5 * part, -0.6, 0.0), turned),
+            (DVec3::new(0.1, 0.1, 0.0), DQuat::IDENTITY),
+            (DVec3::new(0.7 - 1.6 * part, 0.8, 0.0), DQuat::IDENTITY),
+        ];
+        for (id, (position, rotation)) in self.solids.iter().zip(placements) {
+            let placement = Placement {
+                position,
+                rotation,
+                ..Placement::default()
+            };
+            self.renderer.set_placement(*id, placement)?;
+        }
+        let mut offset = self.renderer.object(self.solids[1])?.offset;
+        offset.extend = 0.1 * part;
+        self.renderer.set_offset(self.solids[1], offset)?;
+
+        let eye = DVec3::new(3.0, 0.5 - 0.6 * part, 1.3);
+        let [view, projection] =
+            host::view_and_projection(eye, DVec3::new(0.0, 0.0, 0.4), &OPTIONS);
+        let size = DVec2::new(f64::from(OPTIONS.width), f64::from(OPTIONS.height));
+        let shift = 2.0 * jitter / size;
+        let jittered = DMat4::from_translation(shift.extend(0.0)) * projection;
+        let viewport = Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: size.x,
+            height: size.y,
+        };
+        let seen = View::from_matrices(view, jittered, viewport, DepthOrder::Normal)?;
+        let seen = seen.with_jitter(jitter.to_array());
+        let (last, last_clip) = self.last.unwrap_or((seen, projection * view));
+        let now = jittered * view;
+        let renderer = std::cell::RefCell::new(&mut self.renderer);
+        self.passes.frame(
+            now.as_mat4(),
+            &self.meshes,
+            |cmd| {
+                let mut renderer = renderer.borrow_mut();
+                // SAFETY: the passes have waited for the last frame; `cmd` is recording outside of
+                // one.
+                Ok(unsafe { renderer.prepare(cmd, 0, &seen.with_last(&last)) }?)
+            },
+            // SAFETY: the frame was prepared, and the pass is of the output's formats.
+            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
+            &passes::Lights {
+                world_from_clip: now.inverse().as_mat4(),
+                eye: eye.as_vec3(),
+                towards_sun: Vec3::new(0.5, -0.4, 0.7).normalize(),
+            },
+            &passes::Resolve {
+                last_from_clip: (last_clip * now.inverse()).as_mat4(),
+                jitter: jitter.as_vec2(),
+                blend: *blend,
+            },
+        )?;
+        self.renderer.end_frame();
+        self.last = Some((seen, projection * view));
+        Ok(())
+    }
+}
+
+/// The mean perceived difference of two pictures.
+fn flip(truth: &[Vec4], picture: &[Vec4]) -> Fallible<f32> {
+    let frame = |colors: &[Vec4]| {
+        let mut frame = Frame::new(OPTIONS.width, OPTIONS.height, [0.0; 4])?;
+        frame.color = colors.iter().map(Vec4::to_array).collect();
+        revmap::Result::Ok(frame)
+    };
+    let map = revmap_lab::compare::flip_map(&frame(truth)?, &frame(picture)?, PIXELS_PER_DEGREE);
+    Ok(map.iter().sum::<f32>() / map.len() as f32)
+}
+
+fn srgb(picture: &[Vec4]) -> Vec<u8> {
+    let byte =
+        |v: f32| (revmap::frame::srgb_from_linear(f64::from(v)).clamp(0.0, 1.0) * 255.0) as u8;
+    let bytes = |c: &Vec4| [byte(c.x), byte(c.y), byte(c.z), 255];
+    picture.iter().flat_map(bytes).collect()
+}

@@ -1,0 +1,19 @@
+#version 450
+// A mesh of the deferred host: position and normal.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(push_constant) uniform Pushed {
+    mat4 clip_from_world;
+    vec4 offset_scale; // world = offset + scale * position
+    vec4 color;
+} pushed;
+layout(location = 0) out vec3 color;
+layout(location = 1) out vec3 world_normal;
+
+void main()
+{
+    vec3 world = pushed.offset_scale.xyz + pushed.offset_scale.w * position;
+    gl_Position = pushed.clip_from_world * vec4(world, 1.0);
+    color = pushed.color.rgb;
+    world_normal = normal;
+}

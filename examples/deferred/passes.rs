@@ -1,0 +1,500 @@
+//! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
+
+use crate::host::memory::{HostBuffer, HostImage};
+use crate::host::{DEPTH, Fallible, Host, Mesh, Options, attachments};
+use ash::vk;
+use glam::{Mat4, Vec2, Vec3, Vec4};
+use revmap::settings::Plane;
+
+/// The planes of the G-buffer, and their formats.
+pub const PLANES: [Plane; 5] = [
+    Plane::BaseColor,
+    Plane::OctahedralNormal,
+    Plane::Material,
+    Plane::Motion,
+    Plane::Identity,
+];
+pub const FORMATS: [vk::Format; 5] = [
+    vk::Format::R8G8B8A8_SRGB,
+    vk::Format::R16G16_SFLOAT,
+    vk::Format::R8G8_UNORM,
+    vk::Format::R16G16_SFLOAT,
+    vk::Format::R32G32_UINT,
+];
+const PICTURE: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+type Layout = vk::ImageLayout;
+
+/// Inputs of light.comp.
+pub struct Lights {
+    pub world_from_clip: Mat4,
+    pub eye: Vec3,
+    pub towards_sun: Vec3,
+}
+
+/// How a frame is blended with the last picture.
+#[derive(Clone, Copy)]
+pub struct Blend {
+    pub weight: f32,
+    /// True to follow motion.
+    pub follows: bool,
+    /// True to keep the range of the neighbours.
+    pub clips: bool,
+}
+
+impl Blend {
+    /// Of a frame without one before.
+    pub const FIRST: Self = Self {
+        weight: 1.0,
+        follows: false,
+        clips: false,
+    };
+}
+
+/// Inputs of resolve.comp.
+pub struct Resolve {
+    pub last_from_clip: Mat4,
+    pub jitter: Vec2,
+    pub blend: Blend,
+}
+
+/// Push constants of all shaders.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Pushed {
+    matrix: [[f32; 4]; 4],
+    first: [f32; 4],
+    second: [f32; 4],
+}
+
+pub struct Passes<'a> {
+    options: Options,
+    planes: Vec<HostImage<'a>>,
+    depth: HostImage<'a>,
+    lit: HostImage<'a>,
+    /// The last picture and this one, in turn.
+    pictures: [HostImage<'a>; 2],
+    read: HostBuffer<'a>,
+    /// One for each order of the pictures.
+    sets: [vk::DescriptorSet; 2],
+    sampler: vk::Sampler,
+    set_layout: vk::DescriptorSetLayout,
+    layout: vk::PipelineLayout,
+    descriptors: vk::DescriptorPool,
+    mesh: vk::Pipeline,
+    light: vk::Pipeline,
+    resolve: vk::Pipeline,
+    pool: vk::CommandPool,
+    commands: vk::CommandBuffer,
+    frames: usize,
+    host: &'a Host,
+}
+
+impl<'a> Passes<'a> {
+    pub fn new(host: &'a Host, options: Options) -> Fallible<Self> {
+        use vk::ImageUsageFlags as U;
+        let sampled = |format| HostImage::with_usage(host, &options, format, 1, U::SAMPLED);
+        let stored = || HostImage::with_usage(host, &options, PICTURE, 1, U::STORAGE);
+        let planes = FORMATS.map(sampled).into_iter().collect::<Fallible<_>>()?;
+        let bytes = 16 * (options.width * options.height) as usize;
+        let null = vk::Pipeline::null();
+        let mut passes = Self {
+            planes,
+            depth: sampled(DEPTH)?,
+            lit: stored()?,
+            pictures: [stored()?, stored()?],
+            read: HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST)?,
+            options,
+            sets: [vk::DescriptorSet::null(); 2],
+            sampler: vk::Sampler::null(),
+            set_layout: vk::DescriptorSetLayout::null(),
+            layout: vk::PipelineLayout::null(),
+            descriptors: vk::DescriptorPool::null(),
+            mesh: null,
+            light: null,
+            resolve: null,
+            pool: vk::CommandPool::null(),
+            commands: vk::CommandBuffer::null(),
+            frames: 0,
+            host,
+        };
+        // SAFETY: plain creations, destroyed in Drop.
+        unsafe {
+            passes.make_sets()?;
+            passes.mesh = passes.mesh_pipeline()?;
+            passes.light = passes.compute(include_bytes!("light.comp.spv"))?;
+            passes.resolve = passes.compute(include_bytes!("resolve.comp.spv"))?;
+            let info = vk::CommandPoolCreateInfo::default()
+                .queue_family_index(host.family)
+                .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
+            passes.pool = host.device.create_command_pool(&info, None)?;
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(passes.pool)
+                .command_buffer_count(1);
+            passes.commands = host.device.allocate_command_buffers(&info)?[0];
+        }
+        Ok(passes)
+    }
+
+    unsafe fn make_sets(&mut self) -> Fallible<()> {
+        use vk::DescriptorType as T;
+        let kind = |n: u32| match n {
+            0..=5 => T::COMBINED_IMAGE_SAMPLER,
+            _ => T::STORAGE_IMAGE,
+        };
+        let bindings: Vec<_> = (0..9)
+            .map(|n| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(n)
+                    .descriptor_type(kind(n))
+                    .descriptor_count(1)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            })
+            .collect();
+        let raw = &self.host.device;
+        // SAFETY: plain creations; the images live as long as the sets.
+        unsafe {
+            self.sampler = raw.create_sampler(&vk::SamplerCreateInfo::default(), None)?;
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            self.set_layout = raw.create_descriptor_set_layout(&info, None)?;
+            let size = |ty, count| {
+                vk::DescriptorPoolSize::default()
+                    .ty(ty)
+                    .descriptor_count(count)
+            };
+            let sizes = [
+                size(T::COMBINED_IMAGE_SAMPLER, 12),
+                size(T::STORAGE_IMAGE, 6),
+            ];
+            let info = vk::DescriptorPoolCreateInfo::default()
+                .max_sets(2)
+                .pool_sizes(&sizes);
+            self.descriptors = raw.create_descriptor_pool(&info, None)?;
+            let layouts = [self.set_layout; 2];
+            let info = vk::DescriptorSetAllocateInfo::default()
+                .descriptor_pool(self.descriptors)
+                .set_layouts(&layouts);
+            let sets = raw.allocate_descriptor_sets(&info)?;
+            for (turn, &set) in sets.iter().enumerate() {
+                let storage = [&self.lit, &self.pictures[turn], &self.pictures[1 - turn]];
+                let images = self.planes.iter().chain([&self.depth]).chain(storage);
+                for (image, n) in images.zip(0u32..) {
+                    let layout = match n {
+                        0..=5 => Layout::SHADER_READ_ONLY_OPTIMAL,
+                        _ => Layout::GENERAL,
+                    };
+                    let named = [vk::DescriptorImageInfo::default()
+                        .image_view(image.view)
+                        .sampler(self.sampler)
+                        .image_layout(layout)];
+                    let write = vk::WriteDescriptorSet::default()
+                        .dst_set(set)
+                        .dst_binding(n)
+                        .descriptor_type(kind(n))
+                        .image_info(&named);
+                    raw.update_descriptor_sets(&[write], &[]);
+                }
+            }
+            self.sets = [sets[0], sets[1]];
+            let pushed = [vk::PushConstantRange::default()
+                .stage_flags(vk::ShaderStageFlags::COMPUTE | vk::ShaderStageFlags::VERTEX)
+                .size(size_of::<Pushed>() as u32)];
+            let info = vk::PipelineLayoutCreateInfo::default()
+                .set_layouts(&layouts[..1])
+                .push_constant_ranges(&pushed);
+            self.layout = raw.create_pipeline_layout(&info, None)?;
+        }
+        Ok(())
+    }
+
+    unsafe fn module(&self, bytes: &[u8]) -> Fallible<vk::ShaderModule> {
+        let words = ash::util::read_spv(&mut std::io::Cursor::new(bytes))?;
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are those of the shaders beside this file.
+        Ok(unsafe { self.host.device.create_shader_module(&info, None) }?)
+    }
+
+    unsafe fn compute(&self, bytes: &[u8]) -> Fallible<vk::Pipeline> {
+        let raw = &self.host.device;
+        // SAFETY: plain creations; the module is not needed once the pipeline is made.
+        unsafe {
+            let module = self.module(bytes)?;
+            let stage = vk::PipelineShaderStageCreateInfo::default()
+                .stage(vk::ShaderStageFlags::COMPUTE)
+                .module(module)
+                .name(c"main");
+            let info = [vk::ComputePipelineCreateInfo::default()
+                .stage(stage)
+                .layout(self.layout)];
+            let made = raw.create_compute_pipelines(vk::PipelineCache::null(), &info, None);
+            raw.destroy_shader_module(module, None);
+            Ok(made.map_err(|(_, code)| code)?[0])
+        }
+    }
+
+    unsafe fn mesh_pipeline(&self) -> Fallible<vk::Pipeline> {
+        let raw = &self.host.device;
+        let bindings = [vk::VertexInputBindingDescription::default().stride(24)];
+        let attribute = |n| {
+            vk::VertexInputAttributeDescription::default()
+                .location(n)
+                .format(vk::Format::R32G32B32_SFLOAT)
+                .offset(12 * n)
+        };
+        let attributes = [attribute(0), attribute(1)];
+        let input = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&bindings)
+            .vertex_attribute_descriptions(&attributes);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport = vk::PipelineViewportStateCreateInfo::default()
+            .viewport_count(1)
+            .scissor_count(1);
+        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let samples = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(true)
+            .depth_write_enable(true)
+            .depth_compare_op(vk::CompareOp::LESS);
+        let blends = [vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA); 5];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default()
+            .color_attachment_formats(&FORMATS)
+            .depth_attachment_format(DEPTH);
+        // SAFETY: plain creations; modules are not needed once the pipeline is made.
+        unsafe {
+            let modules = [
+                self.module(include_bytes!("mesh.vert.spv"))?,
+                self.module(include_bytes!("mesh.frag.spv"))?,
+            ];
+            let stage = |stage, module| {
+                vk::PipelineShaderStageCreateInfo::default()
+                    .stage(stage)
+                    .module(module)
+                    .name(c"main")
+            };
+            let stages = [
+                stage(vk::ShaderStageFlags::VERTEX, modules[0]),
+                stage(vk::ShaderStageFlags::FRAGMENT, modules[1]),
+            ];
+            let info = [vk::GraphicsPipelineCreateInfo::default()
+                .stages(&stages)
+                .vertex_input_state(&input)
+                .input_assembly_state(&assembly)
+                .viewport_state(&viewport)
+                .rasterization_state(&raster)
+                .multisample_state(&samples)
+                .depth_stencil_state(&depth)
+                .color_blend_state(&blend)
+                .dynamic_state(&dynamic)
+                .layout(self.layout)
+                .push_next(&mut rendering)];
+            let made = raw.create_graphics_pipelines(vk::PipelineCache::null(), &info, None);
+            for module in modules {
+                raw.destroy_shader_module(module, None);
+            }
+            Ok(made.map_err(|(_, code)| code)?[0])
+        }
+    }
+
+    /// Draws a frame and waits for it. `before` records outside of the pass; `within` draws into the
+    /// G-buffer what `before` returned.
+    pub fn frame<T>(
+        &mut self,
+        clip_from_world: Mat4,
+        meshes: &[Mesh<'_>],
+        before: impl FnOnce(vk::CommandBuffer) -> Fallible<T>,
+        within: impl FnOnce(vk::CommandBuffer, &T) -> Fallible<()>,
+        lights: &Lights,
+        resolve: &Resolve,
+    ) -> Fallible<()> {
+        let (raw, cmd, turn) = (&self.host.device, self.commands, self.frames % 2);
+        self.frames += 1;
+        let Blend {
+            weight,
+            follows,
+            clips,
+        } = resolve.blend;
+        let number = |yes: bool| f32::from(u8::from(yes));
+        let lit = Pushed {
+            matrix: lights.world_from_clip.to_cols_array_2d(),
+            first: lights.eye.extend(1.0).to_array(),
+            second: lights.towards_sun.extend(0.0).to_array(),
+        };
+        let [x, y] = resolve.jitter.to_array();
+        let blended = Pushed {
+            matrix: resolve.last_from_clip.to_cols_array_2d(),
+            first: [x, y, weight, number(follows)],
+            second: [number(clips), 0.0, 0.0, 0.0],
+        };
+        // SAFETY: the last frame was waited for; everything named lives as long as `self`.
+        unsafe {
+            raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
+            let prepared = before(cmd)?;
+            self.begin_pass(cmd);
+            raw.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.mesh);
+            for mesh in meshes {
+                let pushed = Pushed {
+                    matrix: clip_from_world.to_cols_array_2d(),
+                    first: mesh.offset_scale.to_array(),
+                    second: mesh.color.extend(1.0).to_array(),
+                };
+                self.push(cmd, &pushed);
+                raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
+                raw.cmd_draw(cmd, mesh.count, 1, 0, 0);
+            }
+            within(cmd, &prepared)?;
+            raw.cmd_end_rendering(cmd);
+            let drawn = self.planes.iter().chain([&self.depth]);
+            let read = drawn.map(|i| i.barrier(i.drawn(), Layout::SHADER_READ_ONLY_OPTIMAL));
+            let mut barriers: Vec<_> = read.collect();
+            barriers.push(self.lit.barrier(Layout::UNDEFINED, Layout::GENERAL));
+            let (last, now) = (&self.pictures[turn], &self.pictures[1 - turn]);
+            // The first frame gives the last picture no weight.
+            let known = if self.frames == 1 {
+                Layout::UNDEFINED
+            } else {
+                Layout::GENERAL
+            };
+            barriers.push(last.barrier(known, Layout::GENERAL));
+            barriers.push(now.barrier(Layout::UNDEFINED, Layout::GENERAL));
+            self.barrier(cmd, &barriers);
+            let point = vk::PipelineBindPoint::COMPUTE;
+            raw.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[self.sets[turn]], &[]);
+            for (pipeline, pushed) in [(self.light, &lit), (self.resolve, &blended)] {
+                raw.cmd_bind_pipeline(cmd, point, pipeline);
+                self.push(cmd, pushed);
+                let groups = |pixels: u32| pixels.div_ceil(8);
+                raw.cmd_dispatch(
+                    cmd,
+                    groups(self.options.width),
+                    groups(self.options.height),
+                    1,
+                );
+                self.barrier(cmd, &[]);
+            }
+            self.submit()
+        }
+    }
+
+    unsafe fn begin_pass(&self, cmd: vk::CommandBuffer) {
+        let raw = &self.host.device;
+        let drawn = self.planes.iter().chain([&self.depth]);
+        let begun: Vec<_> = drawn
+            .map(|i| i.barrier(Layout::UNDEFINED, i.drawn()))
+            .collect();
+        let attachment = |image: &HostImage, clear| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(image.drawn())
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .clear_value(clear)
+        };
+        let none = vk::ClearColorValue {
+            uint32: [u32::MAX; 4],
+        };
+        let zero = vk::ClearColorValue { float32: [0.0; 4] };
+        let colors: Vec<_> = (self.planes.iter().zip(FORMATS))
+            .map(|(image, format)| {
+                let color = if format == vk::Format::R32G32_UINT {
+                    none
+                } else {
+                    zero
+                };
+                attachment(image, vk::ClearValue { color })
+            })
+            .collect();
+        let depth_stencil = vk::ClearDepthStencilValue {
+            depth: 1.0,
+            stencil: 0,
+        };
+        let depth = attachment(&self.depth, vk::ClearValue { depth_stencil });
+        let info = vk::RenderingInfo::default()
+            .render_area(vk::Rect2D::default().extent(self.options.extent()))
+            .layer_count(1)
+            .color_attachments(&colors)
+            .depth_attachment(&depth);
+        // SAFETY: `cmd` is recording; the images live as long as `self`.
+        unsafe {
+            self.barrier(cmd, &begun);
+            raw.cmd_begin_rendering(cmd, &info);
+            attachments::set_viewport(self.host, cmd, &self.options);
+        }
+    }
+
+    unsafe fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
+        let stages = vk::ShaderStageFlags::COMPUTE | vk::ShaderStageFlags::VERTEX;
+        let bytes = bytemuck::bytes_of(pushed);
+        // SAFETY: `cmd` is recording; the range is the layout's.
+        unsafe {
+            self.host
+                .device
+                .cmd_push_constants(cmd, self.layout, stages, 0, bytes)
+        };
+    }
+
+    /// Records a barrier between all stages, and of these images.
+    unsafe fn barrier(&self, cmd: vk::CommandBuffer, images: &[vk::ImageMemoryBarrier]) {
+        let memory = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)];
+        let (all, none) = (
+            vk::PipelineStageFlags::ALL_COMMANDS,
+            vk::DependencyFlags::empty(),
+        );
+        let raw = &self.host.device;
+        // SAFETY: `cmd` is recording, outside of a pass.
+        unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &memory, &[], images) };
+    }
+
+    unsafe fn submit(&self) -> Fallible<()> {
+        let buffers = [self.commands];
+        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        let raw = &self.host.device;
+        // SAFETY: the commands are recording, outside of a pass.
+        unsafe {
+            raw.end_command_buffer(self.commands)?;
+            raw.queue_submit(self.host.queue, &submits, vk::Fence::null())?;
+            Ok(raw.queue_wait_idle(self.host.queue)?)
+        }
+    }
+
+    /// The last picture, linear.
+    pub fn read(&self) -> Fallible<Vec<Vec4>> {
+        let (raw, cmd) = (&self.host.device, self.commands);
+        let image = &self.pictures[self.frames % 2];
+        // SAFETY: the last frame was waited for.
+        unsafe {
+            raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
+            let region = [image.region(&self.options)];
+            let copied = Layout::TRANSFER_SRC_OPTIMAL;
+            self.barrier(cmd, &[image.barrier(Layout::GENERAL, copied)]);
+            raw.cmd_copy_image_to_buffer(cmd, image.raw, copied, self.read.raw, &region);
+            self.barrier(cmd, &[image.barrier(copied, Layout::GENERAL)]);
+            self.submit()?;
+        }
+        let colors: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read.bytes());
+        Ok(colors.into_iter().map(Vec4::from).collect())
+    }
+}
+
+impl Drop for Passes<'_> {
+    fn drop(&mut self) {
+        let raw = &self.host.device;
+        // SAFETY: every submission was waited for; null handles may be destroyed.
+        unsafe {
+            raw.destroy_command_pool(self.pool, None);
+            for pipeline in [self.mesh, self.light, self.resolve] {
+                raw.destroy_pipeline(pipeline, None);
+            }
+            raw.destroy_pipeline_layout(self.layout, None);
+            raw.destroy_descriptor_pool(self.descriptors, None);
+            raw.destroy_descriptor_set_layout(self.set_layout, None);
+            raw.destroy_sampler(self.sampler, None);
+        }
+    }
+}
