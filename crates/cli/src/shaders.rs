@@ -2,26 +2,15 @@
 
 mod techniques;
 
-use super::options::{ALIAS, named};
+use super::options::{MethodParser, named, searches};
 use super::output;
 use clap::Args;
 use revmap::gpu::DeviceReport;
 use revmap::gpu::compiler::{Executable, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
+use revmap_lab::method::Method;
 use serde_json::{Map, Value, json};
 use techniques::techniques;
-
-/// Names of the searches.
-const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 2] = {
-    let mut all = [("default", Solver::DEFAULT); revmap_searches::ALL.len() + 2];
-    all[1] = (ALIAS, Solver::Exact);
-    let mut i = 0;
-    while i < revmap_searches::ALL.len() {
-        all[i + 2] = (revmap_searches::ALL[i].name(), revmap_searches::ALL[i]);
-        i += 1;
-    }
-    all
-};
 
 /// Compiles what each stage, search and technique draws with, and prints what the driver's compiler
 /// says of it: registers, spills, instructions
@@ -38,9 +27,9 @@ pub struct Shaders {
     /// Stages that trace rays
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&DrawStage::NAMES))]
     stage: Vec<DrawStage>,
-    /// The searches [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
-    solver: Vec<Solver>,
+    /// The searches, and folders of other searches [default: all of revmap]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
+    solver: Vec<Method>,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
     /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
@@ -71,7 +60,7 @@ impl Shaders {
     pub fn run(self) -> revmap::Result<()> {
         let solvers = match self.solver.is_empty() {
             true => revmap_searches::ALL.to_vec(),
-            false => self.solver,
+            false => searches(&self.solver)?,
         };
         let compiler = PipelineCompiler::open(self.device.as_deref())?;
         let shaders = compiled(&compiler, &self.stage, &solvers)?;
