@@ -209,6 +209,7 @@ impl Session {
         let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
         let out = lists.folder(&machine.folder())?;
         overrun::keep_folder(&out);
+        overrun::try_out(lists.device.as_deref());
         if !lists.quiet {
             output::note(&format!("device: {name} ({kind}), driver {driver}"));
         }

@@ -2,9 +2,10 @@
 //! searches begins again without it, since nothing else ends a shader that runs.
 
 use super::output;
+use revmap_searches::folder;
 use revmap_searches::watchdog::{self, LEFT_OUT};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 /// Commands that begin again: they measure other searches too.
@@ -21,6 +22,38 @@ pub fn watch() {
 /// Notes the folder of results, which a run that begins again uses.
 pub fn keep_folder(out: &Path) {
     let _ = OUT.set(out.to_owned());
+}
+
+/// Draws a small picture by each search of a folder that was named, in a process of its own. A search
+/// that fails there, or whose shader makes the driver crash, is left out of the run.
+pub fn try_out(device: Option<&str>) {
+    for folder in folder::all() {
+        if watchdog::check(&folder.name()).is_err() {
+            continue;
+        }
+        let program = std::env::current_exe();
+        let mut command = program.map_or_else(|_| Command::new("revmap"), Command::new);
+        command
+            .args(["searches", &folder.spec])
+            .stdin(Stdio::null());
+        if let Some(device) = device {
+            command.args(["--device", device]);
+        }
+        let Ok(output) = command.output() else {
+            continue; // the run itself finds what is wrong
+        };
+        let said = String::from_utf8_lossy(&output.stderr);
+        let said = said.lines().last().unwrap_or_default();
+        let reason = match output.status.code() {
+            Some(0) => continue,
+            Some(_) => said.trim_start_matches("revmap: ").to_owned(),
+            None => format!(
+                "the driver crashed ({}) over a test picture by it; simplify its loop, or take another driver",
+                output.status
+            ),
+        };
+        watchdog::leave_out(folder.name(), reason);
+    }
 }
 
 /// True if this run began again, so that its folder of results may hold files of the first try.

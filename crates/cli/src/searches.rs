@@ -3,7 +3,12 @@
 use super::output;
 use clap::{Args, Subcommand};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::settings::Solver;
+use revmap::gpu::Device;
+use revmap::settings::{DrawStage, Solver};
+use revmap_files::SceneFile;
+use revmap_lab::compare::{CompareOptions, compare};
+use revmap_lab::method::MethodSettings;
+use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::glossary;
 use revmap_searches::ALL;
 use revmap_searches::folder::{self, Folder};
@@ -12,7 +17,8 @@ use std::path::{Path, PathBuf};
 
 /// Lists all searches: what each reads, its steps, its parameters, where it comes from
 ///
-/// With a folder: checks its search.toml, compiles its GLSL for both stages, and lists it.
+/// With a folder: checks its search.toml, compiles its GLSL, and draws a vase in both stages, compared
+/// with the reference.
 #[derive(Args)]
 #[command(
     args_conflicts_with_subcommands = true,
@@ -25,6 +31,10 @@ pub struct Searches {
     /// Folders of searches, with values of parameters as in ./mine:omega=1.2
     #[arg(value_name = "FOLDER")]
     folders: Vec<String>,
+    /// The Vulkan device that draws [default: the variable REVMAP_DEVICE, else discrete before
+    /// integrated before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME", requires = "folders")]
+    device: Option<String>,
     #[command(subcommand)]
     command: Option<New>,
 }
@@ -49,27 +59,57 @@ impl Searches {
         if let Some(New::New { name }) = &self.command {
             return new(name);
         }
+        if self.folders.is_empty() {
+            for solver in ALL.into_iter().rev() {
+                describe(solver)
+                    .iter()
+                    .for_each(|line| output::result(line));
+            }
+            return Ok(());
+        }
         let mut solvers = Vec::new();
         for name in &self.folders {
-            let folder = if folder::is_named(name) {
-                name.clone()
-            } else {
-                format!("./{name}")
-            };
-            let solver = folder::load(&folder)?;
+            let here = format!("./{name}");
+            let solver = folder::load(if folder::is_named(name) { name } else { &here })?;
             folder::compile(solver)?;
             solvers.push(solver);
         }
-        if solvers.is_empty() {
-            solvers.extend(ALL.iter().rev());
-        }
+        let device = MethodDevice::new(Device::open(self.device.as_deref())?)?;
         for solver in solvers {
             describe(solver)
                 .iter()
                 .for_each(|line| output::result(line));
+            for stage in [DrawStage::Fragment, DrawStage::Compute] {
+                let drawn = try_out(&device, solver, stage)?;
+                output::result(&format!("  {:<11} {drawn}", "drawn"));
+            }
         }
         Ok(())
     }
+}
+
+/// The outcome of a small picture in one stage.
+fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<String> {
+    let text = include_str!("../../../assets/scenes/vase.toml");
+    let scene = SceneFile::parse(text, ".")?.scene(&[])?;
+    let settings = MethodSettings::default().by(solver).in_stage(stage);
+    let settings = settings.sized(320, 240);
+    let frame = device.draw(&scene, &settings)?;
+    folder::check_frame(solver, &frame)?;
+    let truth = revmap_reference::draw(&scene, &(&settings).into(), &|_, _| {})?;
+    let errors = compare(&truth, &frame, &CompareOptions::of(1.0 / 512.0))?;
+    let hits = frame.distance.iter().zip(&frame.steps);
+    let hits = hits.filter(|(distance, _)| distance.is_finite());
+    let steps: Vec<f32> = hits.map(|(_, steps)| *steps).collect();
+    let mean = steps.iter().sum::<f32>() / steps.len().max(1) as f32;
+    Ok(format!(
+        "{}, a vase: {} pixels hit, {} missed, {} beside it, {mean:.1} steps each, {} out of steps",
+        stage.name(),
+        errors.hits,
+        errors.missed,
+        errors.ghost,
+        frame.exhausted
+    ))
 }
 
 /// The lines about a search.

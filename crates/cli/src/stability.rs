@@ -73,6 +73,7 @@ impl Stability {
             None => folder::fresh(Path::new("results"), &machine.folder())?,
         };
         overrun::keep_folder(&out);
+        overrun::try_out(self.device.as_deref());
         if !self.quiet {
             output::device(about);
         }

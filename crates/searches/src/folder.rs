@@ -23,6 +23,8 @@ use std::sync::Mutex;
 /// A search of a folder.
 #[derive(Clone, Debug)]
 pub struct Folder {
+    /// The name by which it was loaded.
+    pub spec: String,
     /// The folder, as it was named.
     pub path: PathBuf,
     /// Its description.
@@ -35,8 +37,8 @@ pub struct Folder {
     sources: Vec<(String, PathBuf, String)>,
 }
 
-/// Every search that was loaded: its name on the command line, the search, its folder.
-static LOADED: Mutex<Vec<(String, &'static Search, &'static Folder)>> = Mutex::new(Vec::new());
+/// Every search that was loaded, and its folder.
+static LOADED: Mutex<Vec<(&'static Search, &'static Folder)>> = Mutex::new(Vec::new());
 
 /// True if a solver's name is the path of a folder: it has a separator, or such a folder is there.
 #[must_use]
@@ -50,9 +52,9 @@ pub fn is_named(name: &str) -> bool {
 /// [`ErrorKind::File`] for a file that cannot be read, [`ErrorKind::Content`] for a fault of
 /// `search.toml`, [`ErrorKind::Usage`] for values of parameters.
 pub fn load(name: &str) -> Result<Solver> {
-    let known = |all: &[(String, &'static Search, _)]| {
-        let found = all.iter().rev().find(|(known, ..)| known == name);
-        found.map(|(_, search, _)| Solver::Other(search))
+    let known = |all: &[(&'static Search, &'static Folder)]| {
+        let found = all.iter().rev().find(|(_, folder)| folder.spec == name);
+        found.map(|(search, _)| Solver::Other(search))
     };
     match LOADED.lock().ok().and_then(|all| known(&all)) {
         Some(solver) => Ok(solver),
@@ -68,7 +70,7 @@ pub fn reload(name: &str) -> Result<Solver> {
     let folder: &'static Folder = Box::leak(Box::new(Folder::read(name)?));
     let search: &'static Search = Box::leak(Box::new(folder.search()));
     if let Ok(mut all) = LOADED.lock() {
-        all.push((name.to_owned(), search, folder));
+        all.push((search, folder));
     }
     Ok(Solver::Other(search))
 }
@@ -80,7 +82,7 @@ pub fn of(solver: Solver) -> Option<&'static Folder> {
         return None;
     };
     let all = LOADED.lock().ok()?;
-    let found = all.iter().find(|(_, known, _)| *known == search);
+    let found = all.iter().find(|(known, _)| *known == search);
     found.map(|(.., folder)| *folder)
 }
 
@@ -161,6 +163,7 @@ impl Folder {
         }
         let hash = hash.value();
         Ok(Self {
+            spec: name.to_owned(),
             path,
             manifest,
             values,

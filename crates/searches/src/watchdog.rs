@@ -5,8 +5,8 @@
 use crate::folder;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
-use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
 /// The default limit, seconds.
@@ -23,20 +23,36 @@ pub type Handler = fn(&str, &str);
 
 static HANDLER: OnceLock<Handler> = OnceLock::new();
 
+/// Searches not to draw by, each with the reason.
+static OUT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
+
+/// Draws no more frames by the search of this name.
+pub fn leave_out(name: String, reason: String) {
+    if let Ok(mut out) = OUT.lock() {
+        out.push((name, reason));
+    }
+}
+
 /// Sets the handler, which should not return. Without one the process ends with exit code 1.
 pub fn set_handler(handler: Handler) {
     let _ = HANDLER.set(handler);
 }
 
-/// Fails for a search that [`LEFT_OUT`] names.
+/// Fails for a search that is [left out](leave_out), or that [`LEFT_OUT`] names.
 ///
 /// # Errors
 /// [`ErrorKind::Other`], with the reason.
 pub fn check(name: &str) -> Result<()> {
     let named = std::env::var(LEFT_OUT).unwrap_or_default();
     let mut lines = named.lines().filter_map(|line| line.split_once('\t'));
-    match lines.find(|(known, _)| *known == name) {
-        Some((_, reason)) => Err(Error::new(ErrorKind::Other, reason)),
+    let named = lines.find(|(known, _)| *known == name);
+    let reason = named.map(|(_, reason)| reason.to_owned()).or_else(|| {
+        let out = OUT.lock().ok()?;
+        let found = out.iter().find(|(known, _)| known == name);
+        found.map(|(_, reason)| reason.clone())
+    });
+    match reason {
+        Some(reason) => Err(Error::new(ErrorKind::Other, reason)),
         None => Ok(()),
     }
 }
