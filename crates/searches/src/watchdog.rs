@@ -9,11 +9,15 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
 
-/// The default limit, seconds.
-pub const SECONDS: u64 = 10;
+/// The variable that sets another limit of a frame, and of a table's program, than ten seconds.
+pub const LIMIT: &str = "REVMAP_TIME_LIMIT";
 
-/// The variable that sets another limit.
-pub const LIMIT: &str = "REVMAP_FRAME_SECONDS";
+/// The limit.
+#[must_use]
+pub fn limit() -> Duration {
+    let set = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
+    Duration::from_secs(set.unwrap_or(10))
+}
 
 /// The variable that names searches not to draw by, a line each: a name, a tab, the reason.
 pub const LEFT_OUT: &str = "REVMAP_LEFT_OUT";
@@ -68,17 +72,16 @@ pub fn watched<T>(solver: Option<Solver>, draw: impl FnOnce() -> Result<T>) -> R
     };
     let name = folder.name();
     check(&name)?;
-    let limit = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
-    let limit = limit.unwrap_or(SECONDS);
     let (done, wait) = channel::<()>();
     let own = name.clone();
     let watch = std::thread::spawn(move || {
-        let ended = wait.recv_timeout(Duration::from_secs(limit));
+        let ended = wait.recv_timeout(limit());
         if ended == Err(RecvTimeoutError::Timeout) {
             overrun(
                 &own,
                 &format!(
-                    "a frame by {own} took more than {limit} seconds: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}"
+                    "a frame by {own} took more than {} seconds: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}",
+                    limit().as_secs()
                 ),
             );
         }

@@ -2,19 +2,18 @@
 //! standard output.
 
 use super::Folder;
+use crate::watchdog::limit;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::search::SearchTable;
 use revmap::surface::{Chain, Contour};
 use shaderc_link::modules::Fnv;
 use std::fmt::Write as _;
 use std::io::{Read, Write};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::Mutex;
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// The longest time of a program.
-const SECONDS: u64 = 10;
 /// The most numbers of a table.
 const NUMBERS: usize = 1 << 22;
 /// The most bytes that are read of them.
@@ -99,23 +98,21 @@ fn run(folder: &Folder, words: &[String], input: String) -> std::result::Result<
     let output = read(child.stdout.take(), BYTES);
     let complaint = read(child.stderr.take(), 1 << 16);
     let begin = Instant::now();
-    let left = || Duration::from_secs(SECONDS).saturating_sub(begin.elapsed());
-    let text = output.recv_timeout(left());
+    let text = output.recv_timeout(limit());
     let status = loop {
+        let late = text.is_err() || begin.elapsed() > limit();
+        let large = text.as_ref().is_ok_and(|text| text.len() > BYTES);
         match child.try_wait() {
-            Ok(Some(status)) if text.is_ok() => break status,
-            Ok(None) | Ok(Some(_))
-                if left().is_zero() || text == Err(RecvTimeoutError::Timeout) =>
-            {
-                end(&mut child);
-                return Err(format!("took more than {SECONDS} seconds and was ended"));
-            }
-            Ok(_) => std::thread::sleep(Duration::from_millis(2)),
+            Ok(Some(status)) if !late && !large => break status,
             Err(e) => return Err(format!("was lost ({e})")),
-        }
-        if text.as_ref().is_ok_and(|text| text.len() > BYTES) {
-            end(&mut child);
-            return Err(format!("wrote more than {} MB", BYTES >> 20));
+            Ok(None) if !late && !large => std::thread::sleep(Duration::from_millis(2)),
+            Ok(_) => {
+                let _ = child.kill().and_then(|()| child.wait());
+                return Err(match large {
+                    true => format!("wrote more than {} MB", BYTES >> 20),
+                    false => format!("took more than {} seconds and was ended", limit().as_secs()),
+                });
+            }
         }
     };
     if !status.success() {
@@ -132,16 +129,8 @@ fn run(folder: &Folder, words: &[String], input: String) -> std::result::Result<
     String::from_utf8(text.unwrap_or_default()).map_err(|_| "wrote what is no text".to_owned())
 }
 
-fn end(child: &mut Child) {
-    let _ = child.kill();
-    let _ = child.wait();
-}
-
 /// Reads a pipe on a thread of its own, up to one byte more than allowed.
-fn read(
-    pipe: Option<impl Read + Send + 'static>,
-    most: usize,
-) -> std::sync::mpsc::Receiver<Vec<u8>> {
+fn read(pipe: Option<impl Read + Send + 'static>, most: usize) -> Receiver<Vec<u8>> {
     let (send, receive) = channel();
     std::thread::spawn(move || {
         let mut bytes = Vec::new();
