@@ -86,6 +86,13 @@ pub fn of(solver: Solver) -> Option<&'static Folder> {
     found.map(|(.., folder)| *folder)
 }
 
+/// The search that was loaded last.
+#[must_use]
+pub fn latest() -> Option<Solver> {
+    let all = LOADED.lock().ok()?;
+    all.last().map(|(search, _)| Solver::Other(search))
+}
+
 /// The folders of all searches that were loaded.
 #[must_use]
 pub fn all() -> Vec<&'static Folder> {

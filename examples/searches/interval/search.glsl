@@ -29,11 +29,10 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
             segment *= 2.0;
         } else if (segment > least) {
             segment *= 0.5;
-        } else if (f <= 0.5 * spread) {
-            s = 0.5 * (s + to);
-            found = true; // lavapipe 22 crashes over `break` here
         } else {
-            s = to; // passed the surface at less than a texel
+            // Too short to halve: a hit if its middle is in the solid.
+            found = f <= 0.0; // lavapipe 22 crashes over `break` here
+            s = found ? 0.5 * (s + to) : to;
         }
     }
     return found ? FOUND : s >= m.s_end ? LEFT : f < object.map.z ? NEARLY : EXHAUSTED;
