@@ -102,11 +102,12 @@ fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<St
     let hits = hits.filter(|(distance, _)| distance.is_finite());
     let steps: Vec<f32> = hits.map(|(_, steps)| *steps).collect();
     let mean = steps.iter().sum::<f32>() / steps.len().max(1) as f32;
+    let depth = errors.depth.map_or(f64::NAN, |depth| depth.p99);
     Ok(format!(
-        "{}, a vase: {} pixels hit, {} missed, {} beside it, {mean:.1} steps each, {} out of steps",
+        "{}, a vase: {} of {} pixels missed, {} beside it, depth within {depth:.2} texels in 99 %; {mean:.1} steps each, {} pixels out of steps",
         stage.name(),
-        errors.hits,
         errors.missed,
+        errors.hits,
         errors.ghost,
         frame.exhausted
     ))

@@ -9,6 +9,7 @@ use revmap::gpu::DeviceReport;
 use revmap::gpu::compiler::{Executable, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::Method;
+use revmap_searches::folder;
 use serde_json::{Map, Value, json};
 use techniques::techniques;
 
@@ -58,10 +59,23 @@ const SHOWN: [&str; 9] = [
 
 impl Shaders {
     pub fn run(self) -> revmap::Result<()> {
-        let solvers = match self.solver.is_empty() {
+        let mut solvers = match self.solver.is_empty() {
             true => revmap_searches::ALL.to_vec(),
             false => searches(&self.solver)?,
         };
+        // A folder with a fault costs the others nothing.
+        let mut failed = Ok(());
+        solvers.retain(|&solver| match folder::compile(solver) {
+            Ok(()) => true,
+            Err(error) => {
+                output::warn(&format!("{solver} was left out: {error}"));
+                failed = Err(error);
+                false
+            }
+        });
+        if solvers.is_empty() {
+            return failed;
+        }
         let compiler = PipelineCompiler::open(self.device.as_deref())?;
         let shaders = compiled(&compiler, &self.stage, &solvers)?;
         let device = &compiler.report;

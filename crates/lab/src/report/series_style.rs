@@ -43,10 +43,13 @@ fn of_folder(search: &'static Search) -> (&'static str, Marker, Dash) {
     let own = folder::of(Solver::Other(search)).map(Folder::name);
     let all = folder::all();
     let place = all.iter().position(|f| Some(f.name()) == own);
-    match place.unwrap_or(0) % 3 {
+    match place.unwrap_or(0) % 6 {
         0 => (color::PURPLE, Marker::DIAMOND, Dash::LONG),
         1 => (color::BLUE, Marker::STAR, Dash::DASH_DOT),
-        _ => (color::GREY, Marker::HEXAGRAM, Dash::SHORT),
+        2 => (color::GREY, Marker::HEXAGRAM, Dash::SHORT),
+        3 => (color::BLACK, Marker::SQUARE, Dash::DOTS),
+        4 => (color::GREEN, Marker::RIGHT, Dash::SHORT),
+        _ => (color::PURPLE, Marker::LEFT, Dash::DOTS),
     }
 }
 
