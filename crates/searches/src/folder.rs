@@ -68,6 +68,13 @@ pub fn load(name: &str) -> Result<Solver> {
 /// The errors of [`load`].
 pub fn reload(name: &str) -> Result<Solver> {
     let folder: &'static Folder = Box::leak(Box::new(Folder::read(name)?));
+    let twin = |other: &&Folder| other.name() == folder.name() && other.path != folder.path;
+    if let Some(other) = all().into_iter().find(twin) {
+        let other = other.path.display();
+        let message = format!("name: is that of {other} too; give each folder a name of its own");
+        let file = folder.path.join(manifest::FILE);
+        return Err(Error::new(ErrorKind::Content, message).in_file(file));
+    }
     let search: &'static Search = Box::leak(Box::new(folder.search()));
     if let Ok(mut all) = LOADED.lock() {
         all.push((search, folder));

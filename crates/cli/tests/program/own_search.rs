@@ -143,6 +143,88 @@ fn examples_draw_a_vase_as_the_reference_does() {
     device.check().unwrap();
 }
 
+/// Searches on the library's patches, and on a picture of solid texels.
+#[test]
+fn patches_and_binary_maps_are_read() {
+    let patches = TOML
+        .replace("'map'", "'patches'")
+        .replace("[steps]\ndefault = 64\n", "");
+    let patches = Own::new(
+        &patches.replace("'mine'", "'tree'"),
+        "uint search(Meridian m, float side, inout float s, inout uint steps, out vec4 quadric)
+{
+    return search_quadric(m, side, vec2(-1e30, 1e30), s, steps, quadric);
+}",
+    );
+    let binary = Own::new(
+        &TOML
+            .replace("'map'", "'binary map'")
+            .replace("'mine'", "'halved'"),
+        &format!(
+            "{HEAD}{{
+    float before = 0.0;
+    bool found = false;
+    for (int i = 1; i < 200 && !found; ++i) {{
+        s = m.s_end * float(i) / 200.0;
+        found = solid(point_rz(m, s)) == (side > 0.0);
+        before = found ? before : s;
+        ++steps;
+    }}
+    for (int i = 0; i < 8; ++i) {{
+        float middle = 0.5 * (before + s);
+        bool within = solid(point_rz(m, middle)) == (side > 0.0);
+        before = within ? before : middle;
+        s = within ? middle : s;
+    }}
+    return found ? FOUND : LEFT;
+}}"
+        ),
+    );
+    let device = Device::open_validated(None).unwrap();
+    let load = |own: &Own| folder::load(own.bench.path("mine").to_str().unwrap()).unwrap();
+    let [patches_of, binary_of] = [load(&patches), load(&binary)];
+    for stage in STAGES {
+        for sets in [&[][..], &["object.0.bevel=0.2"]] {
+            let truth = drawn(&device, Solver::Quadric, stage, sets);
+            let errors = |solver| {
+                let frame = drawn(&device, solver, stage, sets);
+                compare(&truth, &frame, &CompareOptions::of(1.0 / 512.0)).unwrap()
+            };
+            let [exact, near] = [errors(patches_of), errors(binary_of)];
+            println!("{exact:?}\n{near:?}");
+            assert_eq!(exact.missed + exact.ghost, 0);
+            assert!(exact.depth.unwrap().max < 0.1);
+            assert!(near.missed + near.ghost < near.hits / 30, "{near:?}");
+            assert!(near.depth.unwrap().p99 < 6.0, "{near:?}");
+        }
+    }
+    device.check().unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn the_example_with_a_table_draws_its_solid() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        println!("no python3: not tested");
+        return;
+    }
+    let bench = Bench::new();
+    let solver = repository("examples/searches/frusta");
+    bench.done(&format!(
+        "render scene.toml --size 160x120 -o a.exr --solver {solver}"
+    ));
+    bench.done("render scene.toml --size 160x120 -o b.exr --stage reference");
+    let said = bench.said("compare b.exr a.exr --json");
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let number = |key: &str| said[key].as_f64().unwrap();
+    let wrong = number("missed") + number("ghost");
+    assert!(
+        wrong < number("hits") / 100.0 && number("depth_p99_texels") < 0.01,
+        "{said}"
+    );
+}
+
 /// A search that the program compiles is drawn as one that was compiled with it.
 #[test]
 fn a_copy_of_a_built_in_search_draws_the_same_bits() {
