@@ -269,10 +269,14 @@ impl App {
                         state.search.solver = new;
                     }
                 }
+                output::note(&format!("{new} was read again: the window draws by it"));
                 self.version += 1;
                 self.problem = None;
             }
-            Err(error) => self.problem = Some(error.to_string()),
+            Err(error) => {
+                output::warn(&error.to_string());
+                self.problem = Some(error.to_string());
+            }
         }
     }
 

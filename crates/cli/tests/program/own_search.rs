@@ -143,6 +143,52 @@ fn examples_draw_a_vase_as_the_reference_does() {
     device.check().unwrap();
 }
 
+/// The steps of docs/your-own-search.md, with its own GLSL.
+#[test]
+fn the_page_leads_to_a_search_that_is_right() {
+    let page = std::fs::read_to_string(repository("docs/your-own-search.md")).unwrap();
+    let blocks: Vec<&str> = page
+        .split("```glsl\n")
+        .skip(1)
+        .map(|b| b.split("```").next().unwrap())
+        .collect();
+    let bench = Bench::new();
+    bench.done("searches new mine");
+    let template = String::from_utf8(bench.read("mine/search.glsl")).unwrap();
+    let head = template.split("{\n").next().unwrap();
+    let (hasty, loop_of) = (blocks[0], blocks[1]);
+    let [from, to] = ["    for (int i", "        s -= gap"].map(|text| hasty.find(text).unwrap());
+    let right = format!("{}{loop_of}{}", &hasty[..from], &hasty[to..]);
+    let tried = |body: Option<&str>, factor: &str| {
+        if let Some(body) = body {
+            bench.file("mine/search.glsl", format!("{head}{{\n{body}}}\n"));
+        }
+        let said = bench.said(&format!("searches ./mine:factor={factor}"));
+        let line = said
+            .lines()
+            .find(|l| l.contains("fragment, a vase"))
+            .unwrap()
+            .to_owned();
+        let number = |before: &str| -> f64 {
+            let words = line.split(before).nth(1).unwrap().split_whitespace();
+            words.take(1).collect::<String>().parse().unwrap()
+        };
+        (number("vase: "), number("depth within "))
+    };
+    let [first, long, hasty, right] = [
+        (None, "1"),
+        (None, "1.6"),
+        (Some(hasty), "1.6"),
+        (Some(&*right), "1.6"),
+    ]
+    .map(|(b, f)| tried(b, f));
+    println!("{first:?} {long:?} {hasty:?} {right:?}");
+    assert!(first.0 < 60.0 && first.1 < 0.5);
+    assert!(long.0 > 1000.0 && long.1 > 100.0);
+    assert!(hasty.0 < 60.0 && hasty.1 > 5.0);
+    assert!(right.0 < 60.0 && right.1 < 0.5);
+}
+
 /// Searches on the library's patches, and on a picture of solid texels.
 #[test]
 fn patches_and_binary_maps_are_read() {
