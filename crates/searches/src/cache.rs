@@ -17,7 +17,7 @@ pub fn folder() -> Option<PathBuf> {
     Some(base.join("revmap"))
 }
 
-/// The content of a file that [`write`] wrote; `None` if it is absent or damaged.
+/// The content of a file that [`write()`] wrote; `None` if it is absent or damaged.
 #[must_use]
 pub fn read(file: &Path) -> Option<Vec<u8>> {
     let bytes = fs::read(file).ok()?;
