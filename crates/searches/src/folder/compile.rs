@@ -213,13 +213,13 @@ mod compiler {
         let level = OptimizationLevel::Performance;
         let made = spirv(&compiler, (entry, text), &module.macros(), level, include);
         let made =
-            made.map_err(|e| Error::new(ErrorKind::Content, told(folder, &e.to_string())))?;
+            made.map_err(|e| Error::new(ErrorKind::Content, message(folder, &e.to_string())))?;
         Ok(made.as_binary().to_vec())
     }
 
     /// The compiler's first error in a file of the folder, as `file:line: text`. An error elsewhere
     /// means that the folder's function does not fit.
-    fn told(folder: &Folder, text: &str) -> String {
+    fn message(folder: &Folder, text: &str) -> String {
         let lines = || {
             let all = text.lines().filter(|line| line.contains("error:"));
             all.map(|line| {
