@@ -5,7 +5,8 @@
 //! crate `revmap-searches` and use this interface. A [`Search`] is plain data and two functions:
 //! one makes its table, if it reads one, the other returns its SPIR-V. Pass it as
 //! [`Solver::Other`](crate::settings::Solver::Other) wherever a [`Solver`](crate::settings::Solver)
-//! is expected. A search made at run time can be leaked.
+//! is expected. A search made at run time can be leaked; `revmap_searches::folder` does so with
+//! searches that it reads from folders.
 //!
 //! # Its GLSL
 //!
@@ -33,7 +34,8 @@ use crate::surface::Contour;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// A search of another crate. Two searches of one name are equal.
+/// A search of another crate. Two searches are equal if they are one value, in one place: a search
+/// that was read again is another.
 pub struct Search {
     /// Name in options and results.
     pub name: &'static str,
@@ -146,7 +148,7 @@ pub struct SearchTable {
 
 impl PartialEq for Search {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
+        std::ptr::eq(self, other)
     }
 }
 
@@ -154,7 +156,7 @@ impl Eq for Search {}
 
 impl Hash for Search {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.name.hash(state);
+        std::ptr::hash(self, state);
     }
 }
 

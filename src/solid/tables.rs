@@ -2,7 +2,7 @@
 
 use crate::search::SearchTable;
 use crate::shader::generated::{LISTED_PATCHES, PATCH_ROWS};
-use crate::surface::{GpuPatch, QuadricPatch, Tables};
+use crate::surface::{Contour, FitOptions, GpuPatch, QuadricPatch, Tables, fit_patches};
 
 /// A table that may be stored anywhere in a buffer.
 pub(crate) struct GpuTables {
@@ -55,6 +55,17 @@ impl GpuTables {
             own: table.vectors.len(),
             facts: table.facts,
         }
+    }
+}
+
+impl SearchTable {
+    /// The library's own patches of a solid with its offset, exact, in the layout of
+    /// `core/patch_tables.glsl`. GLSL searches them with `search/quadric.glsl`.
+    #[must_use]
+    pub fn of_patches(contour: &Contour) -> Self {
+        let patches = fit_patches(contour, &FitOptions::default());
+        let GpuTables { vectors, facts, .. } = GpuTables::patches(&patches);
+        Self { vectors, facts }
     }
 }
 

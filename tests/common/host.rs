@@ -1,6 +1,6 @@
 //! The host of `examples/engine` for tests, opened with the validation layers and lent to the
 //! library.
-#![allow(unsafe_code, missing_docs, clippy::unwrap_used)]
+#![allow(unsafe_code, missing_docs, dead_code, clippy::unwrap_used)] // each crate of tests takes what it needs
 
 #[path = "../../examples/engine/host/mod.rs"]
 #[allow(dead_code, unused_imports)]

@@ -3,8 +3,8 @@
 use super::interrupt;
 use super::lists::Lists;
 use super::options::named;
-use super::output;
 use super::progress::Progress;
+use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
@@ -19,6 +19,7 @@ use revmap_lab::report::pictures::{Album, Sheets};
 use revmap_lab::report::plan::{Labels, Plan, PlanFile, embedded};
 use revmap_lab::report::report::Run;
 use revmap_lab::report::{DeviceBench, compare_runs, folder};
+use revmap_searches::folder::of as of_folder;
 use std::path::PathBuf;
 
 /// Plans of other techniques.
@@ -207,6 +208,8 @@ impl Session {
         let (name, kind, driver) = (&report.name, report.kind, &report.driver);
         let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
         let out = lists.folder(&machine.folder())?;
+        overrun::keep_folder(&out);
+        overrun::try_out(lists.device.as_deref());
         if !lists.quiet {
             output::note(&format!("device: {name} ({kind}), driver {driver}"));
         }
@@ -300,6 +303,16 @@ impl Session {
                 for warning in revmap_files::warnings(&view.scene, width, height) {
                     output::warn(&format!("{}: {warning}", view.name));
                 }
+            }
+        }
+        // What the device or the scene excludes is in the report alone.
+        let mut failed = Vec::new();
+        for (case, reason) in &measured.left_out {
+            let method = case.settings.method;
+            if method.solver().and_then(of_folder).is_some() && !failed.contains(&(method, reason))
+            {
+                failed.push((method, reason));
+                output::warn(&format!("{method} was left out: {reason}"));
             }
         }
         let (report, rows) = (self.out.join("report.html"), measured.rows.len());

@@ -1,6 +1,7 @@
 //! Options that take several values, of which every combination is measured.
 
 use super::options::{MethodParser, STAGES, Tracing, named, size, tolerance};
+use super::overrun;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
@@ -32,7 +33,8 @@ pub struct Lists {
     /// Stages in which rays are traced [default: fragment,compute]
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', value_parser = named(&STAGES))]
     pub stage: Vec<Tracing>,
-    /// The searches, meshes among them [default: those worth choosing between; all with --full]
+    /// The searches, meshes among them, and folders of other searches [default: those worth choosing
+    /// between; all with --full]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
     pub solver: Vec<Method>,
     /// Bounds on the searches' steps [default: each solver's own]
@@ -139,7 +141,8 @@ impl Lists {
             file.scene(&self.set)?;
             inputs.extend(file.files().map(Path::to_path_buf));
         }
-        folder::claim(out, self.overwrite, inputs.iter().map(PathBuf::as_path))?;
+        let overwrite = self.overwrite || overrun::is_again();
+        folder::claim(out, overwrite, inputs.iter().map(PathBuf::as_path))?;
         Ok(out.clone())
     }
 

@@ -15,10 +15,12 @@ mod levels;
 mod lists;
 mod options;
 mod output;
+mod overrun;
 mod pipelines;
 mod progress;
 mod render;
 mod samples;
+mod searches;
 mod shaders;
 mod shell;
 mod stability;
@@ -57,6 +59,7 @@ enum Command {
     Chart(chart::Chart),
     Stability(stability::Stability),
     Shaders(shaders::Shaders),
+    Searches(searches::Searches),
     Devices(devices::Devices),
     Compare(compare::Compare),
     View(view::View),
@@ -74,6 +77,7 @@ impl Command {
             Self::Chart(command) => command.run(),
             Self::Stability(command) => command.run(),
             Self::Shaders(command) => command.run(),
+            Self::Searches(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::View(command) => command.run(),
@@ -91,6 +95,7 @@ fn main() -> ExitCode {
         Ok(program) => program,
         Err(error) => return usage::report(&error),
     };
+    overrun::watch();
     // If RUST_BACKTRACE is set, the usual panic message is kept. Otherwise a bug is one line too,
     // below.
     if std::env::var_os("RUST_BACKTRACE").is_none() {

@@ -3,11 +3,13 @@
 use super::pipelines::{self, Kept};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use revmap::error::{Error, ErrorKind};
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_lab::method::{Edges, Method, MethodSettings};
+use revmap_searches::folder;
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
@@ -53,7 +55,8 @@ pub struct Drawing {
     /// precision
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = named(&STAGES))]
     pub stage: Tracing,
-    /// Search for the first hit along a ray
+    /// Search for the first hit along a ray; or the folder of another search, as in
+    /// path/to/folder or path/to/folder:parameter=1.5
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = MethodParser)]
     pub solver: Method,
     /// Bound on the search's steps [default: the solver's own]
@@ -189,7 +192,9 @@ impl TypedValueParser for MethodParser {
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
     ) -> Result<Method, clap::Error> {
-        let own = |text: &str| text.starts_with("mesh") || text == Method::Floor.name();
+        let own = |text: &str| {
+            text.starts_with("mesh") || text == Method::Floor.name() || folder::is_named(text)
+        };
         if value.to_str().is_some_and(own) {
             let method = |text: &str| text.parse::<Method>();
             return method.parse_ref(command, argument, value);
@@ -204,9 +209,23 @@ impl TypedValueParser for MethodParser {
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let names = SOLVERS.iter().map(|(name, _)| *name);
         let names = names.filter(|name| *name != ALIAS);
-        let all = names.chain(["mesh:SEGMENTSxRINGS", Method::Floor.name()]);
+        let all = names.chain(["mesh:SEGMENTSxRINGS", Method::Floor.name(), "FOLDER"]);
         Some(Box::new(all.map(PossibleValue::new)))
     }
+}
+
+/// The searches among methods.
+///
+/// # Errors
+/// [`ErrorKind::Usage`] for a mesh and for the floor.
+pub fn searches(methods: &[Method]) -> revmap::Result<Vec<Solver>> {
+    let search = |method: &Method| {
+        method.solver().ok_or_else(|| {
+            let message = format!("{method} is no search; give searches");
+            Error::new(ErrorKind::Usage, message).at_key("--solver")
+        })
+    };
+    methods.iter().map(search).collect()
 }
 
 /// A tolerance in pixels.

@@ -15,6 +15,7 @@ use revmap_files::SceneFile;
 use revmap_lab::method::{Edges, Method, MethodSettings};
 use revmap_lab::renderer::MethodDevice;
 use revmap_reference as reference;
+use revmap_searches::folder;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -73,7 +74,9 @@ impl Render {
         let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         // Searches that run out of steps are counted beside the planes; such pixels cause a
         // warning.
-        let counted = self.drawing.solver.may_run_out() && !self.drawing.quiet;
+        let solver = self.drawing.solver;
+        let other = solver.solver().filter(|s| folder::of(*s).is_some());
+        let counted = (solver.may_run_out() || other.is_some()) && !self.drawing.quiet;
         let planes = match floats || self.drawing.verbose || self.json || counted {
             true => Planes::All,
             false => Planes::Color,
@@ -93,6 +96,8 @@ impl Render {
         };
         picture.warnings = self.drawing.warnings(&scene);
         picture.warnings.extend(exhausted(&picture.frame));
+        let faults = other.and_then(|s| folder::check_frame(s, &picture.frame).err());
+        picture.warnings.extend(faults.map(|e| e.to_string()));
         let writing = Instant::now();
         for file in &self.output {
             write(&picture.frame, file)?;

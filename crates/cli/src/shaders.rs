@@ -2,26 +2,16 @@
 
 mod techniques;
 
-use super::options::{ALIAS, named};
+use super::options::{MethodParser, named, searches};
 use super::output;
 use clap::Args;
 use revmap::gpu::DeviceReport;
 use revmap::gpu::compiler::{Executable, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
+use revmap_lab::method::Method;
+use revmap_searches::folder;
 use serde_json::{Map, Value, json};
 use techniques::techniques;
-
-/// Names of the searches.
-const SOLVERS: [(&str, Solver); revmap_searches::ALL.len() + 2] = {
-    let mut all = [("default", Solver::DEFAULT); revmap_searches::ALL.len() + 2];
-    all[1] = (ALIAS, Solver::Exact);
-    let mut i = 0;
-    while i < revmap_searches::ALL.len() {
-        all[i + 2] = (revmap_searches::ALL[i].name(), revmap_searches::ALL[i]);
-        i += 1;
-    }
-    all
-};
 
 /// Compiles what each stage, search and technique draws with, and prints what the driver's compiler
 /// says of it: registers, spills, instructions
@@ -38,9 +28,9 @@ pub struct Shaders {
     /// Stages that trace rays
     #[arg(long, value_name = "STAGE,...", value_delimiter = ',', default_values = ["fragment", "compute"], value_parser = named(&DrawStage::NAMES))]
     stage: Vec<DrawStage>,
-    /// The searches [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named(&SOLVERS))]
-    solver: Vec<Solver>,
+    /// The searches, and folders of other searches [default: all of revmap]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
+    solver: Vec<Method>,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
     /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
@@ -69,10 +59,23 @@ const SHOWN: [&str; 9] = [
 
 impl Shaders {
     pub fn run(self) -> revmap::Result<()> {
-        let solvers = match self.solver.is_empty() {
+        let mut solvers = match self.solver.is_empty() {
             true => revmap_searches::ALL.to_vec(),
-            false => self.solver,
+            false => searches(&self.solver)?,
         };
+        // A folder with a fault costs the others nothing.
+        let mut failed = Ok(());
+        solvers.retain(|&solver| match folder::compile(solver) {
+            Ok(()) => true,
+            Err(error) => {
+                output::warn(&format!("{solver} was left out: {error}"));
+                failed = Err(error);
+                false
+            }
+        });
+        if solvers.is_empty() {
+            return failed;
+        }
         let compiler = PipelineCompiler::open(self.device.as_deref())?;
         let shaders = compiled(&compiler, &self.stage, &solvers)?;
         let device = &compiler.report;

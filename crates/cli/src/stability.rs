@@ -1,13 +1,14 @@
 //! `revmap stability`: the cases in which methods fail.
 
 use super::interrupt;
-use super::options::{MethodParser, SOLVERS};
-use super::output;
+use super::lists::Lists;
+use super::options::{MethodParser, searches};
 use super::progress::Progress;
+use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
-use revmap::settings::{Solver, name_of};
+use revmap::settings::Solver;
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
@@ -28,7 +29,7 @@ pub struct Stability {
     /// Names of cases [default: all]
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// The searches [default: circle, live, quadric and the default]
+    /// The searches, and folders of other searches [default: circle, live, quadric and the default]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
     solver: Vec<Method>,
     /// The first and the last scene of each case, by the RBM baseline and the default alone
@@ -63,14 +64,16 @@ impl Stability {
         let device = Device::open(self.device.as_deref())?;
         let about = device.report();
         let (name, kind, driver) = (&about.name, about.kind, &about.driver);
-        let machine = Machine::here(name, kind, driver, output::VERSION, &self.command());
+        let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
         let out = match &self.out {
             Some(out) => {
-                folder::claim(out, self.overwrite, [])?;
+                folder::claim(out, self.overwrite || overrun::is_again(), [])?;
                 out.clone()
             }
             None => folder::fresh(Path::new("results"), &machine.folder())?,
         };
+        overrun::keep_folder(&out);
+        overrun::try_out(self.device.as_deref());
         if !self.quiet {
             output::device(about);
         }
@@ -98,6 +101,9 @@ impl Stability {
         ];
         for table in tables.iter().flatten() {
             table.aligned().lines().for_each(output::result);
+        }
+        for line in report::errors(&outcome) {
+            output::warn(&line);
         }
         let (page, count) = (out.join("report.html"), outcome.trials.len());
         output::result(&format!("{}: {count} pictures", page.display()));
@@ -151,29 +157,6 @@ impl Stability {
                 false => USUAL.to_vec(),
             });
         }
-        let search = |method: &Method| {
-            method.solver().ok_or_else(|| {
-                let message = format!("{method} is no search; give searches");
-                Error::new(ErrorKind::Usage, message).at_key("--solver")
-            })
-        };
-        self.solver.iter().map(search).collect()
-    }
-
-    /// The command that makes the results again.
-    fn command(&self) -> String {
-        let mut words = vec!["revmap stability".to_owned()];
-        words.extend(self.cases.iter().cloned());
-        if !self.solver.is_empty() {
-            let names: Vec<_> = self.solver.iter().map(|m| name_of(&SOLVERS, m)).collect();
-            words.push(format!("--solver {}", names.join(",")));
-        }
-        if self.quick {
-            words.push("--quick".into());
-        }
-        if let Some(count) = self.random {
-            words.push(format!("--random {count} --seed {}", self.seed));
-        }
-        words.join(" ")
+        searches(&self.solver)
     }
 }

@@ -3,6 +3,7 @@
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
+use revmap_searches::folder;
 use std::fmt;
 use std::str::FromStr;
 
@@ -162,8 +163,10 @@ impl FromStr for Method {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if let Ok(solver) = revmap_searches::named(text) {
-            return Ok(Self::Search(solver));
+        match revmap_searches::named(text) {
+            Ok(solver) => return Ok(Self::Search(solver)),
+            Err(error) if folder::is_named(text) => return Err(error),
+            Err(_) => {}
         }
         match text {
             "mesh:levels" => return Ok(Self::MeshLevels),
@@ -178,8 +181,9 @@ impl FromStr for Method {
             return Self::mesh(segments, rings);
         }
         let known = revmap_searches::ALL.map(Solver::name).join(", ");
-        let message =
-            format!("{text:?} is no search; give one of {known}, a mesh as mesh:64x128, or floor");
+        let message = format!(
+            "{text:?} is no search; give one of {known}, the folder of another, a mesh as mesh:64x128, or floor"
+        );
         Err(Error::new(ErrorKind::Usage, message))
     }
 }

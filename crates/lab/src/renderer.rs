@@ -7,7 +7,9 @@ use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::{Device, Guest, Offscreen, OffscreenOptions, Times};
 use revmap::scene::Scene;
-use revmap::settings::Settings;
+use revmap::settings::{Settings, Solver};
+use revmap_searches::folder::check_scene;
+use revmap_searches::watchdog::watched;
 use std::sync::{Arc, OnceLock};
 
 /// A device, and what drawing by any method shares on it.
@@ -35,6 +37,8 @@ impl MethodDevice {
     /// As [`Offscreen::new`]; [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) and
     /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content) for what a mesh does not draw.
     pub fn renderer(&self, scene: &Scene, settings: &MethodSettings) -> Result<MethodRenderer> {
+        let solver = settings.method.solver();
+        solver.map_or(Ok(()), |s| check_scene(s, scene))?;
         let options = OffscreenOptions {
             guests_only: settings.method.is_mesh(),
             samples: settings.edges.samples(),
@@ -49,7 +53,11 @@ impl MethodDevice {
             new.update(scene, || Ok(*offscreen.view()))?;
             meshes = Some(Box::new(new));
         }
-        Ok(MethodRenderer { meshes, offscreen })
+        Ok(MethodRenderer {
+            meshes,
+            offscreen,
+            solver,
+        })
     }
 
     fn device_of(&self, scene: &Scene, method: Method) -> Result<&Device> {
@@ -83,11 +91,14 @@ pub struct MethodRenderer {
     meshes: Option<Box<MeshLayer>>,
     /// What draws a search, and tells of it; of meshes it has none of the scene's objects.
     pub offscreen: Box<Offscreen>,
+    /// The search that draws; `None` for meshes and for the floor.
+    solver: Option<Solver>,
 }
 
 impl MethodRenderer {
     /// Takes over a scene.
     pub fn update(&mut self, scene: &Scene) -> Result<()> {
+        self.solver.map_or(Ok(()), |s| check_scene(s, scene))?;
         match &mut self.meshes {
             None => self.offscreen.update(scene),
             Some(meshes) => meshes.update(scene, || {
@@ -100,7 +111,7 @@ impl MethodRenderer {
     /// Draws one frame and waits for it.
     pub fn draw(&mut self) -> Result<Times> {
         let guest = self.meshes.as_deref().map(|meshes| meshes as &dyn Guest);
-        let times = self.offscreen.draw_with(guest)?;
+        let times = watched(self.solver, || self.offscreen.draw_with(guest))?;
         self.meshes.iter_mut().for_each(|m| m.drop_staging());
         Ok(times)
     }

@@ -25,49 +25,22 @@
 
 mod surface;
 
-use crate::map::LICENCE;
-use crate::modules::words;
 use glam::DVec2;
 use revmap::error::Result;
-use revmap::search::{Reads, Search, SearchTable, Steps};
-use revmap::settings::Solver;
+use revmap::search::SearchTable;
 use revmap::surface::Contour;
 use surface::{Row, Surface};
 
-/// Cone step mapping on a row of cones along the axis, for profiles that are single-valued in z (`r
-/// <= f(z)`); others are an error.
-pub const CONE: Solver = Solver::Other(&CONE_SEARCH);
+/// The table of `cone`.
+pub(crate) fn rows(contour: &Contour, rows: u32) -> Result<SearchTable> {
+    Ok(Cones::new(contour, rows)?.table())
+}
 
-/// Cone step mapping with relaxed cones, followed by halvings, as the papers list it. These cones
-/// are wider, and a step may end inside the solid. The search misses some surfaces.
-pub const RELAXED: Solver = Solver::Other(&RELAXED_SEARCH);
-
-static CONE_SEARCH: Search = Search {
-    name: "cone",
-    about: "steps by a row of cones along the axis; for solids single-valued in height",
-    source: "J. Dummer: Cone step mapping: an iterative ray-heightfield intersection algorithm. 2006",
-    licence: LICENCE,
-    reads: Reads::Table(&|contour, rows| Ok(Cones::new(contour, rows)?.table())),
-    steps: None,
-    form: 0,
-    words: words!("cone.glsl"),
-};
-
-static RELAXED_SEARCH: Search = Search {
-    name: "relaxed",
-    about: "the same with relaxed cones, which a step may leave inside the solid, and halvings back",
-    source: "F. Policarpo, M. M. Oliveira: Relaxed cone stepping for relief mapping. GPU Gems 3, chapter 18, 2007",
-    licence: LICENCE,
-    reads: Reads::Table(&|contour, rows| Ok(Cones::relaxed(contour, rows)?.table())),
-    steps: Some(Steps {
-        default: 64,
-        beveled: 64,
-        most: Steps::MOST,
-        may_run_out: true,
-    }),
-    form: 0,
-    words: words!("relaxed.glsl"),
-};
+/// The table of `relaxed`. These cones are wider, and a step may end inside the solid: the search
+/// misses some surfaces.
+pub(crate) fn relaxed_rows(contour: &Contour, rows: u32) -> Result<SearchTable> {
+    Ok(Cones::relaxed(contour, rows)?.table())
+}
 
 /// The rows of a cone map; the [module](self) documents their layout.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -132,7 +105,7 @@ impl Cones {
         })
     }
 
-    /// The table in the layout of `shaders/cone_rows.glsl`.
+    /// The table in the layout of `published/cone/cone_rows.glsl`.
     fn table(&self) -> SearchTable {
         SearchTable {
             vectors: self.rows.iter().map(|r| r.map(f32::to_bits)).collect(),

@@ -1,6 +1,10 @@
-//! Published searches for comparison with those of [`revmap`].
+//! Published searches for comparison with those of [`revmap`], and searches of other people's
+//! folders.
 //!
-//! Every search has a [`Search`] of plain data, its GLSL in `shaders/`, and a [`Solver`]:
+//! A search is a **folder** with a `search.toml`, which describes it, and a GLSL file with one
+//! function. The searches of this crate are the folders of `published/`, compiled when the crate is
+//! built. Every other folder is read by [`folder::load`] and compiled at run time (feature
+//! `shaderc`). `docs/your-own-search.md` explains both files.
 //!
 //! | search | reads | source |
 //! |---|---|---|
@@ -14,13 +18,16 @@
 //! assert_eq!(ALL.len(), 9); // with the library's own three
 //! ```
 
+pub mod cache;
 pub mod cones;
+pub mod folder;
 mod list;
-mod map;
+pub mod manifest;
 mod modules;
+mod published;
+pub mod watchdog;
 
-pub use cones::{CONE, RELAXED};
-pub use map::{CIRCLE, LINEAR, RELIEF, SECANT};
+pub use published::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
 use revmap::error::Result;
 use revmap::search as module;
@@ -42,12 +49,16 @@ pub const ALL: [Solver; 9] = [
     Solver::ALL[2],
 ];
 
-/// The search of this name.
+/// The search of this name, or of the folder at this path ([`folder::load`]).
 ///
 /// # Errors
-/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) if there is none.
+/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) if there is none; those of
+/// [`folder::load`].
 pub fn named(name: &str) -> Result<Solver> {
-    Solver::named(name, &ALL)
+    match Solver::named(name, &ALL) {
+        Err(_) if folder::is_named(name) => folder::load(name),
+        found => found,
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::module::{Features, Output, Pass, SearchModule};
 /// A module of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Listed {
-    /// The search's file in `shaders/`.
+    /// The search's file in `published/`.
     pub hook: &'static str,
     /// The module.
     pub module: SearchModule,
@@ -16,7 +16,7 @@ impl Listed {
     /// The module's name, for build scripts and tests.
     #[allow(dead_code)]
     pub fn name(&self) -> String {
-        let search = self.hook.trim_end_matches(".glsl");
+        let search = self.hook.trim_end_matches("/search.glsl");
         format!("{search}.{}", self.module.name())
     }
 }
@@ -45,13 +45,13 @@ pub fn modules() -> Vec<Listed> {
                 beveled: false,
                 ..plain
             };
-            all.push(listed("circle.glsl", unbeveled));
-            for hook in ["circle.glsl", "linear.glsl"] {
+            all.push(listed("circle/search.glsl", unbeveled));
+            for hook in ["circle/search.glsl", "linear/search.glsl"] {
                 all.push(listed(hook, plain));
                 all.extend(full(plain).map(|full| listed(hook, full)));
             }
         }
-        for (hook, bounded) in [("cone.glsl", false), ("relaxed.glsl", true)] {
+        for (hook, bounded) in [("cone/search.glsl", false), ("relaxed/search.glsl", true)] {
             let plain = SearchModule {
                 table: true,
                 bounded,

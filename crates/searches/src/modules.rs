@@ -20,7 +20,7 @@ pub mod generated {
     }
 }
 
-/// The modules of a file of `shaders/`.
+/// The modules of a file of `published/`.
 macro_rules! words {
     ($hook:literal) => {
         $crate::modules::embedded(&|module| $crate::modules::found($hook, module))

@@ -249,7 +249,8 @@ fn compiler() -> Fallible<u64> {
     Ok(hash.0)
 }
 
-struct Fnv(u64);
+/// FNV-1a, a hash of 64 bits.
+pub struct Fnv(u64);
 
 impl Default for Fnv {
     fn default() -> Self {
@@ -258,7 +259,20 @@ impl Default for Fnv {
 }
 
 impl Fnv {
-    fn add(&mut self, bytes: &[u8]) {
+    /// The hash of some parts, one after another.
+    pub fn of<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> u64 {
+        let mut hash = Self::default();
+        parts.into_iter().for_each(|part| hash.add(part));
+        hash.0
+    }
+
+    /// The hash of what was added.
+    pub fn value(&self) -> u64 {
+        self.0
+    }
+
+    /// Adds bytes.
+    pub fn add(&mut self, bytes: &[u8]) {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }

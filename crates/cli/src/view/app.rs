@@ -8,15 +8,18 @@ use super::picture::Painter;
 use super::reload::Reload;
 use super::shown::{Inspected, Shown};
 use super::times::Times;
-use super::{View, keys, overlay, saved};
+use super::{View, keys, overlay, saved, search_reload};
 use crate::output;
 use eframe::egui::{
     Color32, Context, Event, Id, MouseWheelUnit, Panel, PointerButton, Popup, RawInput, Rect,
     ScrollArea, Sense, Shape, Ui, Vec2, ViewportCommand, pos2,
 };
 use revmap::error::Result;
+use revmap::settings::Solver;
 use revmap_files::{Picture, SceneFile};
+use revmap_searches::folder;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 /// Width of the panel at the start, points.
@@ -42,6 +45,8 @@ pub struct App {
     pub(super) painter: Painter,
     #[cfg(feature = "shaderc")]
     reload: Option<Reload>,
+    /// The search of a folder, after each change of its files.
+    search: Option<Receiver<Result<Solver>>>,
     times: Times,
     /// Time that the last frame took for its picture, milliseconds.
     drawing_ms: f64,
@@ -81,6 +86,7 @@ impl App {
             changing: None,
             #[cfg(feature = "shaderc")]
             reload: None,
+            search: None,
             times,
             drawing_ms: 0.0,
             problem: None,
@@ -101,6 +107,7 @@ impl App {
         if let Some(folder) = &self.options.watch_shaders {
             self.reload = Some(Reload::new(folder, context.clone()));
         }
+        self.search = search_reload::watch(self.options.solver, context.clone());
         let (width, height) = self.options.size;
         let size = Vec2::new(width as f32, height as f32) / context.pixels_per_point();
         context.send_viewport_cmd(ViewportCommand::InnerSize(size));
@@ -248,6 +255,31 @@ impl App {
         }
     }
 
+    /// Draws by the folder's search as it is now; the former one stays if the new one has a fault.
+    fn reload_search(&mut self) {
+        let Some(changed) = self.search.as_ref().and_then(|s| s.try_recv().ok()) else {
+            return;
+        };
+        match changed {
+            Ok(new) => {
+                let spec = |solver| folder::of(solver).map(|folder| &folder.spec);
+                let states = self.undo.iter_mut();
+                for state in states.chain([&mut self.first, &mut self.shown, &mut self.before]) {
+                    if spec(state.search.solver) == spec(new) {
+                        state.search.solver = new;
+                    }
+                }
+                output::note(&format!("{new} was read again: the window draws by it"));
+                self.version += 1;
+                self.problem = None;
+            }
+            Err(error) => {
+                output::warn(&error.to_string());
+                self.problem = Some(error.to_string());
+            }
+        }
+    }
+
     /// Draws with changed shaders when they compile. Returns the state of their compilation.
     #[cfg(feature = "shaderc")]
     fn reload_shaders(&mut self) -> &'static str {
@@ -290,6 +322,7 @@ impl eframe::App for &mut App {
         let whole = context.content_rect();
         let background = ui.painter().add(Shape::Noop);
         let shaders = self.reload_shaders();
+        self.reload_search();
         let words = self.painter.words.clone();
         let covered = self.controls(ui, [&words, shaders]);
         if context.will_discard() {

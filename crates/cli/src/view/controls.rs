@@ -7,6 +7,7 @@ use revmap::gpu::DrawPath;
 use revmap::maps::Projection;
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Tolerance};
+use revmap_searches::folder;
 
 /// Information that the controls show besides values.
 pub struct Told<'a> {
@@ -166,7 +167,8 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
 }
 
 fn how(ui: &mut Ui, search: &mut SearchSettings) -> bool {
-    let solvers = revmap_searches::ALL.map(|s| (s.name(), s));
+    let solvers = revmap_searches::ALL.into_iter().chain(folder::latest());
+    let solvers: Vec<_> = solvers.map(|s| (s.name(), s)).collect();
     let mut changed = choice(ui, "solver", &mut search.solver, &solvers);
     let [a, b, c] = revmap_files::MAP_SOURCES.map(|(name, source)| (name, Some(source)));
     let sources = [("best", None), a, b, c];

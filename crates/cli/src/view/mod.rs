@@ -12,6 +12,7 @@ mod picture;
 #[cfg(feature = "shaderc")]
 mod reload;
 mod saved;
+mod search_reload;
 mod shown;
 mod times;
 
@@ -39,7 +40,8 @@ pub struct View {
     /// Stage that traces rays
     #[arg(long, value_name = "STAGE", default_value = "fragment", value_parser = super::options::named(&DrawStage::NAMES))]
     stage: DrawStage,
-    /// Search for the first hit along a ray
+    /// Search for the first hit along a ray; or the folder of another search, which is read again
+    /// when a file of it changes
     #[arg(long, value_name = "NAME", default_value = "exact", value_parser = revmap_searches::named)]
     solver: Solver,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact

@@ -13,6 +13,7 @@ use revmap::settings::Settings;
 use revmap_files::Picture;
 use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_lab::report::pictures::steps;
+use revmap_searches::watchdog::watched;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
@@ -175,7 +176,7 @@ impl Painter {
                 made
             }
         };
-        let times = offscreen.draw()?;
+        let times = watched(Some(settings.solver), || offscreen.draw())?;
         self.draw_paths = offscreen.draw_paths();
         let (_, offscreen) = self.offscreen.insert((settings, offscreen));
         Ok((offscreen, times))

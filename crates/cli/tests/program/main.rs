@@ -6,6 +6,8 @@ mod bad_input;
 mod bench_command;
 mod bench_compare;
 mod command_line;
+#[cfg(feature = "shaderc")]
+mod own_search;
 mod pictures;
 mod run;
 mod shaders_command;

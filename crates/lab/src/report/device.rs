@@ -10,6 +10,7 @@ use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap_reference as reference;
+use revmap_searches::folder::check_frame;
 use std::time::Instant;
 
 /// A Vulkan device to measure on.
@@ -117,6 +118,8 @@ impl Bench for DeviceBench {
                 ..empty
             };
         }
+        let solver = settings.method.solver();
+        solver.map_or(Ok(()), |s| check_frame(s, &frame))?;
         Ok((frame, renderer.map_bytes().iter().sum()))
     }
 

@@ -6,6 +6,7 @@ use super::plan::{RBM_BASELINE, is_rbm_baseline};
 use super::row::Row;
 use crate::method::Method;
 use revmap::settings::Solver;
+use revmap_searches::folder;
 
 /// The meaning of a method's name.
 pub fn meaning(method: Method) -> &'static str {
@@ -49,6 +50,15 @@ pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
     for method in Method::ALL {
         if occurs(&|r| r.settings.method == method && !is_rbm_baseline(&r.settings)) {
             all.push((method.name(), meaning(method).to_owned()));
+        }
+    }
+    for row in rows {
+        let method = row.settings.method;
+        if let Some(folder) = method.solver().and_then(folder::of)
+            && all.iter().all(|(name, _)| *name != method.name())
+        {
+            let about = format!("{} ({})", meaning(method), folder.origin());
+            all.push((method.name(), about));
         }
     }
     let mesh = rows.iter().map(|r| r.settings.method).find(|s| s.is_mesh());

@@ -40,6 +40,8 @@ impl Machine {
             ("program", format!("revmap {version}")),
             ("command", command.to_owned()),
         ];
+        let others = revmap_searches::folder::all().into_iter();
+        lines.extend(others.map(|f| ("search", format!("{}: {}", f.name(), f.origin()))));
         lines.retain(|(_, which)| !which.is_empty());
         Self {
             device: device.to_owned(),

@@ -20,7 +20,7 @@ pub mod exhibit;
 pub mod flight;
 pub mod folder;
 mod framing;
-mod glossary;
+pub mod glossary;
 mod growth;
 pub mod machine;
 pub mod map_error;

@@ -6,8 +6,10 @@ use super::plan::{Labels, is_rbm_baseline};
 use super::row::Row;
 use crate::method::{Method, MethodSettings};
 use revmap::maps::MapSource;
+use revmap::search::Search;
 use revmap::settings::{DrawStage, Solver};
 use revmap_files::{BINARY, COVERAGE};
+use revmap_searches::folder::{self, Folder};
 
 /// How a method looks in the fragment stage, meshes of every fineness alike. The default stands
 /// out; searches of one family have one colour: equal steps, and cones.
@@ -20,7 +22,7 @@ fn search(method: Method) -> Style {
             "circle" => (color::ORANGE, Marker::PLUS, Dash::DOTS),
             "cone" => (color::PURPLE, Marker::CROSS, Dash::SHORT),
             "relaxed" => (color::PURPLE, Marker::HEXAGRAM, Dash::DOTS),
-            _ => (color::PURPLE, Marker::DIAMOND, Dash::LONG),
+            _ => of_folder(search),
         },
         Method::Search(Solver::Live) => (color::SKY, Marker::UP, Dash::DASH_DOT),
         Method::Search(Solver::Quadric) => (color::GREEN, Marker::DOWN, Dash::LONG),
@@ -33,6 +35,21 @@ fn search(method: Method) -> Style {
         dash,
         heavy: method == Method::DEFAULT,
         ..Style::new(color, marker)
+    }
+}
+
+/// The looks of searches of other people's folders, in the order in which they were loaded.
+fn of_folder(search: &'static Search) -> (&'static str, Marker, Dash) {
+    let own = folder::of(Solver::Other(search)).map(Folder::name);
+    let all = folder::all();
+    let place = all.iter().position(|f| Some(f.name()) == own);
+    match place.unwrap_or(0) % 6 {
+        0 => (color::PURPLE, Marker::DIAMOND, Dash::LONG),
+        1 => (color::BLUE, Marker::STAR, Dash::DASH_DOT),
+        2 => (color::GREY, Marker::HEXAGRAM, Dash::SHORT),
+        3 => (color::BLACK, Marker::SQUARE, Dash::DOTS),
+        4 => (color::GREEN, Marker::RIGHT, Dash::SHORT),
+        _ => (color::PURPLE, Marker::LEFT, Dash::DOTS),
     }
 }
 

@@ -15,6 +15,7 @@ use crate::report::series_style;
 use crate::report::table::Table;
 use revmap::error::Result;
 use revmap::settings::{DrawStage, Solver};
+use revmap_searches::folder;
 use std::path::Path;
 
 /// What shares of faults are drawn at where there are none, percent.
@@ -95,6 +96,20 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
         format!("{name} at {value}, {}: {what}", t.stage.name())
     };
     outcome.trials.iter().filter(is_failure).map(line).collect()
+}
+
+/// The errors of searches of other people's folders, each once.
+pub fn errors(outcome: &Outcome) -> Vec<String> {
+    let mut all = Vec::new();
+    for trial in &outcome.trials {
+        if let (Err(error), Some(_)) = (&trial.judged, folder::of(trial.solver)) {
+            let line = format!("{} failed: {error}", trial.solver);
+            if !all.contains(&line) {
+                all.push(line);
+            }
+        }
+    }
+    all
 }
 
 /// `results.csv`: a record for each trial.
@@ -178,6 +193,7 @@ pub fn write(
     write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
     page.facts(&machine.lines);
+    errors(outcome).iter().for_each(|line| page.note(line));
     page.text(
         "Each case is a scene in which methods break, swept over the parameter that decides. A fault is a pixel that no solid within the tolerance could have given, a \
          number that is none, a ray out of steps, a colour that the reference does not have there, or a pixel in which both stages differ. The table has the worst \

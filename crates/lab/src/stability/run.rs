@@ -11,6 +11,8 @@ use revmap::gpu::{Device, Offscreen};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_files::Picture;
+use revmap_searches::folder::{check_frame, check_scene};
+use revmap_searches::watchdog::watched;
 use std::collections::HashMap;
 use std::path::Path;
 use std::time::Instant;
@@ -233,11 +235,13 @@ fn draw(
         solver,
         ..step.settings
     };
+    check_scene(solver, scene)?;
     let mut offscreen = Offscreen::new(device, scene, &settings)?;
     for _ in 0..step.frame {
-        offscreen.draw()?;
+        watched(Some(solver), || offscreen.draw())?;
     }
     let frame = offscreen.read()?;
+    check_frame(solver, &frame)?;
     drop(offscreen);
     device.check()?;
     Ok(frame)

@@ -2,7 +2,7 @@
 // wide as lets a ray come out of the surface no sooner than it leaves them. So a step may end within, and is halved
 // then. The cones assume rays that are straight in the half-plane and come from far off the axis. Rays here are
 // neither, so the search passes surfaces (docs/searches.md).
-#include "cone_rows.glsl"
+#include "cone/cone_rows.glsl"
 
 const int HALVINGS_OF_CONES = 12;
 

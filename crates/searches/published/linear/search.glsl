@@ -2,7 +2,7 @@
 // nothing (`linear`), halvings (`relief`, Policarpo et al. 2005) or secants (`secant`, interval mapping, Risser et al.
 // 2006). Not safe: what is thinner than a step is stepped over.
 
-// SEARCH_FORM, as src/linear.rs has it; else nothing follows.
+// SEARCH_FORM, the key `form` of search.toml; else nothing follows.
 const uint HALVINGS = 1u;
 const uint SECANTS = 2u;
 

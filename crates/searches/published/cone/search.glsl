@@ -1,5 +1,5 @@
 // Cone step mapping: the walk of cone_rows.glsl from either side of the surface.
-#include "cone_rows.glsl"
+#include "cone/cone_rows.glsl"
 
 uint search(Meridian m, float side, inout float s, inout uint steps, out vec4 quadric)
 {
