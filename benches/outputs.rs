@@ -3,7 +3,7 @@
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 #[path = "../tests/common/host.rs"]
-#[allow(dead_code, unused_imports)]
+#[allow(unused_imports)]
 mod host;
 
 use ash::vk;

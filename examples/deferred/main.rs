@@ -4,11 +4,11 @@
 //!
 //! `cargo run --release --example deferred -- out` writes the last frame of a movement with and
 //! without motion vectors, and the mean of 64 jittered frames of that moment, as PNG files into
-//! `out/`.
+//! `out/`; `deferred.png` has a part of each side by side, enlarged.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
 #[path = "../engine/host/mod.rs"]
-#[allow(dead_code, unused_imports)] // the forward host takes the rest
+#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // the forward host takes the rest
 mod host;
 mod passes;
 
@@ -41,10 +41,19 @@ const PIXELS_PER_DEGREE: f64 = 67.0;
 /// The weight of a new frame.
 const WEIGHT: f32 = 0.12;
 
+#[allow(dead_code)] // a test calls `run`
 fn main() -> Fallible<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
-    std::fs::create_dir_all(&folder)?;
     let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
+    let [with, without] = run(&folder, validate)?;
+    println!("FLIP against {RAYS} frames: {with:.4} with motion vectors, {without:.4} without");
+    Ok(())
+}
+
+/// Draws all pictures into a folder. Returns how far those with and without motion vectors are from
+/// the mean of many frames.
+pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
+    std::fs::create_dir_all(folder)?;
     let host = Host::open(validate, |instance, physical| {
         // SAFETY: both are live.
         let needs = unsafe { Requirements::of(instance, physical) }?;
@@ -63,6 +72,7 @@ fn main() -> Fallible<()> {
             pipeline_cache: None,
         })
     }?;
+    println!("{}", device.report().name);
     let mut pictures = Vec::new();
     for name in ["with-motion", "without-motion", "64-frames"] {
         let mut engine = Engine::new(&host, &device)?;
@@ -94,14 +104,19 @@ fn main() -> Fallible<()> {
         pictures.push(picture);
     }
     let [with, without, truth] = pictures.try_into().map_err(|_| "three pictures")?;
-    let name = &device.report().name;
-    let [with, without] = [flip(&truth, &with)?, flip(&truth, &without)?];
-    println!(
-        "{name}: FLIP against {RAYS} frames: {with:.4} with motion vectors, {without:.4} without"
-    );
+    let parts = [&without, &with, &truth].map(|picture| enlarged(picture));
+    let row = |y: usize| parts.iter().flat_map(move |part| part[y].clone());
+    let rows: Vec<Vec4> = (0..parts[0].len()).flat_map(row).collect();
+    let all = Options {
+        width: rows.len() as u32 / parts[0].len() as u32,
+        height: parts[0].len() as u32,
+        ..OPTIONS
+    };
+    host::write_png(&format!("{folder}/deferred.png"), &all, &srgb(&rows))?;
+    let far = [flip(&truth, &with)?, flip(&truth, &without)?];
     match host.take_messages().first() {
         Some(message) => Err(message.clone().into()),
-        None => Ok(()),
+        None => Ok(far),
     }
 }
 
@@ -230,6 +245,15 @@ impl<'a> Engine<'a> {
         self.last = Some((seen, projection * view));
         Ok(())
     }
+}
+
+/// Rows of a part of a picture, each pixel twice as wide and high, and a white border.
+fn enlarged(picture: &[Vec4]) -> Vec<Vec<Vec4>> {
+    let row = |y: usize| {
+        let pixels = (376..480).flat_map(move |x| [picture[y * OPTIONS.width as usize + x]; 2]);
+        pixels.chain([Vec4::ONE; 8]).collect()
+    };
+    (80..230).flat_map(|y| [row(y), row(y)]).collect()
 }
 
 /// The mean perceived difference of two pictures.

@@ -1,7 +1,7 @@
 //! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
 
-use crate::host::memory::{HostBuffer, HostImage};
-use crate::host::{DEPTH, Fallible, Host, Mesh, Options, attachments};
+use super::host::memory::{HostBuffer, HostImage};
+use super::host::{DEPTH, Fallible, Host, Mesh, Options, attachments};
 use ash::vk;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use revmap::settings::Plane;

@@ -157,6 +157,26 @@ fn depth_alone_is_a_pictures_depth() {
     assert!(worst <= 2f64.powi(-20), "{worst:e}");
 }
 
+/// A bias shifts the depth of every hit, and nothing else.
+#[test]
+fn a_bias_shifts_depths() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = three();
+    let (eye, target) = (scene.camera.eye, scene.camera.target);
+    let [view, projection] = host::view_and_projection(eye, target, &options());
+    let light = seen(view, projection);
+    let exact = SearchSettings::exact();
+    let [plain, shifted] = [light, light.with_depth_bias(1e-3)]
+        .map(|light| depths(&host, &device, &scene, &light, &exact, false));
+    let mut hits = 0;
+    for (a, b) in plain.iter().zip(&shifted).filter(|(a, _)| **a < 1.0) {
+        assert!((b - a - 1e-3).abs() < 2e-7, "{a} {b}");
+        hits += 1;
+    }
+    assert!(hits > 3000, "{hits}");
+}
+
 /// A projection of parallel rays.
 fn parallel() -> DMat4 {
     let (near, far) = (0.5, 6.0);

@@ -15,6 +15,7 @@ mod clip;
 #[allow(unsafe_code)]
 mod commands;
 mod crowds;
+mod deferred_host;
 mod embedding;
 mod embedding_crowds;
 mod embedding_lists;
