@@ -146,6 +146,14 @@ impl Growth {
 
     fn offset(&self, offset: &Offset) -> Offset {
         let scale = 1.0 / self.height();
+        if offset.chamfer + self.high <= 0.0 {
+            // All of a box that has shrunk is deeper than the chamfer.
+            return Offset {
+                extend: (offset.extend + offset.bevel * offset.chamfer) * scale,
+                bevel: 0.0,
+                chamfer: offset.chamfer,
+            };
+        }
         Offset {
             extend: (offset.extend - offset.bevel * self.high) * scale,
             bevel: offset.bevel,

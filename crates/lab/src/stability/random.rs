@@ -34,6 +34,13 @@ struct DraftObject {
     copies: Vec<[f64; 10]>,
 }
 
+/// A camera in the making.
+struct DraftCamera {
+    eye: [f64; 3],
+    target: [f64; 3],
+    fov: f64,
+}
+
 /// A random scene that failed.
 #[derive(Clone, Debug)]
 pub struct Failure {
@@ -129,6 +136,79 @@ impl Random {
         }
     }
 
+    /// Makes the first object or the view extreme in one way.
+    fn extreme(&mut self, objects: &mut [DraftObject], scale: f64, camera: &mut DraftCamera) {
+        let object = &mut objects[0];
+        let polygon = &mut object.polygon;
+        let away = |camera: &mut DraftCamera, by: f64| {
+            for (eye, target) in camera.eye.iter_mut().zip(camera.target) {
+                *eye = target + by * (*eye - target);
+            }
+        };
+        match (9.0 * self.next()) as u32 {
+            // Very long along one or two axes.
+            0 => {
+                let by = self.log(1e2, 1e5);
+                let long = [(); 3].map(|()| scale * self.maybe(2.0, 1.0, |_| by));
+                object.keys.retain(|key| !key.starts_with("scale"));
+                object.keys.push(format!("scale = {long:?}"));
+                away(camera, by);
+            }
+            // Small in its box, as lengths in the wrong unit.
+            1 => {
+                let by = self.log(1e-5, 0.1);
+                polygon.iter_mut().for_each(|p| *p = p.map(|v| by * v));
+                camera.target[2] -= 0.5 * scale;
+                camera.eye[2] -= 0.5 * scale;
+                away(camera, by);
+            }
+            // Much wider than high.
+            2 => {
+                let by = self.log(10.0, 1e3);
+                polygon.iter_mut().for_each(|p| p[0] *= by);
+                away(camera, by);
+            }
+            // Nearly level: lids, thin rings.
+            3 => {
+                let by = self.log(1e-4, 0.1);
+                let level = self.within(0.1, 0.9);
+                let squeezed = |z: f64| level + by * (z - 0.5);
+                polygon.iter_mut().for_each(|p| p[1] = squeezed(p[1]));
+            }
+            // A section without thickness: out and back along a line.
+            4 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                let (root, tip) = (polygon[n], [self.within(0.0, 0.5), self.within(0.0, 1.0)]);
+                polygon.splice(n..n, [root, tip]);
+            }
+            // A corner twice, or nearly.
+            5 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                let by = self.maybe(2.0, 0.0, |r| r.log(1e-12, 1e-4));
+                let [r, z] = polygon[n];
+                polygon.insert(n, [r + by, z]);
+            }
+            // Along the axis, from above or below.
+            6 => {
+                let up = if self.once_in(2.0) { 1.0 } else { -1.0 };
+                let far = self.log(1.0, 1e3);
+                let aside = self.maybe(2.0, 0.0, |r| r.log(1e-9, 1e-2));
+                camera.eye = camera.target;
+                camera.eye[0] += aside * scale;
+                camera.eye[2] += up * far * scale;
+                camera.fov = (2.0 * (0.8 / far).atan().to_degrees()).min(80.0);
+            }
+            // Along a level face.
+            7 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                camera.eye[2] = camera.target[2] + scale * (polygon[n][1] - 0.5);
+                camera.target[2] = camera.eye[2];
+            }
+            // A very wide field of view.
+            _ => camera.fov = self.within(90.0, 170.0),
+        }
+    }
+
     fn object(&mut self, scale: f64, at: [f64; 3]) -> DraftObject {
         let mut keys = Vec::new();
         let mut copies = Vec::new();
@@ -198,16 +278,21 @@ impl Draft {
         let target = [0, 1, 2].map(|c| middle[c] + if c == 2 { 0.5 * scale } else { 0.0 });
         let eye = [0, 1, 2].map(|c| target[c] + away * scale * way[c]);
         let fov = (2.0 * (0.8 / away).atan().to_degrees()).min(80.0);
-        let camera = format!(
-            "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
-        );
+        let mut camera = DraftCamera { eye, target, fov };
         let lines = r.maybe(6.0, Vec::new(), |_| vec!["shadow = \"hard\"".to_owned()]);
         let lights = (0..1 + (2.0 * r.next()) as usize)
             .map(|_| r.direction())
             .collect();
+        let mut objects: Vec<DraftObject> = objects;
+        if r.once_in(2.0) {
+            r.extreme(&mut objects, scale, &mut camera);
+        }
+        let DraftCamera { eye, target, fov } = camera;
         Self {
             seed,
-            camera,
+            camera: format!(
+                "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
+            ),
             lines,
             lights,
             objects,
