@@ -139,6 +139,18 @@ static void add_spindles(RevmapRenderer *renderer)
     RM(revmap_profile_destroy(profile));
 }
 
+/* Distance from the eye to an object in the middle of the picture; infinite if it is not there. */
+static double pick(RevmapRenderer *renderer, RevmapObject object)
+{
+    const RevmapRay ray = {.origin = {2.976, 0.0, 1.368}, .direction = {-0.96, 0.0, -0.28}};
+    RevmapRayCaster *caster;
+    RevmapRayHit hit;
+    RM(revmap_renderer_ray_caster(renderer, object, &caster));
+    RM(revmap_ray_caster_cast(caster, &ray, 1, &hit));
+    RM(revmap_ray_caster_destroy(caster));
+    return hit.t;
+}
+
 int main(int count, char **arguments)
 {
     if (count < 2 || revmap_abi() != REVMAP_ABI) {
@@ -188,6 +200,7 @@ int main(int count, char **arguments)
     RM(revmap_renderer_statistics(renderer, &statistics));
     printf("revmap %s: %u objects, %u by hulls, %llu surfaces made\n", revmap_version(), statistics.objects,
            statistics.drawn_by_hull, (unsigned long long)statistics.surfaces_made);
+    printf("the goblet is %.3f away\n", pick(renderer, goblet));
     RM(revmap_renderer_destroy(renderer));
     host_close(&host);
     if (host.messages != 0) {

@@ -9,6 +9,7 @@
  *
  * Structures. Most begin with their size, which the caller sets before anything else, also of those
  * that a function fills in: `RevmapScene scene = {.size = sizeof scene}; revmap_scene_defaults(&scene);`
+ * A structure of the size that an earlier version had is taken: fields added since count as zero.
  * Nested structures have sizes of their own, which the functions named *_defaults set. Pointers
  * within structures are followed during a call and not kept.
  *
@@ -271,6 +272,11 @@ enum RevmapPlanes
      * Depth only, along parallel rays.
      */
     REVMAP_PLANES_DEPTH_PARALLEL = 3,
+    /**
+     * The attachments of a RevmapPass, as for a G-buffer. In a host's pass, by
+     * REVMAP_SOLVER_EXACT, REVMAP_SOLVER_QUADRIC and REVMAP_SOLVER_LIVE.
+     */
+    REVMAP_PLANES_LIST = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -330,6 +336,57 @@ typedef uint32_t RevmapPlane;
 #endif // __cplusplus
 
 /**
+ * The values of one colour attachment of REVMAP_PLANES_LIST. Channels that it does not name are 0,
+ * and alpha is 1.
+ */
+enum RevmapAttachment
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * The shaded colour, linear RGBA. A float format keeps values above 1.
+     */
+    REVMAP_ATTACHMENT_COLOR = 0,
+    /**
+     * The colour of the surface before light, linear RGB.
+     */
+    REVMAP_ATTACHMENT_BASE_COLOR = 1,
+    /**
+     * The unit normal in the world, with bumps, facing the eye: x, y, z. Signed or float formats.
+     */
+    REVMAP_ATTACHMENT_NORMAL = 2,
+    /**
+     * The same normal as a point of an octahedron that is unfolded to the square -1 to 1: two
+     * channels. Signed or float formats.
+     */
+    REVMAP_ATTACHMENT_OCTAHEDRAL_NORMAL = 3,
+    /**
+     * Roughness and metalness of the object, 0 to 1: two channels.
+     */
+    REVMAP_ATTACHMENT_MATERIAL = 4,
+    /**
+     * Motion: the position in the picture in the last frame minus the present one, pixels, y
+     * downwards, without jitter: two channels. Float formats. RevmapView holds the last view,
+     * revmap_renderer_end_frame() keeps the last placements.
+     */
+    REVMAP_ATTACHMENT_MOTION = 5,
+    /**
+     * The number of the object, as revmap_renderer_object_number() gives it, and the number of the
+     * copy: two channels of VK_FORMAT_R32G32_UINT or VK_FORMAT_R32G32B32A32_UINT. The clear value
+     * should be one that no object has, such as UINT32_MAX.
+     */
+    REVMAP_ATTACHMENT_IDENTITY = 6,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapAttachment RevmapAttachment;
+#else
+typedef uint32_t RevmapAttachment;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * The near end of the depth range.
  */
 enum RevmapDepthOrder
@@ -351,6 +408,57 @@ enum RevmapDepthOrder
 typedef enum RevmapDepthOrder RevmapDepthOrder;
 #else
 typedef uint32_t RevmapDepthOrder;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * The depth test of a pass: fragments pass that are so, compared with the depth attachment, in
+ * either depth order. After a depth prepass of the same objects and view give
+ * REVMAP_DEPTH_COMPARE_EQUAL or REVMAP_DEPTH_COMPARE_NEARER_OR_EQUAL.
+ */
+enum RevmapDepthCompare
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Nearer.
+     */
+    REVMAP_DEPTH_COMPARE_NEARER = 0,
+    /**
+     * Nearer, or as near.
+     */
+    REVMAP_DEPTH_COMPARE_NEARER_OR_EQUAL = 1,
+    /**
+     * As near.
+     */
+    REVMAP_DEPTH_COMPARE_EQUAL = 2,
+    /**
+     * Farther.
+     */
+    REVMAP_DEPTH_COMPARE_FARTHER = 3,
+    /**
+     * Farther, or as near.
+     */
+    REVMAP_DEPTH_COMPARE_FARTHER_OR_EQUAL = 4,
+    /**
+     * Nearer or farther.
+     */
+    REVMAP_DEPTH_COMPARE_NOT_EQUAL = 5,
+    /**
+     * All fragments pass.
+     */
+    REVMAP_DEPTH_COMPARE_ALWAYS = 6,
+    /**
+     * No fragment passes.
+     */
+    REVMAP_DEPTH_COMPARE_NEVER = 7,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum RevmapDepthCompare RevmapDepthCompare;
+#else
+typedef uint32_t RevmapDepthCompare;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -549,6 +657,12 @@ typedef struct RevmapPrewarm RevmapPrewarm;
 typedef struct RevmapProfile RevmapProfile;
 
 /**
+ * An object prepared for rays on the CPU, in double precision: for picking and physics. It keeps
+ * the values that the object had.
+ */
+typedef struct RevmapRayCaster RevmapRayCaster;
+
+/**
  * Objects on a device, drawn into the host's targets, with several frames in flight, which use
  * slots in turn. The renderer must not be destroyed before the frames that it recorded are done.
  */
@@ -571,8 +685,8 @@ typedef struct RevmapRequirements {
      */
     uint32_t queue_family;
     /**
-     * Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass needs none
-     * of them.
+     * Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass, without
+     * RevmapPass.sample_rays, needs none of them.
      */
     VkPhysicalDeviceFeatures features;
 } RevmapRequirements;
@@ -644,6 +758,30 @@ typedef struct RevmapDeviceInfo {
      */
     char driver[256];
 } RevmapDeviceInfo;
+
+/**
+ * Bytes that all buffers and images on a device take, by kind of memory.
+ */
+typedef struct RevmapMemoryUse {
+    /**
+     * sizeof(RevmapMemoryUse).
+     */
+    uint32_t size;
+    /**
+     * Device memory that the host cannot map: data that only the device touches.
+     */
+    uint64_t device;
+    /**
+     * Device memory that the host can map: data that changes every frame, if there is such memory.
+     * Integrated and software devices have no other.
+     */
+    uint64_t visible;
+    /**
+     * Host memory: data that is copied to the device once or read back, and data that changes
+     * every frame if the host can map no device memory.
+     */
+    uint64_t host;
+} RevmapMemoryUse;
 
 /**
  * Distance of the surface from the profile: extend + bevel * min(1 - z, chamfer), object units.
@@ -769,6 +907,19 @@ typedef struct RevmapObjectInfo {
      * Number of copies; 0: one, at placement.
      */
     size_t instance_count;
+    /**
+     * 1: roughness and metalness count. 0: the roughness is the one that fits
+     * specular_shininess, and there is no metal.
+     */
+    uint32_t has_material;
+    /**
+     * For REVMAP_ATTACHMENT_MATERIAL: 0 (a mirror) to 1.
+     */
+    float roughness;
+    /**
+     * For REVMAP_ATTACHMENT_MATERIAL: 0 or 1, or between them.
+     */
+    float metalness;
 } RevmapObjectInfo;
 
 /**
@@ -932,7 +1083,7 @@ typedef struct RevmapScene {
      */
     struct RevmapLighting lighting;
     /**
-     * The objects; read during the call.
+     * The objects, all of one size; read during the call.
      */
     const struct RevmapObjectInfo *objects;
     /**
@@ -965,6 +1116,56 @@ typedef struct RevmapTimes {
 } RevmapTimes;
 
 /**
+ * A ray.
+ */
+typedef struct RevmapRay {
+    /**
+     * World units.
+     */
+    double origin[3];
+    /**
+     * The direction; any length but zero.
+     */
+    double direction[3];
+} RevmapRay;
+
+/**
+ * The first point of a ray on the boundary of an object.
+ */
+typedef struct RevmapRayHit {
+    /**
+     * The point is origin + t * direction; infinite without a hit.
+     */
+    double t;
+    /**
+     * Unit outward normal in the world, without bumps; zero without a hit.
+     */
+    double normal[3];
+    /**
+     * Number of the copy; 0 without copies.
+     */
+    uint32_t copy;
+    /**
+     * 1 if the ray starts in the solid and leaves it here, else 0.
+     */
+    uint32_t leaves;
+} RevmapRayHit;
+
+/**
+ * The least box around an object, along the axes of the world.
+ */
+typedef struct RevmapBounds {
+    /**
+     * Least x, y, z, world units.
+     */
+    double low[3];
+    /**
+     * Largest x, y, z, world units. Less than low if nothing of the object is left.
+     */
+    double high[3];
+} RevmapBounds;
+
+/**
  * The pass in which fragments are drawn.
  */
 typedef struct RevmapPass {
@@ -977,7 +1178,8 @@ typedef struct RevmapPass {
      */
     uint32_t kind;
     /**
-     * Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number.
+     * Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number,
+     * unless sample_rays says otherwise.
      */
     uint32_t samples;
     /**
@@ -1014,6 +1216,29 @@ typedef struct RevmapPass {
      * none.
      */
     VkFormat stencil_format;
+    /**
+     * For REVMAP_PLANES_LIST: a RevmapAttachment for each colour attachment, in order, none twice;
+     * read during the call.
+     */
+    const uint32_t *attachments;
+    /**
+     * For REVMAP_PLANES_LIST: number of attachments.
+     */
+    uint32_t attachment_count;
+    /**
+     * 1 for a ray through each sample, so that silhouettes are smooth; a pixel costs as many rays,
+     * and the device needs the feature sampleRateShading. 0 for one ray through the pixel's
+     * centre, which all samples share.
+     */
+    uint32_t sample_rays;
+    /**
+     * A RevmapDepthCompare.
+     */
+    uint32_t depth_compare;
+    /**
+     * 1 to leave the depth attachment as it is, 0 to write depths.
+     */
+    uint32_t depth_read_only;
 } RevmapPass;
 
 /**
@@ -1068,6 +1293,26 @@ typedef struct RevmapView {
      * Vulkan 1.1.
      */
     double viewport[4];
+    /**
+     * The view of the last frame, for REVMAP_ATTACHMENT_MOTION; its viewport may differ. Null:
+     * only objects move. Read during the call; its own last is not read.
+     */
+    const struct RevmapView *last;
+    /**
+     * Shift of the picture by the jitter that projection contains, pixels: x to the right, y
+     * downwards. Motion leaves it out.
+     */
+    double jitter[2];
+    /**
+     * Shift of all depths, in units of the depth buffer, for shadow maps: positive is farther in
+     * REVMAP_DEPTH_ORDER_NORMAL and nearer in REVMAP_DEPTH_ORDER_REVERSED.
+     */
+    double depth_bias;
+    /**
+     * The view shows the objects whose mask shares a bit with this one; 0: objects of any mask
+     * but 0. See revmap_renderer_set_mask().
+     */
+    uint32_t mask;
 } RevmapView;
 
 /**
@@ -1122,6 +1367,41 @@ typedef struct RevmapStatistics {
      */
     uint32_t notes;
 } RevmapStatistics;
+
+/**
+ * What the frame that was prepared for a slot records.
+ */
+typedef struct RevmapFrameStatistics {
+    /**
+     * sizeof(RevmapFrameStatistics).
+     */
+    uint32_t size;
+    /**
+     * Objects of which a part may show.
+     */
+    uint32_t objects;
+    /**
+     * Draws, those of one indirect command counted one by one.
+     */
+    uint32_t draws;
+    /**
+     * Dispatches.
+     */
+    uint32_t dispatches;
+    /**
+     * Draws and dispatches that are left out, because their pipelines are not compiled; see
+     * revmap_renderer_hide_until_compiled().
+     */
+    uint32_t hidden;
+    /**
+     * Quads, and work groups of dispatches whose number the host knows.
+     */
+    uint32_t tiles;
+    /**
+     * Bytes of the slot's buffers.
+     */
+    uint64_t slot_bytes;
+} RevmapFrameStatistics;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1194,6 +1474,23 @@ RevmapResult revmap_device_info(const struct RevmapDevice *device, struct Revmap
  * Thread: any.
  */
 RevmapResult revmap_device_check(const struct RevmapDevice *device);
+
+/**
+ * Labels the commands and names the buffers of all renderers of a device from now on, for
+ * debuggers of frames. The host's instance was made with VK_EXT_debug_utils. A device that the
+ * library opened with validation has labels already.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_enable_debug_labels(const struct RevmapDevice *device);
+
+/**
+ * Returns the memory that all buffers and images on a device take. The size of memory must be set.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_device_memory_use(const struct RevmapDevice *device,
+                                      struct RevmapMemoryUse *memory);
 
 /**
  * Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
@@ -1377,8 +1674,46 @@ RevmapResult revmap_profile_radius(const struct RevmapProfile *profile, double *
 RevmapResult revmap_profile_destroy(struct RevmapProfile *profile);
 
 /**
+ * Prepares an object for rays, without a device.
+ *
+ * Fails with REVMAP_RESULT_CONTENT for values out of range, or if the contour under the offset does
+ * not close. If nothing of the solid is left, rays hit nothing.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_ray_caster_create(const struct RevmapObjectInfo *object,
+                                      struct RevmapRayCaster **ray_caster);
+
+/**
+ * Finds the first hit of each ray at t >= 0: the surface that is drawn, without bumps. A ray that
+ * starts in a copy hits the point where it leaves that copy. A ray with a number that is not
+ * finite, or without a direction, hits nothing. Both arrays have count elements.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_ray_caster_cast(const struct RevmapRayCaster *ray_caster,
+                                    const struct RevmapRay *rays,
+                                    size_t count,
+                                    struct RevmapRayHit *hits);
+
+/**
+ * Returns the least box around the object, all of its copies.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_ray_caster_bounds(const struct RevmapRayCaster *ray_caster,
+                                      struct RevmapBounds *bounds);
+
+/**
+ * Destroys a ray caster; null is none.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_ray_caster_destroy(struct RevmapRayCaster *ray_caster);
+
+/**
  * Makes a renderer without objects that draws fragments in a host's pass. A null search is the
- * default one. frames is the number of frames in flight, 1 to 8.
+ * default one. frames is the number of slots, 1 to 64: frames in flight times views.
  *
  * Thread: any.
  */
@@ -1390,8 +1725,8 @@ RevmapResult revmap_renderer_create(const struct RevmapDevice *device,
 
 /**
  * Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
- * planes is a RevmapPlanes. A null search is the default one. frames is the number of frames in
- * flight, 1 to 8.
+ * planes is a RevmapPlanes. A null search is the default one. frames is the number of slots, 1 to
+ * 64: frames in flight times views.
  *
  * Thread: any.
  */
@@ -1420,6 +1755,15 @@ RevmapResult revmap_renderer_set_lighting(struct RevmapRenderer *renderer,
  */
 RevmapResult revmap_renderer_set_compute_target(struct RevmapRenderer *renderer,
                                                 const struct RevmapComputeTarget *target);
+
+/**
+ * With hides not 0, revmap_renderer_prepare() compiles no pipeline: draws that need one that is
+ * not compiled are left out, until revmap_prewarm_compile() has made it on another thread.
+ * RevmapFrameStatistics counts what is left out. A new renderer compiles what it needs.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_hide_until_compiled(struct RevmapRenderer *renderer, uint32_t hides);
 
 /**
  * Returns the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: the clear value
@@ -1454,6 +1798,15 @@ RevmapResult revmap_renderer_prepare(struct RevmapRenderer *renderer,
                                      VkCommandBuffer command_buffer,
                                      uint32_t slot,
                                      const struct RevmapView *view);
+
+/**
+ * Ends a frame of all views: the motion of the next frame is that from the present values. The
+ * host calls it before the next frame's changes. Objects that were added since the last call begin
+ * without motion. Renderers without REVMAP_ATTACHMENT_MOTION need no call.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_end_frame(struct RevmapRenderer *renderer);
 
 /**
  * Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
@@ -1537,6 +1890,37 @@ RevmapResult revmap_renderer_remove(struct RevmapRenderer *renderer, RevmapObjec
 RevmapResult revmap_renderer_set(struct RevmapRenderer *renderer,
                                  RevmapObject object,
                                  const struct RevmapObjectInfo *info);
+
+/**
+ * Sets which views show an object: those whose mask shares a bit with this one. With 0 no view
+ * shows it. A hidden object throws no shadow. New objects are in all masks.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_mask(struct RevmapRenderer *renderer,
+                                      RevmapObject object,
+                                      uint32_t mask);
+
+/**
+ * Returns the number of an object in REVMAP_ATTACHMENT_IDENTITY. No two objects of a renderer have
+ * the same one at a time.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_object_number(const struct RevmapRenderer *renderer,
+                                           RevmapObject object,
+                                           uint32_t *number);
+
+/**
+ * Prepares an object for rays, with the values that it has now.
+ *
+ * Fails like revmap_ray_caster_create().
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_ray_caster(const struct RevmapRenderer *renderer,
+                                        RevmapObject object,
+                                        struct RevmapRayCaster **ray_caster);
 
 /**
  * Moves the surface of an object: extension, bevel and chamfer.
@@ -1624,6 +2008,17 @@ RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
  */
 RevmapResult revmap_renderer_statistics(const struct RevmapRenderer *renderer,
                                         struct RevmapStatistics *statistics);
+
+/**
+ * Returns what the frame that was prepared for a slot records. The size of statistics must be set.
+ *
+ * Fails with REVMAP_RESULT_USAGE if the slot is not prepared.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_frame_statistics(const struct RevmapRenderer *renderer,
+                                              uint32_t slot,
+                                              struct RevmapFrameStatistics *statistics);
 
 /**
  * Returns a note: a deviation from the settings, and its reason. The text lasts as long as the

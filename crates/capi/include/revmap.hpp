@@ -51,6 +51,7 @@ using Device = Owner<RevmapDevice, revmap_device_destroy>;
 using Profile = Owner<RevmapProfile, revmap_profile_destroy>;
 using ColorMap = Owner<RevmapColorMap, revmap_color_map_destroy>;
 using HeightMap = Owner<RevmapHeightMap, revmap_height_map_destroy>;
+using RayCaster = Owner<RevmapRayCaster, revmap_ray_caster_destroy>;
 using Renderer = Owner<RevmapRenderer, revmap_renderer_destroy>;
 using Prewarm = Owner<RevmapPrewarm, revmap_prewarm_destroy>;
 using Offscreen = Owner<RevmapOffscreen, revmap_offscreen_destroy>;

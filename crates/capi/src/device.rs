@@ -29,8 +29,8 @@ pub struct RevmapRequirements {
     pub api_version: u32,
     /// The first queue family with graphics and compute.
     pub queue_family: u32,
-    /// Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass needs none
-    /// of them.
+    /// Features to enable; more may be. A host that draws REVMAP_PLANES_COLOR in a pass, without
+    /// RevmapPass.sample_rays, needs none of them.
     pub features: vk::PhysicalDeviceFeatures,
 }
 
@@ -74,7 +74,28 @@ pub struct RevmapDeviceInfo {
     pub driver: [c_char; 256],
 }
 
-described!(RevmapRequirements, RevmapHostDevice, RevmapDeviceInfo);
+/// Bytes that all buffers and images on a device take, by kind of memory.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RevmapMemoryUse {
+    /// sizeof(RevmapMemoryUse).
+    pub size: u32,
+    /// Device memory that the host cannot map: data that only the device touches.
+    pub device: u64,
+    /// Device memory that the host can map: data that changes every frame, if there is such memory.
+    /// Integrated and software devices have no other.
+    pub visible: u64,
+    /// Host memory: data that is copied to the device once or read back, and data that changes
+    /// every frame if the host can map no device memory.
+    pub host: u64,
+}
+
+described!(
+    RevmapRequirements,
+    RevmapHostDevice,
+    RevmapDeviceInfo,
+    RevmapMemoryUse
+);
 
 /// The functions of a host's instance.
 unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outcome<ash::Instance> {
@@ -235,6 +256,44 @@ fn short(text: &str) -> [c_char; 256] {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> RevmapResult {
     enter(|| Ok(RevmapDevice::get(device)?.check()?))
+}
+
+/// Labels the commands and names the buffers of all renderers of a device from now on, for
+/// debuggers of frames. The host's instance was made with VK_EXT_debug_utils. A device that the
+/// library opened with validation has labels already.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_enable_debug_labels(
+    device: *const RevmapDevice,
+) -> RevmapResult {
+    enter(|| {
+        let device = RevmapDevice::get(device)?;
+        // SAFETY: the caller's instance has the extension.
+        unsafe { device.enable_debug_labels() };
+        Ok(())
+    })
+}
+
+/// Returns the memory that all buffers and images on a device take. The size of memory must be set.
+///
+/// Thread: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_device_memory_use(
+    device: *const RevmapDevice,
+    memory: *mut RevmapMemoryUse,
+) -> RevmapResult {
+    enter(|| {
+        let used = RevmapDevice::get(device)?.memory_use();
+        let value = RevmapMemoryUse {
+            size: size(size_of::<RevmapMemoryUse>()),
+            device: used.device,
+            visible: used.visible,
+            host: used.host,
+        };
+        // SAFETY: the caller's structure.
+        unsafe { fill(memory, value) }
+    })
 }
 
 /// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of

@@ -2,10 +2,11 @@
 //! numbers as `uint32_t`, since C may write any number.
 
 use crate::fault::{Fault, Outcome};
+use ash::vk::CompareOp;
 use revmap::gpu::DepthOrder;
 use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
 use revmap::scene::{BumpForm, Clip, Shadow};
-use revmap::settings::{DrawStage, Planes, Solver};
+use revmap::settings::{DrawStage, Plane, PlaneList, Planes, Solver};
 use revmap_files::ProfileAxis;
 use revmap_searches::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
@@ -83,6 +84,35 @@ pub enum RevmapPlanes {
     Depth = 2,
     /// Depth only, along parallel rays.
     DepthParallel = 3,
+    /// The attachments of a RevmapPass, as for a G-buffer. In a host's pass, by
+    /// REVMAP_SOLVER_EXACT, REVMAP_SOLVER_QUADRIC and REVMAP_SOLVER_LIVE.
+    List = 4,
+}
+
+/// The values of one colour attachment of REVMAP_PLANES_LIST. Channels that it does not name are 0,
+/// and alpha is 1.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapAttachment {
+    /// The shaded colour, linear RGBA. A float format keeps values above 1.
+    Color = 0,
+    /// The colour of the surface before light, linear RGB.
+    BaseColor = 1,
+    /// The unit normal in the world, with bumps, facing the eye: x, y, z. Signed or float formats.
+    Normal = 2,
+    /// The same normal as a point of an octahedron that is unfolded to the square -1 to 1: two
+    /// channels. Signed or float formats.
+    OctahedralNormal = 3,
+    /// Roughness and metalness of the object, 0 to 1: two channels.
+    Material = 4,
+    /// Motion: the position in the picture in the last frame minus the present one, pixels, y
+    /// downwards, without jitter: two channels. Float formats. RevmapView holds the last view,
+    /// revmap_renderer_end_frame() keeps the last placements.
+    Motion = 5,
+    /// The number of the object, as revmap_renderer_object_number() gives it, and the number of the
+    /// copy: two channels of VK_FORMAT_R32G32_UINT or VK_FORMAT_R32G32B32A32_UINT. The clear value
+    /// should be one that no object has, such as UINT32_MAX.
+    Identity = 6,
 }
 
 /// A plane that revmap_offscreen_read() returns. Row 0 is on top.
@@ -115,6 +145,30 @@ pub enum RevmapDepthOrder {
     Normal = 0,
     /// 1 is near, fragments pass that are greater.
     Reversed = 1,
+}
+
+/// The depth test of a pass: fragments pass that are so, compared with the depth attachment, in
+/// either depth order. After a depth prepass of the same objects and view give
+/// REVMAP_DEPTH_COMPARE_EQUAL or REVMAP_DEPTH_COMPARE_NEARER_OR_EQUAL.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+pub enum RevmapDepthCompare {
+    /// Nearer.
+    Nearer = 0,
+    /// Nearer, or as near.
+    NearerOrEqual = 1,
+    /// As near.
+    Equal = 2,
+    /// Farther.
+    Farther = 3,
+    /// Farther, or as near.
+    FartherOrEqual = 4,
+    /// Nearer or farther.
+    NotEqual = 5,
+    /// All fragments pass.
+    Always = 6,
+    /// No fragment passes.
+    Never = 7,
 }
 
 /// The command by which a host begins its pass.
@@ -221,7 +275,16 @@ numbers! {
     }
     planes: RevmapPlanes => Planes {
         Color => Planes::Color, All => Planes::All, Depth => Planes::Depth { parallel: false },
-        DepthParallel => Planes::Depth { parallel: true },
+        DepthParallel => Planes::Depth { parallel: true }, List => Planes::List(PlaneList::new(&[])?),
+    }
+    depth_compare: RevmapDepthCompare => [CompareOp; 2] {
+        Nearer => [CompareOp::LESS, CompareOp::GREATER],
+        NearerOrEqual => [CompareOp::LESS_OR_EQUAL, CompareOp::GREATER_OR_EQUAL],
+        Equal => [CompareOp::EQUAL; 2],
+        Farther => [CompareOp::GREATER, CompareOp::LESS],
+        FartherOrEqual => [CompareOp::GREATER_OR_EQUAL, CompareOp::LESS_OR_EQUAL],
+        NotEqual => [CompareOp::NOT_EQUAL; 2], Always => [CompareOp::ALWAYS; 2],
+        Never => [CompareOp::NEVER; 2],
     }
 }
 
@@ -229,6 +292,9 @@ numbers! {
     axis: RevmapAxis => ProfileAxis [Center Left]
     map_format: RevmapMapFormat => MapFormat [R32 R16 Rgba8]
     plane: RevmapPlane => RevmapPlane [Srgb8 Color Distance Normal ShadingNormal Albedo Uv Steps]
+    attachment: RevmapAttachment => Plane [
+        Color BaseColor Normal OctahedralNormal Material Motion Identity
+    ]
     depth_order: RevmapDepthOrder => DepthOrder [Normal Reversed]
     pass_kind: RevmapPassKind => RevmapPassKind [Dynamic RenderPass]
     stage: RevmapStage => DrawStage [Fragment Compute]

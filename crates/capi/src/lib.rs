@@ -17,6 +17,7 @@ pub mod object;
 pub mod offscreen;
 mod pointers;
 pub mod profile;
+pub mod rays;
 pub mod renderer;
 pub mod texture;
 pub mod values;

@@ -7,7 +7,7 @@ use crate::pointers::{described, fill, list, text};
 use crate::profile::RevmapProfile;
 use crate::texture::{RevmapColorMap, RevmapHeightMap};
 use crate::values::{RevmapOffset, RevmapPlacement, UPRIGHT, size};
-use revmap::scene::{Object, Offset, Placement, Specular, Texturing};
+use revmap::scene::{Material, Object, Offset, Placement, Specular, Texturing};
 use std::ffi::c_char;
 use std::ptr::null;
 
@@ -57,9 +57,16 @@ pub struct RevmapObjectInfo {
     pub instances: *const RevmapPlacement,
     /// Number of copies; 0: one, at placement.
     pub instance_count: usize,
+    /// 1: roughness and metalness count. 0: the roughness is the one that fits
+    /// specular_shininess, and there is no metal.
+    pub has_material: u32,
+    /// For REVMAP_ATTACHMENT_MATERIAL: 0 (a mirror) to 1.
+    pub roughness: f32,
+    /// For REVMAP_ATTACHMENT_MATERIAL: 0 or 1, or between them.
+    pub metalness: f32,
 }
 
-described!(RevmapObjectInfo);
+described!(RevmapObjectInfo { has_material });
 
 impl RevmapObjectInfo {
     pub(crate) unsafe fn object(&self) -> Outcome<Object> {
@@ -78,6 +85,10 @@ impl RevmapObjectInfo {
             strength: self.specular_strength,
             shininess: self.specular_shininess,
         };
+        object.material = (self.has_material != 0).then_some(Material {
+            roughness: self.roughness,
+            metalness: self.metalness,
+        });
         object.texturing = Texturing {
             color_map: RevmapColorMap::get_optional(self.color_map)?,
             displacement_map: RevmapHeightMap::get_optional(self.height_map)?,
@@ -136,6 +147,9 @@ pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -
             placement: UPRIGHT,
             instances: null(),
             instance_count: 0,
+            has_material: 0,
+            roughness: 0.0,
+            metalness: 0.0,
         };
         // SAFETY: the caller's structure.
         unsafe { fill(object, value) }

@@ -5,7 +5,7 @@ use crate::enums::{self, RevmapPlane};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
 use crate::object::RevmapObjectInfo;
-use crate::pointers::{described, fill, read, text};
+use crate::pointers::{described, fill, read, read_all, text};
 use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
 use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
@@ -57,7 +57,7 @@ pub struct RevmapScene {
     pub camera: RevmapCamera,
     /// Lights and shadows.
     pub lighting: RevmapLighting,
-    /// The objects; read during the call.
+    /// The objects, all of one size; read during the call.
     pub objects: *const RevmapObjectInfo,
     /// Number of objects.
     pub object_count: usize,
@@ -105,8 +105,7 @@ impl RevmapScene {
             scene.ambient = lighting.ambient;
             scene.lights = lighting.lights;
             scene.shadow = lighting.shadow;
-            for number in 0..self.object_count {
-                let info = read(self.objects.wrapping_add(number))?;
+            for info in read_all(self.objects, self.object_count)? {
                 scene.objects.push(info.object()?);
             }
             Ok(scene)

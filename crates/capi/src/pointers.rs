@@ -2,36 +2,50 @@
 
 use crate::fault::{Fault, Outcome};
 use std::ffi::{CStr, c_char};
+use std::mem::MaybeUninit;
 
-/// A structure of the header that begins with its size, a `u32`.
+/// A structure of the header that begins with its size, a `u32`. Its other fields are plain numbers
+/// and pointers, valid as zeros.
 pub(crate) trait Described: Copy {
     const NAME: &'static str;
+    /// The size before fields were added; the present size if none were.
+    const EARLIER_SIZE: usize;
 }
 
-/// Implements [`Described`].
+/// Implements [`Described`]. `Name { field }` names the first field that was added: it stands where
+/// the structure ended before.
 macro_rules! described {
-    ($($name:ident),* $(,)?) => {
+    ($($name:ident $({ $field:ident })?),* $(,)?) => {
         $(impl crate::pointers::Described for $name {
             const NAME: &'static str = stringify!($name);
+            const EARLIER_SIZE: usize = crate::pointers::earlier_size!($name $($field)?);
         })*
     };
 }
-pub(crate) use described;
+macro_rules! earlier_size {
+    ($name:ident) => {
+        size_of::<$name>()
+    };
+    ($name:ident $field:ident) => {
+        std::mem::offset_of!($name, $field)
+    };
+}
+pub(crate) use {described, earlier_size};
 
 fn null(what: &str) -> Fault {
     Fault::usage(format!("the pointer to {what} is null"))
 }
 
-/// Fails unless `from` is a structure of this library's size.
-unsafe fn check_size<T: Described>(from: *const T) -> Outcome<()> {
+/// The size of the caller's structure. Fails unless it is this library's, or the earlier one.
+unsafe fn checked_size<T: Described>(from: *const T) -> Outcome<usize> {
     if from.is_null() {
         return Err(null(T::NAME));
     }
     // SAFETY: the caller's structure begins with its size.
     let size = unsafe { from.cast::<u32>().read() };
     let (name, own) = (T::NAME, size_of::<T>());
-    if size as usize == own {
-        return Ok(());
+    if [own, T::EARLIER_SIZE].contains(&(size as usize)) {
+        return Ok(size as usize);
     }
     let message = format!(
         "the {name} says that it has {size} bytes; set its size to sizeof, which is {own} here"
@@ -39,21 +53,41 @@ unsafe fn check_size<T: Described>(from: *const T) -> Outcome<()> {
     Err(Fault::usage(message))
 }
 
-/// A structure from the caller.
+/// A structure from the caller. Fields that were added since its size are zeros.
 pub(crate) unsafe fn read<T: Described>(from: *const T) -> Outcome<T> {
-    // SAFETY: null or the caller's, of the size that it says.
+    let mut value = MaybeUninit::<T>::zeroed();
+    // SAFETY: null or the caller's, of the size that it says; zeros are valid.
     unsafe {
-        check_size(from)?;
-        Ok(from.read())
+        let size = checked_size(from)?;
+        let to = value.as_mut_ptr().cast::<u8>();
+        to.copy_from_nonoverlapping(from.cast(), size);
+        Ok(value.assume_init())
     }
 }
 
-/// Fills a structure of the caller, whose size is set.
+/// Structures from the caller, one behind the other, all of the size that the first one says.
+pub(crate) unsafe fn read_all<T: Described>(from: *const T, count: usize) -> Outcome<Vec<T>> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    // SAFETY: the caller's, as many as it says.
+    unsafe {
+        let step = checked_size(from)?;
+        let all = (0..count).map(|n| read(from.wrapping_byte_add(n * step)));
+        all.collect()
+    }
+}
+
+/// Fills a structure of the caller, whose size is set. The size stays as it is.
 pub(crate) unsafe fn fill<T: Described>(to: *mut T, value: T) -> Outcome<()> {
+    let first = size_of::<u32>();
     // SAFETY: as in `read`.
     unsafe {
-        check_size(to)?;
-        to.write(value);
+        let size = checked_size(to)?;
+        let from = (&raw const value).cast::<u8>().add(first);
+        to.cast::<u8>()
+            .add(first)
+            .copy_from_nonoverlapping(from, size - first);
     }
     Ok(())
 }
@@ -84,7 +118,14 @@ pub(crate) unsafe fn list<'a, T>(from: *const T, count: usize, what: &str) -> Ou
     if count == 0 {
         return Ok(&[]);
     }
-    if from.is_null() {
+    check_room(from, count, what)?;
+    // SAFETY: the caller's, of so many elements, unchanged during the call.
+    Ok(unsafe { std::slice::from_raw_parts(from, count) })
+}
+
+/// Fails for a null pointer, and for more elements than memory holds.
+pub(crate) fn check_room<T>(at: *const T, count: usize, what: &str) -> Outcome<()> {
+    if at.is_null() {
         return Err(null(what));
     }
     let bytes = count.checked_mul(size_of::<T>());
@@ -92,8 +133,7 @@ pub(crate) unsafe fn list<'a, T>(from: *const T, count: usize, what: &str) -> Ou
         let message = format!("{count} {what} are more than memory holds");
         return Err(Fault::usage(message));
     }
-    // SAFETY: the caller's, of so many elements, unchanged during the call.
-    Ok(unsafe { std::slice::from_raw_parts(from, count) })
+    Ok(())
 }
 
 /// A text from the caller.

@@ -12,7 +12,10 @@ use crate::handle::{Handle, alone, create, handle};
 use crate::pointers::{described, list, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
-use revmap::gpu::{ComputeTarget, Output, PassFormats, PassKind, PreparedFrame, Renderer};
+use revmap::gpu::{
+    ComputeTarget, DepthOrder, DepthTest, Output, PassFormats, PassKind, PreparedFrame, Renderer,
+};
+use revmap::settings::{PlaneList, Planes, SearchSettings};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -40,7 +43,8 @@ pub struct RevmapPass {
     pub size: u32,
     /// A RevmapPassKind.
     pub kind: u32,
-    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number.
+    /// Samples of every attachment: 1, 2, 4 or 8. Rays go through pixel centres with any number,
+    /// unless sample_rays says otherwise.
     pub samples: u32,
     /// A RevmapDepthOrder.
     pub depth_order: u32,
@@ -60,6 +64,19 @@ pub struct RevmapPass {
     /// For dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED if there is
     /// none.
     pub stencil_format: vk::Format,
+    /// For REVMAP_PLANES_LIST: a RevmapAttachment for each colour attachment, in order, none twice;
+    /// read during the call.
+    pub attachments: *const u32,
+    /// For REVMAP_PLANES_LIST: number of attachments.
+    pub attachment_count: u32,
+    /// 1 for a ray through each sample, so that silhouettes are smooth; a pixel costs as many rays,
+    /// and the device needs the feature sampleRateShading. 0 for one ray through the pixel's
+    /// centre, which all samples share.
+    pub sample_rays: u32,
+    /// A RevmapDepthCompare.
+    pub depth_compare: u32,
+    /// 1 to leave the depth attachment as it is, 0 to write depths.
+    pub depth_read_only: u32,
 }
 
 /// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
@@ -80,7 +97,7 @@ pub struct RevmapComputeTarget {
     pub images: *const vk::ImageView,
 }
 
-described!(RevmapPass, RevmapComputeTarget);
+described!(RevmapPass { attachments }, RevmapComputeTarget);
 
 impl RevmapPass {
     unsafe fn formats(&self) -> Outcome<PassFormats> {
@@ -99,11 +116,35 @@ impl RevmapPass {
                 }
             }
         };
+        let planes = match enums::planes(self.planes)? {
+            // SAFETY: as above.
+            Planes::List(_) => Planes::List(unsafe { self.plane_list() }?),
+            planes => planes,
+        };
+        let depth = enums::depth_order(self.depth_order)?;
+        let [normal, reversed] = enums::depth_compare(self.depth_compare)?;
+        let depth_test = DepthTest {
+            compare: Some(match depth {
+                DepthOrder::Normal => normal,
+                DepthOrder::Reversed => reversed,
+            }),
+            write: self.depth_read_only == 0,
+        };
         Ok(PassFormats {
             samples: self.samples,
-            depth: enums::depth_order(self.depth_order)?,
-            ..PassFormats::new(begun, enums::planes(self.planes)?)
+            sample_rays: self.sample_rays != 0,
+            depth,
+            depth_test,
+            ..PassFormats::new(begun, planes)
         })
+    }
+
+    unsafe fn plane_list(&self) -> Outcome<PlaneList> {
+        let count = self.attachment_count as usize;
+        // SAFETY: the caller's, as many as it says.
+        let numbers = unsafe { list(self.attachments, count, "attachments") }?;
+        let planes: Outcome<Vec<_>> = numbers.iter().map(|&n| enums::attachment(n)).collect();
+        Ok(PlaneList::new(&planes?)?)
     }
 }
 
@@ -120,7 +161,7 @@ fn with<R>(
 fn recorder(
     device: *const RevmapDevice,
     output: Output,
-    settings: &revmap::settings::SearchSettings,
+    settings: &SearchSettings,
     frames: u32,
 ) -> Outcome<Arc<Mutex<Recorder>>> {
     let device = RevmapDevice::get(device)?;
@@ -135,7 +176,7 @@ fn recorder(
 }
 
 /// Makes a renderer without objects that draws fragments in a host's pass. A null search is the
-/// default one. frames is the number of frames in flight, 1 to 8.
+/// default one. frames is the number of slots, 1 to 64: frames in flight times views.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -156,8 +197,8 @@ pub unsafe extern "C" fn revmap_renderer_create(
 }
 
 /// Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
-/// planes is a RevmapPlanes. A null search is the default one. frames is the number of frames in
-/// flight, 1 to 8.
+/// planes is a RevmapPlanes. A null search is the default one. frames is the number of slots, 1 to
+/// 64: frames in flight times views.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
@@ -216,6 +257,24 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
                 depths: true,
             };
             Ok(r.renderer.set_compute_target(target)?)
+        })
+    })
+}
+
+/// With hides not 0, revmap_renderer_prepare() compiles no pipeline: draws that need one that is
+/// not compiled are left out, until revmap_prewarm_compile() has made it on another thread.
+/// RevmapFrameStatistics counts what is left out. A new renderer compiles what it needs.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_hide_until_compiled(
+    renderer: *mut RevmapRenderer,
+    hides: u32,
+) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.renderer.hide_until_compiled(hides != 0);
+            Ok(())
         })
     })
 }

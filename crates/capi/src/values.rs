@@ -1,8 +1,8 @@
 //! Values that several functions take: places, offsets, lights, cameras, views, searches.
 
 use crate::enums::{self, RevmapShadow};
-use crate::fault::{Outcome, RevmapResult, enter};
-use crate::pointers::{described, fill, list};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::pointers::{described, fill, list, read};
 use glam::{DMat4, DQuat, DVec3};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
@@ -93,6 +93,18 @@ pub struct RevmapView {
     /// Viewport in pixels: x, y, width, height. A negative height turns it upside down, as in
     /// Vulkan 1.1.
     pub viewport: [f64; 4],
+    /// The view of the last frame, for REVMAP_ATTACHMENT_MOTION; its viewport may differ. Null:
+    /// only objects move. Read during the call; its own last is not read.
+    pub last: *const RevmapView,
+    /// Shift of the picture by the jitter that projection contains, pixels: x to the right, y
+    /// downwards. Motion leaves it out.
+    pub jitter: [f64; 2],
+    /// Shift of all depths, in units of the depth buffer, for shadow maps: positive is farther in
+    /// REVMAP_DEPTH_ORDER_NORMAL and nearer in REVMAP_DEPTH_ORDER_REVERSED.
+    pub depth_bias: f64,
+    /// The view shows the objects whose mask shares a bit with this one; 0: objects of any mask
+    /// but 0. See revmap_renderer_set_mask().
+    pub mask: u32,
 }
 
 /// Settings of the search. Defaults: revmap_search_defaults().
@@ -119,7 +131,12 @@ pub struct RevmapSearch {
     pub tolerance: f64,
 }
 
-described!(RevmapLighting, RevmapCamera, RevmapView, RevmapSearch);
+described!(
+    RevmapLighting,
+    RevmapCamera,
+    RevmapView { last },
+    RevmapSearch
+);
 
 /// The placement at the origin, upright, one world unit high.
 pub(crate) const UPRIGHT: RevmapPlacement = RevmapPlacement {
@@ -206,7 +223,21 @@ impl RevmapCamera {
 }
 
 impl RevmapView {
-    pub(crate) fn view(&self) -> Outcome<View> {
+    pub(crate) unsafe fn view(&self) -> Outcome<View> {
+        let view = self.without_last()?;
+        if self.last.is_null() {
+            return Ok(view);
+        }
+        // SAFETY: the caller's structure.
+        let last = unsafe { read(self.last) }?;
+        Ok(view.with_last(&last.without_last()?))
+    }
+
+    fn without_last(&self) -> Outcome<View> {
+        if !(self.depth_bias.is_finite() && self.jitter.iter().all(|shift| shift.is_finite())) {
+            let message = "view: jitter and depth_bias are not finite; give finite numbers";
+            return Err(Fault::new(RevmapResult::Content, message));
+        }
         let [x, y, width, height] = self.viewport;
         let viewport = Viewport {
             x,
@@ -217,7 +248,13 @@ impl RevmapView {
         let [view, projection] =
             [self.view, self.projection].map(|columns| DMat4::from_cols_array(&columns));
         let order = enums::depth_order(self.depth_order)?;
-        Ok(View::from_matrices(view, projection, viewport, order)?)
+        let made = View::from_matrices(view, projection, viewport, order)?;
+        let mask = match self.mask {
+            0 => u32::MAX,
+            mask => mask,
+        };
+        let made = made.with_mask(mask).with_jitter(self.jitter);
+        Ok(made.with_depth_bias(self.depth_bias))
     }
 }
 
@@ -291,5 +328,5 @@ pub(crate) unsafe fn search(from: *const RevmapSearch) -> Outcome<SearchSettings
         return Ok(SearchSettings::default());
     }
     // SAFETY: the caller's structure.
-    unsafe { crate::pointers::read(from) }?.settings()
+    unsafe { read(from) }?.settings()
 }

@@ -24,11 +24,16 @@ impl Recorder {
         error
     }
 
-    /// The frame of a slot.
+    /// The frame of a slot, to be recorded.
     pub(super) fn frame(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<&PreparedFrame> {
         if cmd.is_null() {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
+        self.prepared(slot)
+    }
+
+    /// The frame of a slot.
+    pub(super) fn prepared(&self, slot: u32) -> Outcome<&PreparedFrame> {
         let prepared = self.prepared.get(slot as usize);
         let message = || format!("slot {slot} is not prepared; call revmap_renderer_prepare first");
         let frame = prepared.and_then(Option::as_ref);
@@ -59,6 +64,21 @@ pub unsafe extern "C" fn revmap_renderer_prepare(
     enter(|| unsafe {
         let view = read(view)?.view()?;
         with(renderer, |r| r.prepare(command_buffer, slot, &view))
+    })
+}
+
+/// Ends a frame of all views: the motion of the next frame is that from the present values. The
+/// host calls it before the next frame's changes. Objects that were added since the last call begin
+/// without motion. Renderers without REVMAP_ATTACHMENT_MOTION need no call.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_end_frame(renderer: *mut RevmapRenderer) -> RevmapResult {
+    enter(|| {
+        with(renderer, |r| {
+            r.renderer.end_frame();
+            Ok(())
+        })
     })
 }
 

@@ -2,8 +2,10 @@
 
 use super::{RevmapRenderer, with};
 use crate::fault::{Outcome, RevmapResult, enter};
+use crate::handle::create;
 use crate::object::{RevmapObjectInfo, placements};
 use crate::pointers::{list, put, read, take};
+use crate::rays::{self, RevmapRayCaster};
 use crate::values::{RevmapOffset, RevmapPlacement};
 use revmap::gpu::{ObjectId, Renderer};
 
@@ -71,6 +73,61 @@ pub unsafe extern "C" fn revmap_renderer_set(
         let values = unsafe { read(info)?.object() }?;
         with_object(renderer, object, |r, id| r.set(id, values))
     })
+}
+
+/// Sets which views show an object: those whose mask shares a bit with this one. With 0 no view
+/// shows it. A hidden object throws no shadow. New objects are in all masks.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_set_mask(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    mask: u32,
+) -> RevmapResult {
+    enter(|| with_object(renderer, object, |r, id| r.set_mask(id, mask)))
+}
+
+/// Returns the number of an object in REVMAP_ATTACHMENT_IDENTITY. No two objects of a renderer have
+/// the same one at a time.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_object_number(
+    renderer: *const RevmapRenderer,
+    object: RevmapObject,
+    number: *mut u32,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe {
+        put(number, "number", || {
+            let id = ObjectId::from_bits(object);
+            with(renderer, |r| {
+                Ok(r.renderer.object(id).map(|_| id.number())?)
+            })
+        })
+    })
+}
+
+/// Prepares an object for rays, with the values that it has now.
+///
+/// Fails like revmap_ray_caster_create().
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_ray_caster(
+    renderer: *const RevmapRenderer,
+    object: RevmapObject,
+    ray_caster: *mut *mut RevmapRayCaster,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    unsafe {
+        create(ray_caster, || {
+            let id = ObjectId::from_bits(object);
+            let values = with(renderer, |r| Ok(r.renderer.object(id)?.clone()))?;
+            rays::caster(&values)
+        })
+    }
 }
 
 /// Moves the surface of an object: extension, bevel and chamfer.

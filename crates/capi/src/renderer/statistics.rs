@@ -34,7 +34,28 @@ pub struct RevmapStatistics {
     pub notes: u32,
 }
 
-described!(RevmapStatistics);
+/// What the frame that was prepared for a slot records.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RevmapFrameStatistics {
+    /// sizeof(RevmapFrameStatistics).
+    pub size: u32,
+    /// Objects of which a part may show.
+    pub objects: u32,
+    /// Draws, those of one indirect command counted one by one.
+    pub draws: u32,
+    /// Dispatches.
+    pub dispatches: u32,
+    /// Draws and dispatches that are left out, because their pipelines are not compiled; see
+    /// revmap_renderer_hide_until_compiled().
+    pub hidden: u32,
+    /// Quads, and work groups of dispatches whose number the host knows.
+    pub tiles: u32,
+    /// Bytes of the slot's buffers.
+    pub slot_bytes: u64,
+}
+
+described!(RevmapStatistics, RevmapFrameStatistics);
 
 impl Recorder {
     fn statistics(&self) -> RevmapStatistics {
@@ -67,6 +88,33 @@ pub unsafe extern "C" fn revmap_renderer_statistics(
 ) -> RevmapResult {
     enter(|| {
         let value = with(renderer, |r| Ok(r.statistics()))?;
+        // SAFETY: the caller's structure.
+        unsafe { fill(statistics, value) }
+    })
+}
+
+/// Returns what the frame that was prepared for a slot records. The size of statistics must be set.
+///
+/// Fails with REVMAP_RESULT_USAGE if the slot is not prepared.
+///
+/// Thread: one at a time for a renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_frame_statistics(
+    renderer: *const RevmapRenderer,
+    slot: u32,
+    statistics: *mut RevmapFrameStatistics,
+) -> RevmapResult {
+    enter(|| {
+        let of = with(renderer, |r| Ok(r.prepared(slot)?.statistics()))?;
+        let value = RevmapFrameStatistics {
+            size: size(size_of::<RevmapFrameStatistics>()),
+            objects: of.objects,
+            draws: of.draws,
+            dispatches: of.dispatches,
+            hidden: of.hidden,
+            tiles: of.tiles,
+            slot_bytes: of.slot_bytes,
+        };
         // SAFETY: the caller's structure.
         unsafe { fill(statistics, value) }
     })

@@ -31,7 +31,8 @@ static void cycle(const RevmapHostDevice *lent, const RevmapPass *pass, const ch
     RevmapHeightMap *bumps;
     RevmapRenderer *renderer, *compute;
     RevmapPrewarm *prewarm;
-    RevmapObject object;
+    RevmapRayCaster *rays;
+    RevmapObject object, computed;
     RM(revmap_device_borrow(lent, &device));
     RM(revmap_profile_from_points(points, 3, 0.5, &spindle));
     RM(revmap_profile_from_file(drawing, REVMAP_AXIS_CENTER, &drawn));
@@ -45,12 +46,14 @@ static void cycle(const RevmapHostDevice *lent, const RevmapPass *pass, const ch
     info.color_map = colors;
     info.height_map = bumps;
     RM(revmap_renderer_add(renderer, &info, &object));
-    RM(revmap_renderer_add(compute, &info, &object));
+    RM(revmap_renderer_add(compute, &info, &computed));
     RM(revmap_renderer_prewarm(renderer, &prewarm));
+    RM(revmap_renderer_ray_caster(renderer, object, &rays));
     /* What fails must not keep anything either. */
     if (revmap_profile_from_points(points, 2, 0.5, &spindle) != REVMAP_RESULT_CONTENT) {
         fail("cycle", "two points made a profile");
     }
+    RM(revmap_ray_caster_destroy(rays));
     RM(revmap_prewarm_destroy(prewarm));
     RM(revmap_renderer_destroy(compute));
     RM(revmap_renderer_destroy(renderer));

@@ -1,41 +1,23 @@
 //! Wrong arguments give errors, and leave what was there as it was.
 
-use crate::text;
 use revmap_capi::device::*;
 use revmap_capi::enums::*;
 use revmap_capi::fault::*;
+use revmap_capi::object::*;
 use revmap_capi::offscreen::*;
 use revmap_capi::profile::*;
 use revmap_capi::texture::*;
 use revmap_capi::values::*;
 use std::ffi::CStr;
-use std::mem::zeroed;
+use std::mem::{offset_of, zeroed};
 use std::ptr::{null, null_mut};
 
 type Is = RevmapResult;
 
-/// The call has failed so, and its text says this.
-fn fails(call: &str, result: RevmapResult, wanted: RevmapResult, part: &str) {
-    let text = text();
-    assert_eq!(result, wanted, "{call}: {text}");
-    assert_eq!(revmap_last_error(), wanted, "{call}");
-    assert!(
-        text.contains(part) && !text.contains('\n'),
-        "{call}: {text}"
-    );
-}
-
-/// Calls that fail: the result of each, a part of its text, the call.
-macro_rules! fail {
-    ($($result:ident, $part:literal: $call:expr;)*) => {
-        $(fails(stringify!($call), $call, RevmapResult::$result, $part);)*
-    };
-}
-
 mod pictures;
 mod renderers;
 
-fn spindle() -> *mut RevmapProfile {
+pub fn spindle() -> *mut RevmapProfile {
     let points = [[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]];
     let mut profile = null_mut();
     // SAFETY: live points.
@@ -158,7 +140,15 @@ fn structures_and_devices() {
         fail! {
             Usage, "fit": revmap_device_pipeline_cache(device, data.as_mut_ptr().cast(), &mut 0);
         }
+        let mut used = sized!(RevmapMemoryUse);
+        ok! { revmap_device_memory_use(device, &mut used); }
+        used.size = 0;
+        fail! {
+            Usage, "RevmapMemoryUse says": revmap_device_memory_use(device, &mut used);
+            Handle, "the device is null": revmap_device_enable_debug_labels(null());
+        }
         ok! {
+            revmap_device_enable_debug_labels(device);
             revmap_device_pipeline_cache(device, data.as_mut_ptr().cast(), &mut bytes);
             revmap_device_add_pipeline_cache(device, data.as_ptr().cast(), bytes);
             revmap_device_check(device);
@@ -166,6 +156,62 @@ fn structures_and_devices() {
         }
         fail! {
             Handle, "the device was destroyed": revmap_device_check(device);
+        }
+    }
+}
+
+/// Structures of the size that an earlier header had, one behind the other: fields that were added
+/// are neither read nor written.
+#[test]
+fn structures_of_an_earlier_header_are_taken() {
+    let (device, profile) = (device(), spindle());
+    let earlier = offset_of!(RevmapObjectInfo, has_material);
+    let mut info = sized!(RevmapObjectInfo);
+    (info.size, info.has_material, info.roughness) = (earlier as u32, 7, 0.5);
+    let mut scene = defaults!(revmap_scene_defaults, RevmapScene);
+    let mut picture = defaults!(revmap_picture_defaults, RevmapPicture);
+    (picture.width, picture.height) = (32, 24);
+    let mut pictures = [vec![[0u8; 4]; 32 * 24], vec![[0u8; 4]; 32 * 24]];
+    // SAFETY: live values; the bytes hold two earlier structures.
+    unsafe {
+        ok! { revmap_object_defaults(&mut info); }
+        let kept = (info.size as usize, info.has_material, info.roughness);
+        assert_eq!(kept, (earlier, 7, 0.5));
+        info.profile = profile;
+        let mut second = info;
+        second.placement.position = [0.0, 0.5, 0.0];
+        let mut behind = vec![0u64; 2 * earlier / 8];
+        for (n, one) in [&info, &second].into_iter().enumerate() {
+            let to = behind.as_mut_ptr().cast::<u8>().add(n * earlier);
+            to.copy_from_nonoverlapping(std::ptr::from_ref(one).cast(), earlier);
+        }
+        let mut now = [info, second];
+        for one in &mut now {
+            (one.size, one.has_material) = (size_of::<RevmapObjectInfo>() as u32, 0);
+        }
+        scene.object_count = 2;
+        for (pixels, objects) in pictures
+            .iter_mut()
+            .zip([behind.as_ptr().cast(), now.as_ptr()])
+        {
+            let (mut offscreen, bytes) = (null_mut(), size_of_val(&pixels[..]));
+            scene.objects = objects;
+            ok! {
+                revmap_offscreen_create(device, &picture, &scene, &mut offscreen);
+                revmap_offscreen_draw(offscreen, null_mut());
+                revmap_offscreen_read(offscreen, 0, pixels.as_mut_ptr().cast(), bytes);
+                revmap_offscreen_destroy(offscreen);
+            }
+        }
+        assert!(pictures[0] == pictures[1], "pixels differ");
+        info.size += 4;
+        fail! {
+            Usage, "set its size to sizeof": revmap_object_defaults(&mut info);
+        }
+        ok! {
+            revmap_device_check(device);
+            revmap_device_destroy(device);
+            revmap_profile_destroy(profile);
         }
     }
 }

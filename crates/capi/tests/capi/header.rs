@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 const KEEP: &str = "REVMAP_KEEP_HEADER";
 
 /// The sources in the order of the header.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "lib",
     "fault",
     "enums",
@@ -15,6 +15,7 @@ const SOURCES: [&str; 10] = [
     "profile",
     "texture",
     "object",
+    "rays",
     "renderer",
     "offscreen",
 ];

@@ -1,10 +1,13 @@
 //! Structures are laid out in C as in Rust, Vulkan's types among them.
 
 use crate::programs::{compile, folder};
-use revmap_capi::device::{RevmapDeviceInfo, RevmapHostDevice, RevmapRequirements};
+use revmap_capi::device::{
+    RevmapDeviceInfo, RevmapHostDevice, RevmapMemoryUse, RevmapRequirements,
+};
 use revmap_capi::object::RevmapObjectInfo;
 use revmap_capi::offscreen::{RevmapPicture, RevmapScene, RevmapTimes};
-use revmap_capi::renderer::statistics::RevmapStatistics;
+use revmap_capi::rays::{RevmapBounds, RevmapRay, RevmapRayHit};
+use revmap_capi::renderer::statistics::{RevmapFrameStatistics, RevmapStatistics};
 use revmap_capi::renderer::{RevmapComputeTarget, RevmapPass};
 use revmap_capi::values::{
     RevmapCamera, RevmapLight, RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch,
@@ -37,15 +40,20 @@ fn structures_are_the_same_in_c() {
         RevmapLight { color, radius }
         RevmapLighting { ambient, light_count, lights }
         RevmapCamera { eye, target, up, fov_y }
-        RevmapView { view, projection, viewport }
+        RevmapView { view, projection, viewport, last, jitter, depth_bias, mask }
         RevmapSearch { proxy_min_pixels, tolerance }
         RevmapRequirements { features }
         RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
         RevmapDeviceInfo { pipelines_compiled, name, driver }
-        RevmapObjectInfo { profile, height_map, color, bump, offset, repeat, placement, instances, instance_count }
-        RevmapPass { render_pass, color_formats, color_format_count, stencil_format }
+        RevmapObjectInfo { profile, height_map, color, bump, offset, repeat, placement, instances, instance_count, has_material, metalness }
+        RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only }
         RevmapComputeTarget { words, images }
         RevmapStatistics { surfaces_made, notes }
+        RevmapFrameStatistics { hidden, tiles, slot_bytes }
+        RevmapMemoryUse { device, visible, host }
+        RevmapRay { direction }
+        RevmapRayHit { normal, copy, leaves }
+        RevmapBounds { high }
         RevmapPicture { search }
         RevmapScene { camera, lighting, objects, object_count }
         RevmapTimes { prepare_ms, frame_ms }
@@ -55,4 +63,13 @@ fn structures_are_the_same_in_c() {
     let file = folder.path().join("layout.c");
     std::fs::write(&file, text).unwrap();
     compile("c11", &[], &[file], &folder.path().join("layout"));
+}
+
+/// Programs that were compiled with an earlier header pass structures of these sizes.
+#[test]
+#[cfg(target_pointer_width = "64")]
+fn added_fields_begin_where_earlier_structures_end() {
+    assert_eq!(offset_of!(RevmapPass, attachments), 56);
+    assert_eq!(offset_of!(RevmapView, last), 296);
+    assert_eq!(offset_of!(RevmapObjectInfo, has_material), 264);
 }

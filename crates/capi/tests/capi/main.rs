@@ -2,7 +2,7 @@
 #![allow(unsafe_code, missing_docs)]
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may stop at what it did not expect
 
-use revmap_capi::fault::{RevmapResult, revmap_last_error_text};
+use revmap_capi::fault::{RevmapResult, revmap_last_error, revmap_last_error_text};
 use std::ffi::CStr;
 
 /// The text of this thread's last failure.
@@ -20,6 +20,25 @@ fn succeeds(call: &str, result: RevmapResult) {
 /// Calls that succeed.
 macro_rules! ok {
     ($($call:expr;)*) => { $(crate::succeeds(stringify!($call), $call);)* };
+}
+
+/// The call has failed so, and its text says this.
+#[track_caller]
+fn fails(call: &str, result: RevmapResult, wanted: RevmapResult, part: &str) {
+    let text = text();
+    assert_eq!(result, wanted, "{call}: {text}");
+    assert_eq!(revmap_last_error(), wanted, "{call}");
+    assert!(
+        text.contains(part) && !text.contains('\n'),
+        "{call}: {text}"
+    );
+}
+
+/// Calls that fail: the result of each, a part of its text, the call.
+macro_rules! fail {
+    ($($result:ident, $part:literal: $call:expr;)*) => {
+        $(crate::fails(stringify!($call), $call, crate::RevmapResult::$result, $part);)*
+    };
 }
 
 /// A structure of the header, of plain numbers and null pointers.
@@ -55,8 +74,10 @@ macro_rules! defaults {
 mod arguments;
 mod header;
 mod layout;
+mod lists;
 mod pictures;
 mod programs;
+mod rays;
 mod recording;
 mod recording_compute;
 

@@ -15,6 +15,7 @@ use revmap_capi::profile::*;
 use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::objects::*;
 use revmap_capi::renderer::prewarm::*;
+use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
 use revmap_capi::values::*;
 use std::ptr::{null, null_mut};
@@ -27,9 +28,9 @@ pub const OPTIONS: Options = Options {
     samples: 1,
     reversed: false,
 };
-const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]];
-const EYE: [f64; 3] = [2.0, 0.5, 1.5];
-const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
+pub const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]];
+pub const EYE: [f64; 3] = [2.0, 0.5, 1.5];
+pub const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
 pub const RANGE: [f64; 2] = [0.1, 10.0];
 
 pub fn lend(host: &Host) -> *mut RevmapDevice {
@@ -176,5 +177,85 @@ fn a_render_pass_shows_what_rust_draws() {
             revmap_renderer_destroy(renderer);
             revmap_device_destroy(device);
         }
+    }
+}
+
+/// A renderer that hides compiles nothing while it prepares. What it leaves out appears once it is
+/// compiled.
+#[test]
+fn objects_are_hidden_until_they_are_compiled() {
+    let host = open();
+    let mut stage = Stage::new(&host, OPTIONS).unwrap();
+    let wanted = drawn(&host, &mut stage);
+    let (device, camera) = (lend(&host), camera());
+    let (mut renderer, mut prewarm) = (null_mut(), null_mut());
+    let mut used = sized!(RevmapMemoryUse);
+    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
+    // the renderer's.
+    unsafe {
+        let mut pass = sized!(RevmapPass);
+        pass.kind = RevmapPassKind::RenderPass as u32;
+        pass.samples = 1;
+        pass.render_pass = stage.pass;
+        ok! {
+            revmap_renderer_create(device, &pass, null(), 2, &mut renderer);
+            revmap_renderer_hide_until_compiled(renderer, 1);
+        }
+        add(renderer);
+        let compiled = || {
+            let mut info = sized!(RevmapDeviceInfo);
+            ok! { revmap_device_info(device, &mut info); }
+            info.pipelines_compiled
+        };
+        let mut shown = || {
+            let mut statistics = sized!(RevmapFrameStatistics);
+            let prepare = |cmd, slot: usize| {
+                let (slot, w, h, [near, far]) = (slot as u32, OPTIONS.width, OPTIONS.height, RANGE);
+                ok! {
+                    revmap_renderer_prepare_camera(renderer, cmd, slot, &camera, w, h, near, far);
+                    revmap_renderer_frame_statistics(renderer, slot, &mut statistics);
+                }
+                Ok(slot)
+            };
+            let record = |cmd, &slot: &u32| {
+                ok! { revmap_renderer_record(renderer, cmd, slot); }
+                Ok(())
+            };
+            let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
+            drawn.unwrap();
+            (stage.read().unwrap().0, statistics)
+        };
+        let before = compiled();
+        let (picture, statistics) = shown();
+        assert!(picture.chunks_exact(4).all(|p| p == &picture[..4]), "drawn");
+        assert!(
+            statistics.hidden > 0 && statistics.draws == 0,
+            "{statistics:?}"
+        );
+        assert_eq!(compiled(), before);
+        ok! {
+            revmap_renderer_prewarm(renderer, &mut prewarm);
+            revmap_prewarm_compile(prewarm);
+            revmap_prewarm_destroy(prewarm);
+        }
+        let (picture, statistics) = shown();
+        assert!(picture == wanted, "pixels differ");
+        assert_eq!((statistics.hidden, statistics.objects), (0, 2));
+        assert!(statistics.draws > 0 && statistics.slot_bytes > 0);
+        ok! { revmap_device_memory_use(device, &mut used); }
+        assert!(
+            used.device + used.visible >= statistics.slot_bytes,
+            "{used:?}"
+        );
+        let mut unprepared = sized!(RevmapFrameStatistics);
+        let refused = revmap_renderer_frame_statistics(renderer, 2, &mut unprepared);
+        assert_eq!(refused, RevmapResult::Usage);
+        ok! {
+            revmap_renderer_destroy(renderer);
+            revmap_device_memory_use(device, &mut used);
+        }
+        let left = used.device + used.visible + used.host;
+        assert!(left < statistics.slot_bytes, "{used:?}");
+        ok! { revmap_device_destroy(device); }
     }
 }

@@ -1,7 +1,6 @@
 //! Wrong arguments of off-screen pictures.
 
 use super::*;
-use revmap_capi::object::*;
 
 #[test]
 fn off_screen_pictures() {
@@ -24,7 +23,14 @@ fn off_screen_pictures() {
             ..picture
         };
         fail! {
-            Usage, "depth alone": revmap_offscreen_create(device, &deep, &scene, &mut offscreen);
+            Usage, "depths and lists": revmap_offscreen_create(device, &deep, &scene, &mut offscreen);
+        }
+        let list = RevmapPicture {
+            planes: RevmapPlanes::List as u32,
+            ..picture
+        };
+        fail! {
+            Usage, "depths and lists": revmap_offscreen_create(device, &list, &scene, &mut offscreen);
         }
         let empty = RevmapPicture {
             width: 0,

@@ -1,7 +1,6 @@
 //! Wrong arguments of renderers and their objects; threads that use one at once.
 
 use super::*;
-use revmap_capi::object::*;
 use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::objects::*;
 use revmap_capi::renderer::prewarm::*;
@@ -36,10 +35,26 @@ fn renderers_and_objects() {
             Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
             Usage, "pass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
         }
+        let numbers = [RevmapAttachment::Identity as u32, 0, 0, 7];
+        let (one, two) = (&numbers[0], &numbers[1]);
+        let listed = RevmapPass {
+            planes: RevmapPlanes::List as u32,
+            attachment_count: 1,
+            ..pass
+        };
+        fail! {
+            Usage, "attachments is null": make(&listed, 2);
+            Usage, "7 is no RevmapAttachment": make(&RevmapPass { attachments: &numbers[3], ..listed }, 2);
+            Usage, "planes": make(&RevmapPass { attachments: two, attachment_count: 2, ..listed }, 2);
+            Usage, "color": make(&RevmapPass { attachments: one, ..listed }, 2);
+            Usage, "give 0": make(&RevmapPass { attachment_count: 0, ..listed }, 2);
+            Usage, "8 is no RevmapDepthCompare": make(&RevmapPass { depth_compare: 8, ..pass }, 2);
+        }
         ok! { make(&pass, 2); }
         search.solver = 99;
         let mut other = null_mut();
         fail! {
+            Usage, "planes": revmap_renderer_create_compute(device, 4, null(), 2, &mut other);
             Usage, "RevmapSolver": revmap_renderer_create_compute(device, 0, &search, 2, &mut other);
         }
         ok! { revmap_renderer_create_compute(device, 0, null(), 2, &mut other); }
@@ -76,7 +91,19 @@ fn renderers_and_objects() {
                 Usage, "object": revmap_renderer_remove(renderer, unknown);
             }
         }
+        let (mut number, mut caster) = (0, null_mut());
+        ok! {
+            revmap_renderer_object_number(renderer, object, &mut number);
+            revmap_renderer_set_mask(renderer, object, 0);
+            revmap_renderer_end_frame(renderer);
+        }
         fail! {
+            Usage, "number is null": revmap_renderer_object_number(renderer, object, null_mut());
+            Usage, "another renderer": revmap_renderer_object_number(other, object, &mut number);
+            Usage, "another renderer": revmap_renderer_set_mask(other, object, 1);
+            Usage, "another renderer": revmap_renderer_ray_caster(other, object, &mut caster);
+            Handle, "the renderer is null": revmap_renderer_end_frame(null_mut());
+            Handle, "the renderer is null": revmap_renderer_hide_until_compiled(null_mut(), 1);
             Usage, "another renderer": revmap_renderer_set_offset(other, object, &moved);
             Usage, "another renderer": revmap_renderer_remove(other, object);
             Usage, "null": revmap_renderer_set_instances(renderer, object, null(), 2);
@@ -88,8 +115,10 @@ fn renderers_and_objects() {
         fail! {
             Usage, "VkCommandBuffer is null": revmap_renderer_record(renderer, none, 0);
         }
+        let mut frame = sized!(RevmapFrameStatistics);
         for slot in [0, 2, u32::MAX] {
             fail! {
+                Usage, "not prepared": revmap_renderer_frame_statistics(renderer, slot, &mut frame);
                 Usage, "not prepared": revmap_renderer_record(renderer, some, slot);
                 Usage, "not prepared": revmap_renderer_record_compute(renderer, some, slot);
             }
@@ -101,6 +130,11 @@ fn renderers_and_objects() {
         view.size = size_of::<RevmapView>() as u32;
         fail! {
             Content, "view": revmap_renderer_prepare(renderer, some, 0, &view);
+        }
+        let jitter = [f64::INFINITY, 0.0];
+        fail! {
+            Content, "jitter": revmap_renderer_prepare(renderer, some, 0, &RevmapView { jitter, ..view });
+            Content, "depth_bias": revmap_renderer_prepare(renderer, some, 0, &RevmapView { depth_bias: f64::NAN, ..view });
         }
         let mut target = sized!(RevmapComputeTarget);
         fail! {

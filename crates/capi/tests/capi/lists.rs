@@ -1,0 +1,472 @@
+//! Lists of planes through the C interface, as for a G-buffer: what the Rust renderer draws, bit for
+//! bit. Motion, masks, depth tests, rays through samples.
+
+use crate::host::attachments::Attachments;
+use crate::host::{
+    COLOR, DEPTH, Host, Options, Stage, borrow, dynamic, frame, once, open, open_with,
+    view_and_projection, viewport,
+};
+use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
+use ash::vk;
+use glam::{DMat4, DVec3, Vec3};
+use revmap::gpu::{DepthOrder, ObjectId, Output, PassFormats, Renderer, View};
+use revmap::scene::{Material, Object, Placement};
+use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
+use revmap_capi::device::*;
+use revmap_capi::enums::*;
+use revmap_capi::object::*;
+use revmap_capi::profile::*;
+use revmap_capi::renderer::frame::*;
+use revmap_capi::renderer::objects::*;
+use revmap_capi::renderer::*;
+use revmap_capi::values::*;
+use std::cell::RefCell;
+use std::ptr::{null, null_mut};
+
+type F = vk::Format;
+type A = RevmapAttachment;
+
+/// Every plane with a format and its bytes a pixel.
+const PLANES: [(A, Plane, vk::Format, usize); 7] = [
+    (A::Identity, Plane::Identity, F::R32G32_UINT, 8),
+    (A::Motion, Plane::Motion, F::R32G32_SFLOAT, 8),
+    (A::Color, Plane::Color, F::R16G16B16A16_SFLOAT, 8),
+    (A::BaseColor, Plane::BaseColor, F::R8G8B8A8_UNORM, 4),
+    (A::Normal, Plane::Normal, F::R32G32B32A32_SFLOAT, 16),
+    (
+        A::OctahedralNormal,
+        Plane::OctahedralNormal,
+        F::R16G16_SNORM,
+        4,
+    ),
+    (A::Material, Plane::Material, F::R32G32_SFLOAT, 8),
+];
+const NONE: [u32; 2] = [u32::MAX; 2];
+const MATERIAL: Material = Material {
+    roughness: 0.75,
+    metalness: 1.0,
+};
+/// Where the first object is in the second frame.
+const MOVED: [f64; 3] = [0.05, -0.15, 0.02];
+const BIAS: f64 = 1.0 / 1024.0;
+
+/// What every plane is drawn into.
+fn attachments(host: &Host) -> Attachments<'_> {
+    let formats = PLANES.map(|(_, _, format, bytes)| (format, bytes));
+    Attachments::new(host, OPTIONS, &formats).unwrap()
+}
+
+/// Draws a frame and waits for it.
+fn draw<T>(
+    host: &Host,
+    into: &Attachments<'_>,
+    prepare: impl FnOnce(vk::CommandBuffer) -> T,
+    record: impl FnOnce(vk::CommandBuffer, T),
+) {
+    let clear = |plane: Plane| match plane {
+        Plane::Identity => vk::ClearColorValue {
+            uint32: [NONE[0]; 4],
+        },
+        _ => vk::ClearColorValue { float32: [0.0; 4] },
+    };
+    let clears = PLANES.map(|(_, plane, ..)| clear(plane));
+    once(host, |cmd| {
+        let prepared = prepare(cmd);
+        // SAFETY: `cmd` is recording; the attachments live.
+        unsafe {
+            into.draw(cmd, &clears, false, || record(cmd, prepared));
+            into.copy(cmd);
+        }
+    });
+}
+
+/// The bytes of all planes and of the depth.
+fn bytes(into: &Attachments<'_>) -> Vec<Vec<u8>> {
+    let colors = (0..PLANES.len()).map(|n| into.color(n));
+    let depths = bytemuck::pod_collect_to_vec(&into.depths());
+    colors.chain([depths]).collect()
+}
+
+/// The pairs of words of a plane.
+fn pairs(bytes: &[u8]) -> Vec<[u32; 2]> {
+    let words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+    words.as_chunks().0.to_vec()
+}
+
+/// The eye and the jitter of a view, world units and pixels.
+type Seen = (DVec3, [f64; 2]);
+const FIRST: Seen = (DVec3::from_array(EYE), [0.25, -0.375]);
+const SECOND: Seen = (DVec3::new(2.0, 0.6, 1.45), [-0.25, 0.125]);
+
+/// The matrices of a view.
+fn matrices((eye, jitter): Seen) -> [DMat4; 2] {
+    let [view, projection] = view_and_projection(eye, DVec3::new(0.0, 0.0, 0.5), &OPTIONS);
+    let size = [f64::from(OPTIONS.width), f64::from(OPTIONS.height)];
+    let shift = DVec3::new(2.0 * jitter[0] / size[0], 2.0 * jitter[1] / size[1], 0.0);
+    [view, DMat4::from_translation(shift) * projection]
+}
+
+fn view_in_rust(seen: Seen) -> View {
+    let [view, projection] = matrices(seen);
+    let view = View::from_matrices(view, projection, viewport(&OPTIONS), DepthOrder::Normal);
+    view.unwrap().with_jitter(seen.1)
+}
+
+fn view_in_c(seen: Seen) -> RevmapView {
+    let [view, projection] = matrices(seen).map(|matrix| matrix.to_cols_array());
+    let (width, height) = (f64::from(OPTIONS.width), f64::from(OPTIONS.height));
+    RevmapView {
+        view,
+        projection,
+        viewport: [0.0, 0.0, width, height],
+        jitter: seen.1,
+        ..sized!(RevmapView)
+    }
+}
+
+/// Two frames of the Rust renderer; the first object moves between them.
+fn drawn(host: &Host) -> [Vec<Vec<u8>>; 2] {
+    let (device, into) = (borrow(host), attachments(host));
+    let planes = PLANES.map(|(_, plane, ..)| plane);
+    let list = Planes::List(PlaneList::new(&planes).unwrap());
+    let begun = dynamic(&PLANES.map(|(_, _, format, _)| format));
+    let output = Output::Pass(PassFormats::new(begun, list));
+    let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 1).unwrap();
+    let mut scene = scene();
+    scene.objects[1].material = Some(MATERIAL);
+    let ids: Vec<ObjectId> = (scene.objects.iter())
+        .map(|object| renderer.add(object.clone()).unwrap())
+        .collect();
+    let first = view_in_rust(FIRST);
+    let second = view_in_rust(SECOND).with_last(&first).with_depth_bias(BIAS);
+    [first, second].map(|view| {
+        let shared = RefCell::new(&mut renderer);
+        draw(
+            host,
+            &into,
+            // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
+            |cmd| unsafe { shared.borrow_mut().prepare(cmd, 0, &view).unwrap() },
+            // SAFETY: the frame was prepared, the pass has the output's formats.
+            |cmd, frame| unsafe { shared.borrow().record(cmd, &frame).unwrap() },
+        );
+        renderer.end_frame();
+        let moved = Placement {
+            position: MOVED.into(),
+            ..Placement::default()
+        };
+        renderer.set_placement(ids[0], moved).unwrap();
+        bytes(&into)
+    })
+}
+
+/// A renderer of all planes in C.
+struct Lists<'a> {
+    host: &'a Host,
+    device: *mut RevmapDevice,
+    renderer: *mut RevmapRenderer,
+    objects: [RevmapObject; 2],
+    into: Attachments<'a>,
+}
+
+/// A renderer of all planes for a pass; the other values are those of `pass`.
+fn renderer(device: *mut RevmapDevice, pass: RevmapPass) -> *mut RevmapRenderer {
+    let numbers = PLANES.map(|(attachment, ..)| attachment as u32);
+    let formats = PLANES.map(|(_, _, format, _)| format);
+    let pass = RevmapPass {
+        kind: RevmapPassKind::Dynamic as u32,
+        samples: 1,
+        planes: RevmapPlanes::List as u32,
+        color_formats: formats.as_ptr(),
+        color_format_count: PLANES.len() as u32,
+        depth_format: DEPTH,
+        attachments: numbers.as_ptr(),
+        attachment_count: PLANES.len() as u32,
+        ..pass
+    };
+    let mut renderer = null_mut();
+    // SAFETY: live values.
+    unsafe {
+        ok! { revmap_renderer_create(device, &pass, null(), 1, &mut renderer); }
+    }
+    renderer
+}
+
+/// Adds the scene of the Rust renderer.
+fn add(renderer: *mut RevmapRenderer, color: [f32; 3]) -> [RevmapObject; 2] {
+    let (mut profile, mut objects) = (null_mut(), [0; 2]);
+    // SAFETY: live values.
+    unsafe {
+        ok! { revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), 0.4, &mut profile); }
+        let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
+        (info.profile, info.color) = (profile, color);
+        ok! { revmap_renderer_add(renderer, &info, &mut objects[0]); }
+        info.placement.position = BESIDE;
+        info.offset.extend = 0.02;
+        info.has_material = 1;
+        (info.roughness, info.metalness) = (MATERIAL.roughness, MATERIAL.metalness);
+        ok! {
+            revmap_renderer_add(renderer, &info, &mut objects[1]);
+            revmap_profile_destroy(profile);
+        }
+    }
+    objects
+}
+
+impl<'a> Lists<'a> {
+    fn new(host: &'a Host) -> Self {
+        let device = lend(host);
+        // SAFETY: a live device, whose instance has the extension of the host's messenger.
+        unsafe {
+            ok! { revmap_device_enable_debug_labels(device); }
+        }
+        let renderer = renderer(device, sized!(RevmapPass));
+        Self {
+            host,
+            device,
+            renderer,
+            objects: add(renderer, Object::COLOR),
+            into: attachments(host),
+        }
+    }
+
+    fn draw(&self, view: &RevmapView) {
+        let record = |cmd, ()| {
+            // SAFETY: the slot was prepared, the pass has the renderer's formats.
+            unsafe {
+                ok! { revmap_renderer_record(self.renderer, cmd, 0); }
+            }
+        };
+        draw(self.host, &self.into, |cmd| self.prepare(cmd, view), record);
+    }
+
+    fn prepare(&self, cmd: vk::CommandBuffer, view: &RevmapView) {
+        // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
+        unsafe {
+            ok! { revmap_renderer_prepare(self.renderer, cmd, 0, view); }
+        }
+    }
+
+    /// The number of an object in the plane of identities.
+    fn number(&self, object: usize) -> u32 {
+        let mut number = 0;
+        // SAFETY: live values.
+        unsafe {
+            ok! { revmap_renderer_object_number(self.renderer, self.objects[object], &mut number); }
+        }
+        number
+    }
+
+    /// The number of pixels that show each object, and of those that show none.
+    fn shown(&self) -> [usize; 3] {
+        let pixels = pairs(&self.into.color(0));
+        let of = |pair| pixels.iter().filter(|p| **p == pair).count();
+        let [first, second] = [0, 1].map(|n| of([self.number(n), 0]));
+        assert_eq!(first + second + of(NONE), pixels.len());
+        [first, second, of(NONE)]
+    }
+}
+
+impl Drop for Lists<'_> {
+    fn drop(&mut self) {
+        // The frames are done.
+        revmap_renderer_destroy(self.renderer);
+        revmap_device_destroy(self.device);
+    }
+}
+
+#[test]
+fn a_list_of_planes_is_what_rust_draws() {
+    let host = open();
+    let wanted = drawn(&host);
+    let lists = Lists::new(&host);
+    lists.draw(&view_in_c(FIRST));
+    assert!(bytes(&lists.into) == wanted[0], "the first frame differs");
+    let moved = RevmapPlacement {
+        position: MOVED,
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        scale: [1.0; 3],
+    };
+    ok! { revmap_renderer_end_frame(lists.renderer); }
+    // SAFETY: live values.
+    unsafe {
+        ok! { revmap_renderer_set_placement(lists.renderer, lists.objects[0], &moved); }
+    }
+    // Without a last view the object that has moved has motion, and the other one has none.
+    lists.draw(&view_in_c(SECOND));
+    let [first, second, none] = lists.shown();
+    assert!(first > 1500 && second > 1500 && none > 10_000);
+    let pixels = [lists.into.color(1), lists.into.color(0)].map(|bytes| pairs(&bytes));
+    for (motion, identity) in pixels[0].iter().zip(&pixels[1]) {
+        let [x, y] = motion.map(f32::from_bits);
+        let moves = x.hypot(y);
+        match identity[0] == lists.number(0) {
+            true => assert!(moves > 1.0, "{moves}"),
+            false => assert!(moves < 1e-3, "{moves}"),
+        }
+    }
+    let last = view_in_c(FIRST);
+    lists.draw(&RevmapView {
+        last: &last,
+        depth_bias: BIAS,
+        ..view_in_c(SECOND)
+    });
+    let pairs = bytes(&lists.into).into_iter().zip(&wanted[1]);
+    for (n, (found, wanted)) in pairs.enumerate() {
+        assert!(found == *wanted, "plane {n} of the second frame differs");
+    }
+}
+
+#[test]
+fn a_view_shows_the_objects_of_its_mask() {
+    let host = open();
+    let lists = Lists::new(&host);
+    let shown = |mask| {
+        lists.draw(&RevmapView {
+            mask,
+            ..view_in_c(FIRST)
+        });
+        lists.shown()
+    };
+    let both = shown(0);
+    assert_eq!(shown(4), both);
+    ok! {
+        revmap_renderer_set_mask(lists.renderer, lists.objects[0], 1);
+        revmap_renderer_set_mask(lists.renderer, lists.objects[1], 2);
+    }
+    assert_eq!((shown(0), shown(3)), (both, both));
+    let [only, none, _] = shown(1);
+    assert!(only >= both[0] && none == 0);
+    let [none, only, _] = shown(2);
+    assert!(only >= both[1] && none == 0);
+    assert_eq!(shown(4), [0, 0, both.iter().sum()]);
+    ok! { revmap_renderer_set_mask(lists.renderer, lists.objects[1], 0); }
+    assert_eq!(shown(0)[1], 0);
+}
+
+/// A second renderer of the same pass, whose objects have another colour.
+#[test]
+fn a_pass_tests_depths_as_it_says() {
+    let host = open();
+    let lists = Lists::new(&host);
+    let view = view_in_c(FIRST);
+    lists.draw(&view);
+    let before = bytes(&lists.into);
+    for (compare, covers) in [
+        (RevmapDepthCompare::Nearer, false),
+        (RevmapDepthCompare::NearerOrEqual, true),
+        (RevmapDepthCompare::Equal, true),
+        (RevmapDepthCompare::FartherOrEqual, true),
+        (RevmapDepthCompare::Never, false),
+    ] {
+        let mut pass = sized!(RevmapPass);
+        (pass.depth_compare, pass.depth_read_only) = (compare as u32, 1);
+        let second = renderer(lists.device, pass);
+        add(second, [0.0, 1.0, 0.0]);
+        let prepare = |cmd| {
+            lists.prepare(cmd, &view);
+            // SAFETY: as in `prepare`.
+            unsafe {
+                ok! { revmap_renderer_prepare(second, cmd, 0, &view); }
+            }
+        };
+        let record = |cmd, ()| {
+            // SAFETY: the slots were prepared, the pass has the renderers' formats.
+            unsafe {
+                ok! {
+                    revmap_renderer_record(lists.renderer, cmd, 0);
+                    revmap_renderer_record(second, cmd, 0);
+                }
+            }
+        };
+        draw(&host, &lists.into, prepare, record);
+        let after = bytes(&lists.into);
+        let base = PLANES.iter().position(|p| p.1 == Plane::BaseColor).unwrap();
+        let green = |pixel: &[u8]| pixel == [0, 255, 0, 255];
+        let covered = after[base].chunks_exact(4).filter(|p| green(p)).count();
+        let [first, other, _] = lists.shown();
+        assert_eq!(covered, if covers { first + other } else { 0 });
+        assert!(after.last() == before.last(), "depths were written");
+        ok! { revmap_renderer_destroy(second); }
+    }
+}
+
+#[test]
+fn rays_through_samples_draw_what_rust_draws() {
+    let host = open();
+    let options = Options {
+        dynamic: true,
+        samples: 4,
+        ..OPTIONS
+    };
+    let mut stage = Stage::new(&host, options).unwrap();
+    let view = view_in_rust(FIRST);
+    let own = borrow(&host);
+    let pictures = [true, false].map(|sample_rays| {
+        let output = Output::Pass(PassFormats {
+            samples: 4,
+            sample_rays,
+            ..PassFormats::new(dynamic(&[COLOR]), Planes::Color)
+        });
+        let mut renderer = Renderer::new(&own, output, &SearchSettings::default(), 2).unwrap();
+        for object in scene().objects {
+            renderer.add(object).unwrap();
+        }
+        frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
+        stage.read().unwrap().0
+    });
+    let (device, mut made) = (lend(&host), null_mut());
+    let mut pass = sized!(RevmapPass);
+    (pass.samples, pass.sample_rays) = (4, 1);
+    (pass.color_formats, pass.color_format_count) = (&COLOR, 1);
+    pass.depth_format = DEPTH;
+    // SAFETY: live values; the stage has waited for a slot before it is prepared.
+    unsafe {
+        ok! { revmap_renderer_create(device, &pass, null(), 2, &mut made); }
+        add(made, Object::COLOR);
+        let prepare = |cmd, slot: usize| {
+            ok! { revmap_renderer_prepare(made, cmd, slot as u32, &view_in_c(FIRST)); }
+            Ok(slot as u32)
+        };
+        let record = |cmd, &slot: &u32| {
+            ok! { revmap_renderer_record(made, cmd, slot); }
+            Ok(())
+        };
+        let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
+        drawn.unwrap();
+    }
+    let found = stage.read().unwrap().0;
+    assert!(
+        pictures[0] != pictures[1],
+        "rays through samples change nothing"
+    );
+    assert!(found == pictures[0], "pixels differ");
+    ok! {
+        revmap_renderer_destroy(made);
+        revmap_device_destroy(device);
+    }
+}
+
+#[test]
+fn rays_through_samples_need_their_feature() {
+    let host = open_with(|features| vk::PhysicalDeviceFeatures {
+        sample_rate_shading: vk::FALSE,
+        ..features
+    });
+    let (device, mut made) = (lend(&host), null_mut());
+    let mut pass = sized!(RevmapPass);
+    (pass.samples, pass.sample_rays) = (4, 1);
+    (pass.color_formats, pass.color_format_count) = (&COLOR, 1);
+    pass.depth_format = DEPTH;
+    // SAFETY: live values.
+    unsafe {
+        fail! {
+            Unsupported, "sampleRateShading": revmap_renderer_create(device, &pass, null(), 2, &mut made);
+        }
+        pass.sample_rays = 0;
+        ok! {
+            revmap_renderer_create(device, &pass, null(), 2, &mut made);
+            revmap_renderer_destroy(made);
+            revmap_device_destroy(device);
+        }
+    }
+}
