@@ -178,9 +178,17 @@ fn corners_of(segments: &[Segment], corners: &mut Vec<[Option<Corner>; 2]>) {
         let own = normal(s);
         // The mirrored half continues on the axis, and the axis itself is between the two halves.
         let axis = DVec2::new(0.0, own.y.signum());
-        let before = (previous.b != s.a || s.a.x == 0.0).then(|| corner(s.a, axis, own));
+        // A solid, or a cavity, that touches the axis in a point is all on one side of it. No curve
+        // within that wedge is about the point, so only the other side has a corner.
+        let wedge = |p: &Segment, q: &Segment| match p.b == q.a {
+            true => (p.b - p.a).perp_dot(q.b - q.a),
+            false => 0.0,
+        };
+        let shown = |c: &Corner, wedge: f64| c.turn * wedge >= 0.0;
+        let before = (previous.b != s.a || s.a.x == 0.0)
+            .then(|| corner(s.a, axis, own).filter(|c| shown(c, wedge(previous, s))));
         let after = if next.a != s.b || s.b.x == 0.0 {
-            corner(s.b, own, axis)
+            corner(s.b, own, axis).filter(|c| shown(c, wedge(s, next)))
         } else {
             corner(s.b, own, normal(next))
         };

@@ -95,6 +95,35 @@ proptest! {
     }
 }
 
+/// Solids and cavities that touch the axis in a point, both faces sloping the same way or not.
+#[test]
+fn tips_on_the_axis() {
+    let tips = [
+        [[0.4, 0.25], [0.4, 0.75], [0.0, 0.875]],
+        [[0.4, 0.1], [0.35, 0.5], [0.0, 0.05]],
+        [[0.4, 0.25], [0.4, 0.75], [0.0, 0.5]],
+        [[0.3, 0.2], [0.45, 0.9], [0.0, 0.6]],
+    ];
+    let points = |all: &[[f64; 2]; 3]| all.map(DVec2::from).to_vec();
+    let whole = [[0.0, 0.0], [0.48, 0.0], [0.48, 1.0], [0.0, 1.0]];
+    for tip in &tips {
+        let solid = Outline {
+            loops: vec![points(tip)],
+        };
+        let mut hole = points(tip);
+        hole.reverse();
+        let cavity = Outline {
+            loops: vec![whole.map(DVec2::from).to_vec(), hole],
+        };
+        for extend in [-0.06, -0.03, -0.01, 0.02, 0.08] {
+            sound(&solid, offset(extend, 0.0, 1.0)).unwrap();
+            sound(&cavity, offset(extend, 0.0, 1.0)).unwrap();
+            sound(&solid, offset(extend, 0.2, 1.0)).unwrap();
+            sound(&cavity, offset(extend, -0.2, 1.0)).unwrap();
+        }
+    }
+}
+
 /// A checkerboard of cells that touch at their corners, under offsets of many cells: nearly all
 /// curves are hidden behind others.
 #[test]
