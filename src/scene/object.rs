@@ -119,13 +119,13 @@ impl Object {
         self.instances.clusters().least(bound, value)
     }
 
-    /// Its material, or the one that fits its highlight: a microfacet distribution of roughness
+    /// Its material, or the one that fits its highlight: a microfacet distribution of width
     /// sqrt(2 / (exponent + 2)) is as wide (Walter et al. 2007, *Microfacet models for refraction
     /// through rough surfaces*).
     #[must_use]
     pub fn material(&self) -> Material {
         self.material.unwrap_or(Material {
-            roughness: (2.0 / (self.specular.shininess.max(0.0) + 2.0)).sqrt(),
+            roughness: (2.0 / (self.specular.shininess.max(0.0) + 2.0)).powf(0.25),
             metalness: 0.0,
         })
     }
@@ -181,10 +181,10 @@ impl Default for Specular {
     }
 }
 
-/// What a host that shades by itself reads of a surface.
+/// Properties of a surface for hosts that shade by themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// 0 (a mirror) to 1.
+    /// The square root of the width of the microfacet distribution, as in glTF: 0 (a mirror) to 1.
     pub roughness: f32,
     /// 0 or 1, or between them.
     pub metalness: f32,

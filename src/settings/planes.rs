@@ -37,7 +37,8 @@ pub enum Plane {
     /// Motion: the position in the picture in the last frame minus the present one, pixels, y
     /// downwards, without jitter: two channels, float formats.
     /// [`View::with_last`](crate::gpu::View::with_last) gives the last view,
-    /// [`Renderer::end_frame`](crate::gpu::Renderer::end_frame) keeps the last placements.
+    /// [`Renderer::end_frame`](crate::gpu::Renderer::end_frame) keeps the last placements. Copies take
+    /// twice the memory, so half as many fit.
     Motion,
     /// [`ObjectId::number`](crate::gpu::ObjectId::number) and the number of the copy: two channels
     /// of unsigned integers of 32 bits. Clear them to a value that no object has, such as

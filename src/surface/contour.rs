@@ -141,12 +141,14 @@ impl ContourSource {
     fn moved(&self, offset: &Offset) -> Segments {
         let mut parts = Segments::default();
         let mut trimmer = Trimmer::default();
+        let size = (self.segments.iter()).fold(1.0f64, |size, s| size.max(s.a.x).max(s.b.x));
         let mut layer = |alpha, beta, low, high| {
             let layer = Layer {
                 alpha,
                 beta,
                 low,
                 high,
+                size,
             };
             if high > low {
                 trimmer.layer(layer, &self.segments, &self.corners, &self.tree, &mut parts);

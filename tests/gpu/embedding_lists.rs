@@ -186,7 +186,7 @@ fn planes_of_a_list_are_those_of_a_frame() {
             };
             let unfolded = unfolded.normalize().as_vec3().to_array();
             let glass = identity[n][0] == lists.ids[2].number();
-            let wanted = if glass { [0.75, 1.0] } else { [0.2425, 0.0] };
+            let wanted = if glass { [0.75, 1.0] } else { [0.4925, 0.0] };
             let apart = [
                 far(&colors[n], &frame.color[n]),
                 far(&base[n][..3], &frame.albedo[n]),
@@ -374,6 +374,8 @@ fn misfitting_lists_are_refused() {
         (Plane::Identity, F::R32G32_SFLOAT),
         (Plane::Identity, F::R32_UINT),
         (Plane::Motion, F::R8G8_UNORM),
+        (Plane::Motion, F::R16_SFLOAT),
+        (Plane::Normal, F::R16G16_SFLOAT),
         (Plane::Normal, F::R8G8B8A8_UNORM),
         (Plane::Color, F::R8G8B8A8_UINT),
     ] {

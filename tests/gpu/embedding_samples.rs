@@ -3,11 +3,11 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{self, Options, Stage, borrow, dynamic, open};
-use crate::common::{draw, sized};
+use crate::common::{device, draw, sized};
 use crate::embedding::{options, three};
 use glam::DMat4;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
+use revmap::gpu::{Device, Offscreen, OffscreenOptions, Output, PassFormats, Renderer, View};
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
 use revmap_lab::compare::flip_map;
@@ -98,15 +98,44 @@ fn largest(truth: &Frame, frame: &Frame) -> f32 {
     apart.fold(0.0, f32::max)
 }
 
+/// Look-ups of samples are counted in their own pixel: none where no ray of a pixel meets the box.
+#[test]
+fn steps_stay_in_their_pixel() {
+    let mut scene = three();
+    scene.objects.truncate(1);
+    let settings = sized(options().width, options().height);
+    let steps = |samples| {
+        let options = OffscreenOptions {
+            samples,
+            ..OffscreenOptions::default()
+        };
+        let mut made = Offscreen::with(device(), &scene, &settings, options).unwrap();
+        made.draw().unwrap();
+        made.read().unwrap().steps
+    };
+    let (one, four) = (steps(1), steps(4));
+    let ends = |steps: &[f32]| {
+        let width = options().width as usize;
+        let columns = (0..width).filter(|x| steps.iter().skip(*x).step_by(width).any(|s| *s > 0.0));
+        let columns: Vec<_> = columns.collect();
+        [columns[0], columns[columns.len() - 1]]
+    };
+    let ([left, right], [first, last]) = (ends(&one), ends(&four));
+    println!("columns {left} to {right}, by four samples {first} to {last}");
+    assert_eq!([left, right], [first, last]);
+    let sum = |steps: &[f32]| steps.iter().sum::<f32>();
+    assert!(sum(&four) > 3.0 * sum(&one));
+}
+
 /// Rays through samples come much nearer to 64 rays than one ray for all samples, and no pixel is
 /// far off.
 #[test]
 fn rays_through_samples_smooth_silhouettes() {
     let host = open();
-    let device = borrow(&host);
+    let own = borrow(&host);
     for (name, scene) in scenes() {
         let truth = rays(&scene, 64);
-        let [one, each] = [false, true].map(|rays| picture(&host, &device, &scene, rays));
+        let [one, each] = [false, true].map(|rays| picture(&host, &own, &scene, rays));
         let four = rays(&scene, 4);
         let flips = [&one, &each].map(|frame| mean_flip(&truth, frame));
         let [one_off, each_off, four_off] = [&one, &each, &four].map(|frame| rms(&truth, frame));

@@ -114,7 +114,7 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
             Light light = turned_to(look.rotation, frame_block.lights[n]);
-            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, uvec2(pixel));
+            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, uvec2(pixel + 0.5));
         }
     }
     s.color = vec4(color, 1.0);

@@ -15,19 +15,19 @@ layout(location = 3) out vec4 albedo_v;
 // src/shader/outputs.rs moves these to the host's locations and makes the unused ones private.
 layout(location = 1) out vec4 base_color;
 layout(location = 2) out vec4 world_normal;
-layout(location = 3) out vec2 octahedral_normal;
-layout(location = 4) out vec2 material; // roughness, metalness
-layout(location = 5) out vec2 motion;   // pixels, from this frame's position to the last frame's
-layout(location = 6) out uvec2 identity; // number of the object, number of the copy
+layout(location = 3) out vec4 octahedral_normal;
+layout(location = 4) out vec4 material; // roughness, metalness
+layout(location = 5) out vec4 motion;   // pixels, from this frame's position to the last frame's
+layout(location = 6) out uvec4 identity; // number of the object, number of the copy
 #endif
 
-// Adds the look-ups of a pixel, with or without a hit.
+// Adds the look-ups of a pixel, with or without a hit. `pixel`: of a sample, where each has a ray.
 void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES
-    atomicAdd(pixel_words[second_word(uvec2(pixel))], steps);
+    atomicAdd(pixel_words[second_word(uvec2(pixel + 0.5))], steps);
     if (exhausted) {
-        atomicOr(pixel_words[second_word(uvec2(pixel))], EXHAUSTED_BIT);
+        atomicOr(pixel_words[second_word(uvec2(pixel + 0.5))], EXHAUSTED_BIT);
     }
 #endif
 }
@@ -50,7 +50,8 @@ vec2 motion_of(uint instance, vec2 pixel, Hit hit)
     vec3 p = ray_origin(rays, pixel) + hit.t * ray_direction(rays, pixel);
     vec4 at = vec4(p + before.origin.z * unit(hit.normal), 1.0);
     vec3 projected = vec3(dot(before.position_sx, at), dot(before.rotation, at), dot(before.scale_depth, at));
-    return projected.xy / projected.z - pixel - before.origin.xy;
+    // A point that was behind the eye has no position in the last frame.
+    return projected.z > 0.0 ? projected.xy / projected.z - pixel - before.origin.xy : vec2(0.0);
 }
 #endif
 
@@ -66,11 +67,11 @@ void store(Shaded s, vec2 pixel, Hit hit)
 #if OUTPUT == OUTPUT_LIST
     uint instance = uint(look_ambient.w);
     base_color = vec4(s.albedo, 1.0);
-    world_normal = vec4(s.shading_normal, 0.0);
-    octahedral_normal = octahedral(s.shading_normal);
-    material = unpackUnorm2x16(object.parts.y);
-    motion = motion_of(instance, pixel, hit);
-    identity = uvec2(instances[instance].object.x, instance - object.instances.x);
+    world_normal = vec4(s.shading_normal, 1.0);
+    octahedral_normal = vec4(octahedral(s.shading_normal), 0.0, 1.0);
+    material = vec4(unpackUnorm2x16(object.parts.y), 0.0, 1.0);
+    motion = vec4(motion_of(instance, pixel, hit), 0.0, 1.0);
+    identity = uvec4(instances[instance].object.x, instance - object.instances.x, 0u, 1u);
 #endif
 }
 #endif

@@ -31,7 +31,7 @@ pub(in crate::gpu) struct Entry {
     pub history: History,
 }
 
-/// What is known of an object's last frame.
+/// An object's last frame.
 #[derive(Clone, Debug)]
 pub(in crate::gpu) enum History {
     /// There was no last frame.

@@ -55,7 +55,7 @@ pub struct OffscreenOptions {
     /// lights and the range of depths are the scene's. Default: false.
     pub guests_only: bool,
     /// Samples of a pixel in the fragment stage, 1, 2, 4 or 8; a frame holds their means. Default:
-    /// 1. Each sample has a ray.
+    /// 1. Each sample has a ray, which needs `sampleRateShading`.
     pub samples: u32,
 }
 

@@ -30,6 +30,7 @@ impl Renderer {
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.content.entry(id)?;
         self.content.objects.remove(id);
+        self.content.moved.retain(|number| *number != id.number);
         self.content.version += 1;
         Ok(())
     }
@@ -133,7 +134,9 @@ impl Renderer {
 
     /// Ends a frame of all views: the next frame's motion is that from the present values. Call it
     /// before the next frame's changes. Objects that were added since the last call begin without
-    /// motion. Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
+    /// motion. Copy `k` is copy `k` of the last frame; an object with another
+    /// number of copies has no motion of its own in that frame. Without this call no object moves.
+    /// Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
     pub fn end_frame(&mut self) {
         self.content.end_frame();
     }

@@ -38,6 +38,14 @@ impl Output {
             ));
         }
         pass.check_samples(device)?;
+        let (planes, most) = (
+            attachments(pass.planes),
+            device.limits().max_color_attachments,
+        );
+        if planes > most as usize {
+            let message = format!("{planes} planes; the device draws into {most} at once");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
+        }
         match &pass.begun {
             PassKind::RenderPass { pass: raw, .. } => pass.check_render_pass(device, *raw),
             PassKind::Dynamic {
@@ -110,11 +118,6 @@ impl PassFormats {
             let (planes, count) = (self.planes, color.len());
             let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
             return Err(usage("color", message));
-        }
-        let most = device.limits().max_color_attachments;
-        if wanted > most as usize {
-            let message = format!("{wanted} planes; the device draws into {most} at once");
-            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
         }
         use vk::ImageUsageFlags as U;
         for (&format, number) in color.iter().zip(0..) {
@@ -212,16 +215,23 @@ fn misfit(plane: Plane, format: vk::Format) -> Option<&'static str> {
     let is = |types: &[&str]| types.iter().any(|of| name.contains(of));
     let (fits, wanted) = match plane {
         Plane::Identity => (
-            name.starts_with("R32G32") && is(&["_UINT"]),
+            is(&["R32G32_UINT", "R32G32B32A32_UINT"]),
             "R32G32_UINT or R32G32B32A32_UINT",
         ),
-        Plane::Normal | Plane::OctahedralNormal => {
-            (is(&["_SNORM", "_SFLOAT"]), "a signed or float format")
-        }
-        Plane::Motion => (is(&["_SFLOAT"]), "a float format"),
-        Plane::Color | Plane::BaseColor | Plane::Material => {
-            (!is(&["_UINT", "_SINT"]), "fractions or floats")
-        }
+        Plane::Normal => (
+            is(&["_SNORM", "_SFLOAT"]) && is(&["B"]),
+            "three signed channels or floats",
+        ),
+        Plane::OctahedralNormal => (
+            is(&["_SNORM", "_SFLOAT"]) && is(&["G"]),
+            "two signed channels or floats",
+        ),
+        Plane::Motion => (is(&["_SFLOAT"]) && is(&["G"]), "two floats"),
+        Plane::Material => (
+            !is(&["_UINT", "_SINT"]) && is(&["G"]),
+            "two fractions or floats",
+        ),
+        Plane::Color | Plane::BaseColor => (!is(&["_UINT", "_SINT"]), "fractions or floats"),
     };
     (!fits).then_some(wanted)
 }

@@ -27,7 +27,7 @@ pub struct PreparedFrame {
     statistics: FrameStatistics,
 }
 
-/// What a prepared frame records.
+/// The commands and bytes of a prepared frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStatistics {
     /// Objects of which a part may show.
@@ -36,7 +36,7 @@ pub struct FrameStatistics {
     pub draws: u32,
     /// Dispatches.
     pub dispatches: u32,
-    /// Draws and dispatches that are left out, because their pipelines are not compiled
+    /// Groups of draws, or dispatches, that are left out because their pipeline is not compiled
     /// ([`Renderer::hide_until_compiled`]).
     pub hidden: u32,
     /// Quads, and work groups of dispatches whose number the host knows.
@@ -191,6 +191,9 @@ impl Renderer {
             self.content.objects.number_count(),
             u64::from(instances) * if motion { 2 } else { 1 },
         )?;
+        if to.last_record != instances {
+            (to.last_record, to.written) = (instances, None);
+        }
         to.write_plan(&plan.frame)?;
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);

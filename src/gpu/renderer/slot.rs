@@ -35,6 +35,8 @@ pub(crate) struct FrameSlot {
     /// The view and the renderer's version that objects and instances were written for. `None` if
     /// all must be written.
     pub written: Option<(View, u64)>,
+    /// First of the records of the last frame's placements, when they were written.
+    pub last_record: u32,
     /// Copies that the frame's commands make.
     pub staging: Vec<Upload>,
     /// The buffer of tables that the sets name, and how often the target was set.
@@ -52,7 +54,7 @@ pub(crate) struct BoundPlan {
 }
 
 impl BoundPlan {
-    /// The number of steps whose pipelines are not compiled yet.
+    /// The number of steps, groups of draws of one pipeline, whose pipelines are not compiled yet.
     pub fn hidden(&self) -> usize {
         let missing = |step: &&BoundStep| step.pipeline.is_none();
         self.steps.iter().filter(missing).count()
@@ -89,6 +91,7 @@ impl FrameSlot {
             bound: None,
             serial: 0,
             written: None,
+            last_record: 0,
             staging: Vec::new(),
             named: None,
             pool: vk::DescriptorPool::null(),
@@ -135,7 +138,7 @@ impl FrameSlot {
         all.iter().map(|buffer| buffer.bytes).sum()
     }
 
-    /// What the slot's commands record.
+    /// The number of commands and bytes of the slot's frame.
     pub fn statistics(&self) -> FrameStatistics {
         let Some(bound) = &self.bound else {
             return FrameStatistics::default();

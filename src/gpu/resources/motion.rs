@@ -1,4 +1,4 @@
-//! Where a copy was in the last frame, for motion vectors.
+//! The place of a copy in the last frame, for motion vectors.
 
 use crate::gpu::content::entry::{Entry, History};
 use crate::plan::View;

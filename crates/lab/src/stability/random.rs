@@ -5,7 +5,7 @@ use super::cases::on_half_turn;
 use super::judge::Truth;
 use super::run::both_stages;
 use crate::report::folder::write_text;
-use revmap::error::{ErrorKind, Result};
+use revmap::error::Result;
 use revmap::gpu::Device;
 use revmap::settings::Solver;
 use std::f64::consts::{PI, TAU};
@@ -376,8 +376,6 @@ impl Draft {
             let what = match one.result {
                 Ok((.., judged)) if judged.passes(truth.limit) => continue,
                 Ok((.., judged)) => judged.to_string(),
-                // A map that no device holds is refused, too.
-                Err(error) if error.kind == ErrorKind::TooLarge => continue,
                 Err(error) => {
                     device.check()?;
                     error.to_string()
