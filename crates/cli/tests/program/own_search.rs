@@ -158,6 +158,22 @@ fn the_page_leads_to_a_search_that_is_right() {
     let bench = Bench::new();
     bench.done("searches new mine");
     let template = String::from_utf8(bench.read("mine/search.glsl")).unwrap();
+    // The page shows what the program prints.
+    let said = bench.said("searches ./mine");
+    for line in said.lines().filter(|line| !line.starts_with("  drawn")) {
+        assert!(page.contains(&format!("\n{line}\n")), "{line}");
+    }
+    for (from, to) in [
+        ("factor * f", "omega * f"),
+        ("++steps;", "++steps"),
+        ("uint search", "float search"),
+    ] {
+        bench.file("mine/search.glsl", template.replace(from, to));
+        let said = lines(&bench.command("searches ./mine").output().unwrap());
+        let said = said[0].trim_start_matches("revmap: ");
+        assert!(page.contains(said), "{said}");
+    }
+    bench.file("mine/search.glsl", &template);
     let head = template.split("{\n").next().unwrap();
     let (hasty, loop_of) = (blocks[0], blocks[1]);
     let [from, to] = ["    for (int i", "        s -= gap"].map(|text| hasty.find(text).unwrap());

@@ -101,15 +101,18 @@ pub fn failures(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     outcome.trials.iter().filter(is_failure).map(line).collect()
 }
 
-/// The errors of searches of other people's folders, each once. A scene that is too large is no
-/// fault of the search: its case is named.
+/// The errors of searches of other people's folders, each once. A map that is too large, or of
+/// a format that the search does not read, is no fault of the search: the case is named.
 pub fn errors(cases: &[Case], outcome: &Outcome) -> Vec<String> {
     let mut all = Vec::new();
     for trial in &outcome.trials {
         if let (Err(error), Some(_)) = (&trial.judged, folder::of(trial.solver)) {
             let solver = trial.solver;
             let (case, value) = (&cases[trial.case].name, number(trial.value, 6));
-            let line = match error.starts_with(TOO_LARGE) {
+            let refused = error.starts_with(TOO_LARGE)
+                || error.starts_with("map_format: ")
+                || error.contains(&format!("which {solver} does not draw"));
+            let line = match refused {
                 true => format!("{case} at {value} is not drawn by {solver}: {error}"),
                 false => format!("{solver} failed: {error}"),
             };
