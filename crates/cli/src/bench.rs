@@ -315,6 +315,9 @@ impl Session {
                 output::warn(&format!("{method} was left out: {reason}"));
             }
         }
+        if let Some(warning) = folder::clock_warning(&measured.rows) {
+            output::warn(&warning);
+        }
         let (report, rows) = (self.out.join("report.html"), measured.rows.len());
         output::result(&format!("{}: {rows} rows", report.display()));
         if !measured.interrupted {

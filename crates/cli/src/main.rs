@@ -101,7 +101,8 @@ fn main() -> ExitCode {
     if std::env::var_os("RUST_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| ()));
     }
-    match catch_unwind(AssertUnwindSafe(|| program.command.run())) {
+    let run = || revmap_searches::watchdog::set_limit().and_then(|_| program.command.run());
+    match catch_unwind(AssertUnwindSafe(run)) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => failure::report(error),
         Err(cause) => {

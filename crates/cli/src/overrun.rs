@@ -42,8 +42,12 @@ pub fn try_out(device: Option<&str>) {
         let Ok(output) = command.output() else {
             continue; // the run itself finds what is wrong
         };
-        let said = String::from_utf8_lossy(&output.stderr);
-        let said = said.lines().last().unwrap_or_default();
+        let all = String::from_utf8_lossy(&output.stderr);
+        let warnings = all
+            .lines()
+            .filter_map(|line| line.strip_prefix("warning: "));
+        warnings.for_each(output::warn);
+        let said = all.lines().last().unwrap_or_default();
         let reason = match output.status.code() {
             Some(0) => continue,
             Some(_) => said.trim_start_matches("revmap: ").to_owned(),

@@ -75,21 +75,33 @@ impl Searches {
             solvers.push(solver);
         }
         let device = MethodDevice::new(Device::open(self.device.as_deref())?)?;
+        let mut described: Vec<&Path> = Vec::new();
         for solver in solvers {
-            describe(solver)
-                .iter()
-                .for_each(|line| output::result(line));
+            // A folder by other parameters needs no other description.
+            let path = folder::of(solver).map(|folder| folder.path.as_path());
+            let is_known = path.is_some_and(|path| described.contains(&path));
+            described.extend(path);
+            let lines = describe(solver);
+            let count = if is_known { 1 } else { lines.len() };
+            lines[..count].iter().for_each(|line| output::result(line));
             for stage in [DrawStage::Fragment, DrawStage::Compute] {
-                let drawn = try_out(&device, solver, stage)?;
-                output::result(&format!("  {:<11} {drawn}", "drawn"));
+                let tried = try_out(&device, solver, stage)?;
+                output::result(&format!("  {:<11} {}", "drawn", tried.line));
+                tried.warnings.iter().for_each(|line| output::warn(line));
             }
         }
         Ok(())
     }
 }
 
-/// The outcome of a small picture in one stage.
-fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<String> {
+/// The outcome of a small picture.
+struct Tried {
+    line: String,
+    warnings: Vec<String>,
+}
+
+/// Draws a small picture in one stage.
+fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<Tried> {
     let text = include_str!("../../../assets/scenes/vase.toml");
     let scene = SceneFile::parse(text, ".")?.scene(&[])?;
     let settings = MethodSettings::default().by(solver).in_stage(stage);
@@ -101,17 +113,43 @@ fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<St
     let hits = frame.distance.iter().zip(&frame.steps);
     let hits = hits.filter(|(distance, _)| distance.is_finite());
     let steps: Vec<f32> = hits.map(|(_, steps)| *steps).collect();
-    let mean = steps.iter().sum::<f32>() / steps.len().max(1) as f32;
-    let depth = errors.depth.map_or(f64::NAN, |depth| depth.p99);
-    Ok(format!(
-        "{}, a vase: {} of {} pixels missed, {} beside it, depth within {depth:.2} texels in 99 %; {mean:.1} steps each, {} pixels out of steps",
+    let mut found = format!(
+        "{}, a vase: {} of {} pixels missed, {} beside it",
         stage.name(),
         errors.missed,
         errors.hits,
         errors.ghost,
-        frame.exhausted
-    ))
+    );
+    let mut warnings = Vec::new();
+    if let Some(depth) = errors.depth {
+        found += &format!(", depth within {:.2} texels in 99 %", depth.p99);
+    } else {
+        warnings.push(format!(
+            "{solver} hits nothing in the test picture of the {} stage; see which values search returns",
+            stage.name()
+        ));
+        found += "; hits nothing";
+    }
+    if !steps.is_empty() {
+        let mean = steps.iter().sum::<f32>() / steps.len() as f32;
+        found += &format!("; {mean:.1} steps each");
+    }
+    let most = solver.steps().map(|steps| steps.default);
+    let taken = frame.steps.iter().fold(0.0f32, |most, n| most.max(*n));
+    if let Some(most) = most.filter(|most| taken > (most + BEYOND) as f32) {
+        warnings.push(format!(
+            "{solver} made {taken} look-ups for a pixel in the {} stage, but most_steps() is {most}: bound the loop by it",
+            stage.name()
+        ));
+    }
+    Ok(Tried {
+        line: format!("{found}, {} pixels out of steps", frame.exhausted),
+        warnings,
+    })
 }
+
+/// Look-ups beyond the limit on steps that a search may make, such as those of a last refinement.
+const BEYOND: u32 = 32;
 
 /// The lines about a search.
 fn describe(solver: Solver) -> Vec<String> {

@@ -32,7 +32,7 @@ pub struct Stability {
     /// The searches, and folders of other searches [default: circle, live, quadric and the default]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
     solver: Vec<Method>,
-    /// The first and the last scene of each case, by the RBM baseline and the default alone
+    /// The first and the last scene of each case; without --solver, by circle and the default alone
     #[arg(long)]
     quick: bool,
     /// So many random scenes in place of the cases, by the default; a failing one is written as the
@@ -99,10 +99,11 @@ impl Stability {
             Some(report::table(&chosen, &solvers, &outcome)),
             report::flicker(&chosen, &solvers, &outcome),
         ];
+        output::result(report::HEADLINE);
         for table in tables.iter().flatten() {
             table.aligned().lines().for_each(output::result);
         }
-        for line in report::errors(&outcome) {
+        for line in report::errors(&chosen, &outcome) {
             output::warn(&line);
         }
         let (page, count) = (out.join("report.html"), outcome.trials.len());

@@ -6,6 +6,8 @@
 mod compile;
 mod faults;
 mod program;
+#[cfg(feature = "shaderc")]
+mod returns;
 
 pub use compile::{compile, is_available};
 pub use faults::{check_frame, check_scene};

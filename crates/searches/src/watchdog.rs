@@ -12,11 +12,47 @@ use std::time::Duration;
 /// The variable that sets another limit of a frame, and of a table's program, than ten seconds.
 pub const LIMIT: &str = "REVMAP_TIME_LIMIT";
 
+/// Ten seconds.
+const USUAL_LIMIT: Duration = Duration::from_secs(10);
+
 /// The limit.
 #[must_use]
 pub fn limit() -> Duration {
-    let set = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
-    Duration::from_secs(set.unwrap_or(10))
+    set_limit().unwrap_or(USUAL_LIMIT)
+}
+
+/// The limit that the environment sets, or ten seconds.
+///
+/// # Errors
+/// [`ErrorKind::Usage`] for a value that is no number of seconds.
+pub fn set_limit() -> Result<Duration> {
+    let Some(text) = std::env::var_os(LIMIT) else {
+        return Ok(USUAL_LIMIT);
+    };
+    let text = text.to_string_lossy();
+    parsed_limit(&text).ok_or_else(|| {
+        let message = format!("{LIMIT} is {text:?}; give seconds from 0.001 to 1000000, as in 2.5");
+        Error::new(ErrorKind::Usage, message)
+    })
+}
+
+fn parsed_limit(text: &str) -> Option<Duration> {
+    let seconds: f64 = text.trim().parse().ok()?;
+    let is_limit = (1e-3..=1e6).contains(&seconds);
+    is_limit.then(|| Duration::from_secs_f64(seconds))
+}
+
+/// The limit in words.
+#[must_use]
+pub fn limit_in_words() -> String {
+    in_words(limit())
+}
+
+fn in_words(limit: Duration) -> String {
+    match limit.as_secs_f64() {
+        1.0 => "1 second".to_owned(),
+        seconds => format!("{seconds} seconds"),
+    }
 }
 
 /// The variable that names searches not to draw by, a line each: a name, a tab, the reason.
@@ -80,8 +116,8 @@ pub fn watched<T>(solver: Option<Solver>, draw: impl FnOnce() -> Result<T>) -> R
             overrun(
                 &own,
                 &format!(
-                    "a frame by {own} took more than {} seconds: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}",
-                    limit().as_secs()
+                    "a frame by {own} took more than {}: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}",
+                    limit_in_words()
                 ),
             );
         }
@@ -109,6 +145,22 @@ fn overrun(name: &str, reason: &str) {
         None => {
             eprintln!("{reason}");
             std::process::exit(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_seconds_with_fractions() {
+        let words = |text| parsed_limit(text).map(in_words);
+        assert_eq!(words("0.05").as_deref(), Some("0.05 seconds"));
+        assert_eq!(words("1").as_deref(), Some("1 second"));
+        assert_eq!(words("20").as_deref(), Some("20 seconds"));
+        for bad in ["abc", "", "0", "-1", "nan", "inf", "1e9"] {
+            assert_eq!(words(bad), None, "{bad}");
         }
     }
 }

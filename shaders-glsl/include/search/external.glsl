@@ -12,8 +12,7 @@
 // the steps run out, it returns NEARLY close to the surface, else EXHAUSTED. Lengths are in units of `s`
 // (core/meridian.glsl); those of the map are in object units.
 // - `side`: -1 for a ray that begins within the solid and searches for the exit; else 1.
-// - `f`: side * F at s = 0, positive unless the ray begins on the surface. F is `field(point_rz(m, s))`
-//   (core/surface.glsl).
+// - `f`: max(side * F, 0) at s = 0. F is `field(point_rz(m, s))` (core/surface.glsl).
 // - `pixel`: width of a pixel at s = 0, object units.
 // - `steps`: number of look-ups of the map or of the table's rows.
 // - `quadric`: q of the hit patch, G = q.x r^2 + q.z (z - q.y) + q.w (z - q.y)^2 + any constant. The gradient of G is

@@ -27,6 +27,9 @@ const BODY: &str = "{
     return s > m.s_end ? LEFT : f < 1e-3 ? FOUND : EXHAUSTED;
 }";
 
+/// The last line of the body.
+const END: &str = "return s > m.s_end ? LEFT : f < 1e-3 ? FOUND : EXHAUSTED;";
+
 /// A folder `mine` in a folder of its own, with a cache of its own.
 struct Own {
     bench: Bench,
@@ -155,6 +158,22 @@ fn the_page_leads_to_a_search_that_is_right() {
     let bench = Bench::new();
     bench.done("searches new mine");
     let template = String::from_utf8(bench.read("mine/search.glsl")).unwrap();
+    // The page shows what the program prints.
+    let said = bench.said("searches ./mine");
+    for line in said.lines().filter(|line| !line.starts_with("  drawn")) {
+        assert!(page.contains(&format!("\n{line}\n")), "{line}");
+    }
+    for (from, to) in [
+        ("factor * f", "omega * f"),
+        ("++steps;", "++steps"),
+        ("uint search", "float search"),
+    ] {
+        bench.file("mine/search.glsl", template.replace(from, to));
+        let said = lines(&bench.command("searches ./mine").output().unwrap());
+        let said = said[0].trim_start_matches("revmap: ");
+        assert!(page.contains(said), "{said}");
+    }
+    bench.file("mine/search.glsl", &template);
     let head = template.split("{\n").next().unwrap();
     let (hasty, loop_of) = (blocks[0], blocks[1]);
     let [from, to] = ["    for (int i", "        s -= gap"].map(|text| hasty.find(text).unwrap());
@@ -435,17 +454,110 @@ fn errors_of_glsl_name_file_and_line() {
             format!("{}{BODY}", HEAD.replace("float pixel, ", "")),
             &["mine/search.glsl", "does not define"],
         ),
+        (
+            format!("\n{}{BODY}", HEAD.replace("uint search", "float search")),
+            &[
+                "mine/search.glsl:2: search returns float",
+                "uint search(Meridian m",
+            ],
+        ),
+        (
+            format!("{HEAD}{}", BODY.replace(END, "")),
+            &["mine/search.glsl:1:", "does not return a value"],
+        ),
+        (
+            format!(
+                "{HEAD}{}",
+                BODY.replace(END, "if (s > m.s_end) { return LEFT; }")
+            ),
+            &["mine/search.glsl", "`search` can end without a return"],
+        ),
     ] {
-        let own = Own::new(TOML, &glsl);
-        own.bench.file("mine/own.glsl", "\nvec5 x;\n");
-        own.refused(&format!("{RENDER} mine"), 1, words);
+        // The text that is compiled differs.
+        for inside in ["true", "false"] {
+            let toml = TOML.replace("inside = true", &format!("inside = {inside}"));
+            let own = Own::new(&toml, &glsl);
+            own.bench.file("mine/own.glsl", "\nvec5 x;\n");
+            own.refused(&format!("{RENDER} mine"), 1, words);
+        }
     }
+    // Every way through these functions returns.
+    for end in [
+        "if (s > m.s_end) { return LEFT; } else { return f < 1e-3 ? FOUND : EXHAUSTED; }",
+        "for (;;) { if (s > m.s_end) { return LEFT; } return f < 1e-3 ? FOUND : EXHAUSTED; }",
+        "switch (int(s > m.s_end)) { case 1: return LEFT; default: return f < 1e-3 ? FOUND : EXHAUSTED; }",
+    ] {
+        Own::new(TOML, &format!("{HEAD}{}", BODY.replace(END, end))).renders("mine");
+    }
+    // A table of which the eye may be inside.
+    let toml = TOML
+        .replace("'map'", "'table'")
+        .replace("[steps]\ndefault = 64\n", "[table]\nprogram = ['true']\n");
+    let own = Own::new(
+        &toml,
+        "uint search(Meridian m, float side, inout float s, inout uint steps, out vec4 quadric)
+{
+    quadric = vec4(1.0);
+    return LEFT;
+}\n",
+    );
+    own.refused(
+        "searches ./mine",
+        1,
+        &[
+            "mine/search.glsl: search.toml says inside = true",
+            "`bool starts_in_table(Meridian m)`",
+            "inside = false",
+        ],
+    );
+}
+
+/// What the picture of `searches` shows is a warning there, and in a run that tries the folder.
+#[test]
+fn a_search_that_hits_nothing_or_passes_its_limit_is_named() {
+    let none = Own::new(
+        TOML,
+        &format!("{HEAD}{}", BODY.replace(END, "return LEFT;")),
+    );
+    let said = lines(&none.run("searches ./mine"));
+    let warned = "warning: mine hits nothing in the test picture of the fragment stage";
+    assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");
+    let all = none.run("searches ./mine ./mine");
+    let text = String::from_utf8(all.stdout).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("-0"), "{text}");
+    assert!(text.contains("hits nothing"), "{text}");
+    // A folder is described once.
+    assert_eq!(text.matches("  licence ").count(), 1, "{text}");
+    let bench =
+        "bench scene.toml --size 64x48 --quick --passes 2 --rounds 1 --solver mine,circle -o out";
+    let said = lines(&none.run(bench));
+    assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");
+
+    let body = BODY.replace("i < most_steps() && f > 1e-4", "i < 400");
+    let long = Own::new(TOML, &format!("{HEAD}{body}"));
+    let said = lines(&long.run("searches ./mine"));
+    let warned =
+        "look-ups for a pixel in the compute stage, but most_steps() is 64: bound the loop";
+    assert!(said.iter().any(|l| l.contains(warned)), "{said:?}");
+    assert!(lines(&Own::good().run("searches ./mine")).is_empty());
+}
+
+#[test]
+fn the_limit_of_a_frame_is_a_number_of_seconds() {
+    let mut own = Own::good();
+    own.limit = "7.5";
+    own.renders("mine");
+    own.limit = "abc";
+    own.refused(
+        &format!("{RENDER} mine"),
+        2,
+        &["REVMAP_TIME_LIMIT is \"abc\"", "seconds"],
+    );
 }
 
 /// What only a picture shows: `render` warns, a bench leaves the search out.
 #[test]
 fn wrong_values_are_counted() {
-    let end = "return s > m.s_end ? LEFT : f < 1e-3 ? FOUND : EXHAUSTED;";
     for (line, word) in [
         (
             "s = sqrt(-1.0 - s * s); return FOUND;",
@@ -457,7 +569,7 @@ fn wrong_values_are_counted() {
         ),
         ("return s > m.s_end ? LEFT : 7u;", "wrong value in"),
     ] {
-        let own = Own::new(TOML, &format!("{HEAD}{}", BODY.replace(end, line)));
+        let own = Own::new(TOML, &format!("{HEAD}{}", BODY.replace(END, line)));
         for stage in ["fragment", "compute"] {
             let said = own.renders(&format!("mine --stage {stage}"));
             let found = said

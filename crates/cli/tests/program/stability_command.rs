@@ -1,6 +1,6 @@
 //! `revmap stability`: its table, its files, its exit codes.
 
-use crate::run::Bench;
+use crate::run::{Bench, lines};
 
 #[test]
 fn a_case_that_passes_leaves_a_report_and_its_scenes() {
@@ -21,6 +21,7 @@ fn other_searches_may_fail() {
     let bench = Bench::new();
     let said = bench.said("stability budget --quick --solver circle --out kept --quiet");
     assert!(said.contains("FAILED"));
+    assert!(said.starts_with("worst share of wrong pixels over hit pixels; "));
 }
 
 #[test]
@@ -39,4 +40,19 @@ fn unknown_cases_and_meshes_are_wrong_usage() {
          stability cone-tip --solver mesh:8x8 | --solver
          stability cone-tip --random 5        | --random",
     );
+}
+
+/// A scene that is too large for every map is no fault of the search.
+#[test]
+fn a_case_whose_map_is_too_large_is_named() {
+    let bench = Bench::new();
+    let relief = concat!(env!("CARGO_MANIFEST_DIR"), "/../searches/published/relief");
+    let output = bench.done(&format!(
+        "stability large-outline --quick --solver {relief} --out kept --quiet"
+    ));
+    let said = lines(&output);
+    let warned =
+        "warning: large-outline at 10000 is not drawn by relief (folder): its map is too large";
+    assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");
+    assert!(!said.iter().any(|l| l.contains("failed")), "{said:?}");
 }

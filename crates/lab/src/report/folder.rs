@@ -192,6 +192,19 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
     table
 }
 
+/// A warning about rows that are in no summary since their clocks differ.
+#[must_use]
+pub fn clock_warning(rows: &[Row]) -> Option<String> {
+    let differs = |row: &&Row| matches!(row.clocks(), Clocks::Disagree { .. });
+    let count = rows.iter().filter(differs).count();
+    (count > 0).then(|| {
+        format!(
+            "{count} of {} rows left out (clocks differ): frames are too short, take a larger --size",
+            rows.len()
+        )
+    })
+}
+
 /// Writes `results.csv` and `raw.csv`.
 pub fn write_rows(
     folder: &Path,
@@ -226,6 +239,16 @@ pub fn write(
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn rows_whose_clocks_differ_are_counted_in_a_warning() {
+        let row = super::super::row::tests::row;
+        let fine = row(&[&[(Some(20.0), 21.0)]]);
+        let differs = row(&[&[(Some(0.036), 20.0)]]);
+        assert_eq!(clock_warning(std::slice::from_ref(&fine)), None);
+        let warning = clock_warning(&[fine, differs]).unwrap();
+        assert!(warning.starts_with("1 of 2 rows left out (clocks differ)"));
+    }
 
     #[test]
     fn an_earlier_run_is_kept_unless_it_may_be_replaced() {

@@ -38,13 +38,14 @@ fn search(method: Method) -> Style {
     }
 }
 
-/// The looks of searches of other people's folders, in the order in which they were loaded.
+/// The looks of searches of other people's folders, in the order in which they were loaded. The
+/// first is solid: the Pareto front is dashed.
 fn of_folder(search: &'static Search) -> (&'static str, Marker, Dash) {
     let own = folder::of(Solver::Other(search)).map(Folder::name);
     let all = folder::all();
     let place = all.iter().position(|f| Some(f.name()) == own);
     match place.unwrap_or(0) % 6 {
-        0 => (color::PURPLE, Marker::DIAMOND, Dash::LONG),
+        0 => (color::PURPLE, Marker::DIAMOND, Dash::SOLID),
         1 => (color::BLUE, Marker::STAR, Dash::DASH_DOT),
         2 => (color::GREY, Marker::HEXAGRAM, Dash::SHORT),
         3 => (color::BLACK, Marker::SQUARE, Dash::DOTS),

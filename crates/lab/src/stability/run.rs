@@ -5,7 +5,7 @@ use super::glance::Spot;
 use super::judge::{Faults, Judged, Truth};
 use crate::report::folder::write_text;
 use crate::report::names::number;
-use revmap::error::Result;
+use revmap::error::{ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::{Device, Offscreen};
 use revmap::scene::Scene;
@@ -19,6 +19,9 @@ use std::time::Instant;
 
 /// Both stages; the second is compared with the first.
 pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+
+/// The start of a message about a scene whose map is larger than the library allows.
+pub(super) const TOO_LARGE: &str = "its map is too large";
 
 /// How a trial came out, from the best to the worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -144,7 +147,13 @@ pub fn run(
                         judged.flicker = last.map(|last| last.flicker(faults));
                     }
                     let judged = one.result.as_ref().map(|r| r.2.clone());
-                    let judged = judged.map_err(ToString::to_string);
+                    let judged = judged.map_err(|error| {
+                        let of_map = error.key.as_deref() == Some("map_rows");
+                        match of_map || error.kind == ErrorKind::TooLarge {
+                            true => format!("{TOO_LARGE} ({error})"),
+                            false => error.to_string(),
+                        }
+                    });
                     let known = case.is_known(value);
                     outcome.trials.push(Trial {
                         case: number,

@@ -143,6 +143,7 @@ pub(super) use compiler::words;
 
 #[cfg(feature = "shaderc")]
 mod compiler {
+    use super::super::returns;
     use super::*;
     use crate::{cache, modules::generated as g};
     use shaderc_link::modules::Fnv;
@@ -172,7 +173,7 @@ mod compiler {
 
     /// A hash of all that decides on the words.
     fn key(folder: &Folder, module: &SearchModule, hook: &str) -> u64 {
-        let version = env!("CARGO_PKG_VERSION");
+        let version = concat!(env!("CARGO_PKG_VERSION"), " returns checked");
         let program = format!("{version} {:x} {:x}", g::SOURCES_HASH, g::COMPILER_HASH);
         let module = format!("{} {:?}", module.entry(), module.macros());
         let mut hash = Fnv::default();
@@ -210,8 +211,23 @@ mod compiler {
         };
         let entry = module.entry();
         let text = library(entry).map_or("", |(_, text)| text);
-        let level = OptimizationLevel::Performance;
-        let made = spirv(&compiler, (entry, text), &module.macros(), level, include);
+        let made_at = |level| spirv(&compiler, (entry, text), &module.macros(), level, include);
+        // Words that are not optimised show whether a function can end without a return.
+        if let Ok(plain) = made_at(OptimizationLevel::Zero)
+            && let Some(name) = returns::missing(plain.as_binary())
+        {
+            let file = folder.sources.first().map(|(_, path, _)| path.clone());
+            let message = format!(
+                "the function `{name}` can end without a return; end it with one, such as `return {};`",
+                if name == "search" {
+                    "EXHAUSTED"
+                } else {
+                    "false"
+                }
+            );
+            return Err(Error::new(ErrorKind::Content, message).in_file(file.unwrap_or_default()));
+        }
+        let made = made_at(OptimizationLevel::Performance);
         let made =
             made.map_err(|e| Error::new(ErrorKind::Content, message(folder, &e.to_string())))?;
         Ok(made.as_binary().to_vec())
@@ -220,12 +236,15 @@ mod compiler {
     /// The compiler's first error in a file of the folder, as `file:line: text`. An error elsewhere
     /// means that the folder's function does not fit.
     fn message(folder: &Folder, text: &str) -> String {
+        // Warnings count as errors. The line "compilation error:" is a headline.
         let lines = || {
-            let all = text.lines().filter(|line| line.contains("error:"));
-            all.map(|line| {
-                line.replacen("error: ", "", 1)
-                    .replace("own_search", "search")
-            })
+            let all = text.lines().filter_map(|line| {
+                let (place, what) = line
+                    .split_once(" error: ")
+                    .or_else(|| line.split_once(" warning: "))?;
+                Some(format!("{place} {what}"))
+            });
+            all.map(|line| line.replace("own_search", "search"))
         };
         let own = |line: &String| {
             let starts = |(_, path, _): &(_, std::path::PathBuf, _)| {
@@ -244,12 +263,37 @@ mod compiler {
             .sources
             .first()
             .map(|(_, path, _)| path.display().to_string());
+        let file = file.unwrap_or_default();
+        let head = function(folder).0;
+        if let Some((place, kind)) = returned(folder) {
+            return format!(
+                "{place}: search returns {kind}; the function that is called is `{head}`"
+            );
+        }
         let other = lines().next().unwrap_or_else(|| text.replace('\n', " "));
+        if other.contains("'starts_in_table'") {
+            return format!(
+                "{file}: search.toml says inside = true: define `bool starts_in_table(Meridian m)`, or set inside = false"
+            );
+        }
         format!(
-            "{}: does not define the function that is called, `{}`: {}",
-            file.unwrap_or_default(),
-            function(folder).0,
+            "{file}: does not define the function that is called, `{head}`: {}",
             other.trim()
         )
+    }
+
+    /// The place and the type of a folder's `search`, if the type is not `uint`.
+    fn returned(folder: &Folder) -> Option<(String, String)> {
+        folder.sources.iter().find_map(|(_, path, text)| {
+            let mut lines = text.lines().zip(1..);
+            lines.find_map(|(line, number)| {
+                let (kind, rest) = line.trim_start().split_once(char::is_whitespace)?;
+                let rest = rest.trim_start().strip_prefix("search")?;
+                let word = |c: char| c.is_alphanumeric() || c == '_';
+                let is_other = kind != "uint" && !kind.is_empty() && kind.chars().all(word);
+                (is_other && kind != "return" && rest.trim_start().starts_with('('))
+                    .then(|| (format!("{}:{number}", path.display()), kind.to_owned()))
+            })
+        })
     }
 }

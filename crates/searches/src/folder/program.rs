@@ -2,7 +2,7 @@
 //! standard output.
 
 use super::Folder;
-use crate::watchdog::limit;
+use crate::watchdog::{limit, limit_in_words};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::search::SearchTable;
 use revmap::surface::{Chain, Contour};
@@ -110,7 +110,7 @@ fn run(folder: &Folder, words: &[String], input: String) -> std::result::Result<
                 let _ = child.kill().and_then(|()| child.wait());
                 return Err(match large {
                     true => format!("wrote more than {} MB", BYTES >> 20),
-                    false => format!("took more than {} seconds and was ended", limit().as_secs()),
+                    false => format!("took more than {} and was ended", limit_in_words()),
                 });
             }
         }
