@@ -1477,8 +1477,7 @@ RevmapResult revmap_device_check(const struct RevmapDevice *device);
 
 /**
  * Labels the commands and names the buffers of all renderers of a device from now on, for
- * debuggers of frames. The host's instance was made with VK_EXT_debug_utils. A device that the
- * library opened with validation has labels already.
+ * debuggers of frames. The host's instance was made with VK_EXT_debug_utils.
  *
  * Thread: any.
  */

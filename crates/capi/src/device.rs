@@ -259,8 +259,7 @@ pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> Rev
 }
 
 /// Labels the commands and names the buffers of all renderers of a device from now on, for
-/// debuggers of frames. The host's instance was made with VK_EXT_debug_utils. A device that the
-/// library opened with validation has labels already.
+/// debuggers of frames. The host's instance was made with VK_EXT_debug_utils.
 ///
 /// Thread: any.
 #[unsafe(no_mangle)]
