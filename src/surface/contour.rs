@@ -30,8 +30,7 @@ pub struct ContourSource {
     tree: Tree,
 }
 
-/// Upper limit on segments of an outline. Time and memory grow with their number: half as many,
-/// a checkerboard of 512 x 512 pixels, take 10 to 47 s on two cores.
+/// Upper limit on segments of an outline. Time and memory grow with their number.
 pub const MOST_SEGMENTS: usize = 1 << 20;
 
 /// A point within this distance of the box's floor or ceiling counts as on it.
