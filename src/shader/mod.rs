@@ -12,14 +12,18 @@ pub use blocks::{
     FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, ShadowBlock,
 };
 #[cfg(test)]
+pub(crate) use catalogue::Features;
+#[cfg(test)]
 pub(crate) use catalogue::modules;
-pub use catalogue::{Module, Search};
+#[cfg(feature = "shaderc")]
+pub use catalogue::shading_macros;
+pub use catalogue::{Module, Search, shading_modules};
 #[cfg(feature = "other-shaders")]
 pub use module::catalogued;
 pub use module::{depth_less, words};
-pub use outputs::with_locations;
+pub use outputs::{instructions, with_locations, with_outputs_for};
 pub(crate) use variant::is_beveled;
-pub use variant::{Kind, ShadowCasters, Variant};
+pub use variant::{HostLook, Kind, ShadowCasters, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // The list includes numbers that only the shaders read, or that only tests compare.

@@ -8,8 +8,8 @@ use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Features, Output, modules};
 use crate::shader::{
-    FrameBlock, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE, ObjectBlock, ShadowBlock,
-    ShadowCasters, Variant, depth_less, generated as g, words,
+    FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE, ObjectBlock,
+    ShadowBlock, ShadowCasters, Variant, depth_less, generated as g, words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
@@ -173,6 +173,7 @@ fn any(solver: Solver, planes: Planes) -> Variant {
         &lighting,
         &object,
         ShadowCasters::default(),
+        HostLook::default(),
     )
 }
 

@@ -28,6 +28,8 @@ mod extremes;
 mod fallback;
 mod gallery;
 mod golden;
+#[cfg(feature = "shaderc")] // compiles GLSL at run time
+mod host_shading;
 mod hulls;
 mod limits;
 mod memory_types;

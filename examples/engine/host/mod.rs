@@ -6,6 +6,8 @@ pub mod attachments;
 pub mod memory;
 mod mesh;
 mod pass;
+#[allow(dead_code)] // for the forward host and tests
+pub mod set;
 mod stage;
 
 pub use mesh::Mesh;

@@ -48,6 +48,9 @@
 #ifndef ORTHO
 #define ORTHO 0 // 1: rays are parallel
 #endif
+#ifndef HOST_SHADING
+#define HOST_SHADING 0 // 1: a function of the host shades; lights and shadows of the library are left out
+#endif
 
 // Smaller variations are specialisation constants.
 #if REPEATED

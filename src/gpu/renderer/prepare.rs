@@ -167,8 +167,8 @@ impl Renderer {
             let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
             steps.push(BoundStep {
                 pipeline: match self.hides {
-                    true => pipelines.known(step.variant, step.kind, output, self.owner)?,
-                    false => Some(pipelines.get(step.variant, step.kind, output, self.owner)?),
+                    true => pipelines.known(step.variant, step.kind, output, &self.owner)?,
+                    false => Some(pipelines.get(step.variant, step.kind, output, &self.owner)?),
                 },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
