@@ -28,8 +28,11 @@ mod extremes;
 mod fallback;
 mod gallery;
 mod golden;
+mod host_images;
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 mod host_shading;
+#[cfg(feature = "shaderc")]
+mod host_shading_faults;
 mod hulls;
 mod limits;
 mod memory_types;
