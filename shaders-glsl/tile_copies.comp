@@ -21,7 +21,11 @@ void main()
             if (ONE_OBJECT == 0u) {
                 take_object(i.object.x);
             }
-            store(pixel, depth, shade(look_of(i), pixel_rays(i), pixel, hit));
+            Look look = look_of(i);
+#if HOST_SHADING
+            look.instance = index;
+#endif
+            store(pixel, depth, shade(look, pixel_rays(i), pixel, hit));
         }
     }
 }

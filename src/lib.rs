@@ -119,6 +119,7 @@
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
 //! | [`scene`] | camera, lights, objects: *what* is drawn, as plain values |
 //! | `shader` | modules of SPIR-V, the blocks that they read, and the variants of pipelines |
+//! | [`shading`] | a host's function of shading, with its modules |
 //! | `solid` | all that is made from one outline under an offset, without Vulkan |
 //! | [`cast`] | rays on the CPU, for picking and physics |
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
@@ -129,7 +130,7 @@
 //!
 //! | feature | brings |
 //! |---|---|
-//! | `shaderc` | compiles the GLSL at build time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
+//! | `shaderc` | compiles the GLSL at build time and a host's shading at run time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
 //! | `other-shaders` | for work on the shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
 //!
 //! # Other crates
@@ -151,6 +152,7 @@ pub mod scene;
 pub mod search;
 pub mod settings;
 mod shader;
+pub mod shading;
 mod solid;
 pub mod surface;
 

@@ -53,7 +53,7 @@ fn generate() -> Fallible<()> {
         )?);
     }
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
-    fs::write(out.join("library.rs"), library(&sources)?)?;
+    fs::write(out.join("library.rs"), modules::texts(LIBRARY, &sources)?)?;
     for name in NAMES {
         sources.extend(modules::files_in(format!("{OWN}/{name}"), &["glsl"])?);
     }
@@ -75,24 +75,6 @@ fn generate() -> Fallible<()> {
     fs::write(out.join("modules.rs"), modules.embed(&sources)?)?;
     fs::write(out.join("published.rs"), published()?)?;
     Ok(())
-}
-
-/// The library's GLSL by its names in `#include`, for searches that are compiled at run time.
-fn library(sources: &[PathBuf]) -> Fallible<String> {
-    let mut files = String::new();
-    if std::env::var_os("CARGO_FEATURE_SHADERC").is_some() {
-        for path in sources {
-            let name = path.strip_prefix(LIBRARY)?;
-            let name = name.strip_prefix("include").unwrap_or(name);
-            let full = path.canonicalize()?;
-            writeln!(
-                files,
-                "({:?}, include_str!({full:?})),",
-                name.to_string_lossy()
-            )?;
-        }
-    }
-    Ok(format!("&[{files}]"))
 }
 
 /// A constant and a static for each search.

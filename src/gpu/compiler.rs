@@ -11,12 +11,12 @@ use crate::gpu::device::instance::Instance;
 use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::pipelines::Pipelines;
+use crate::gpu::vk::pipelines::{Owner, Pipelines};
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
 use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
-use crate::shader::{Kind, ShadowCasters, Variant, catalogued};
+use crate::shader::{HostLook, Kind, ShadowCasters, Variant, catalogued};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -145,7 +145,16 @@ impl PipelineCompiler {
         };
         let (lighting, object) = (&look.lighting, &look.object);
         let casters = ShadowCasters::default();
-        let variant = Variant::new(&settings, look.planes, solver, lighting, object, casters);
+        let host = HostLook::default();
+        let variant = Variant::new(
+            &settings,
+            look.planes,
+            solver,
+            lighting,
+            object,
+            casters,
+            host,
+        );
         let conditions = Conditions {
             compute: stage == DrawStage::Compute,
             casts: lighting.shadow != Shadow::Off,
@@ -211,7 +220,9 @@ impl PipelineCompiler {
     ) -> Result<Vec<Executable>> {
         let PipelineChoice(variant, kind) = choice;
         let output = self.output(stage, planes)?;
-        let pipeline = self.pipelines.get(variant, kind, &output, 0)?;
+        let pipeline = self
+            .pipelines
+            .get(variant, kind, &output, &Owner::default())?;
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline was made with statistics captured, and is never destroyed.
         let executables =

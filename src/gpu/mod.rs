@@ -32,10 +32,12 @@ pub use renderer::Renderer;
 pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
 pub use renderer::prepare::{FrameStatistics, PreparedFrame};
 pub use renderer::prewarm::Prewarm;
+pub use resources::host_image::HostImage;
 pub use vk::call::{allocation_error, vulkan_error};
 pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind};
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;
+pub use vk::shading::HostShading;
 
 use crate::error::Result;
 use crate::frame::Frame;

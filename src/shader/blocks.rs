@@ -43,6 +43,8 @@ pub struct FrameBlock {
     pub caster_middle: [f32; 4],
     /// Root of the hierarchy: half of its box; bits of its member `instance`.
     pub caster_half_size: [f32; 4],
+    /// First: index of the view among those of the pass.
+    pub view: [u32; 4],
     /// Only the first `size[2]` lights count.
     pub lights: [LightBlock; MAX_LIGHTS as usize],
 }

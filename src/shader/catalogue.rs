@@ -44,6 +44,13 @@ impl Entry {
         }
     }
 
+    /// True if its invocations shade hits. Build scripts do not call this.
+    #[must_use]
+    #[allow(dead_code)]
+    pub const fn shades(self) -> bool {
+        matches!(self, Self::Cells | Self::TilePatches) || self.searches()
+    }
+
     /// True if its invocations search with code that another crate may provide. Build scripts do
     /// not call this.
     #[must_use]
@@ -224,6 +231,33 @@ fn has(search: Search, features: Features, output: Output) -> bool {
         (Output::Color | Output::Planes, Features::Full) => true,
         (Output::Depth | Output::DepthOrtho, features) => main && features != Features::Textured,
     }
+}
+
+/// The modules of a stage in which a host's function may shade: colour alone, or planes of a list. All
+/// have texture coordinates, and none has shadows. Build scripts do not call this.
+#[must_use]
+#[allow(dead_code)]
+pub fn shading_modules(compute: bool) -> Vec<Module> {
+    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells);
+    let mut all = modules();
+    all.retain(|m| {
+        m.entry.shades()
+            && in_pass(m.entry) != compute
+            && m.search != Search::LiveRgba8
+            && m.features >= Features::Textured
+            && matches!(m.output, Output::Color | Output::List)
+    });
+    all
+}
+
+/// The macros with which one of these modules is compiled.
+#[must_use]
+#[allow(dead_code)]
+pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
+    let mut all = module.macros();
+    all.retain(|(name, _)| *name != "SHADOWED");
+    all.push(("HOST_SHADING", "1"));
+    all
 }
 
 /// Every module, in order.

@@ -7,19 +7,25 @@ mod external;
 mod module;
 mod outputs;
 mod variant;
+mod view_index;
 
 pub use blocks::{
     CasterNode, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
 };
 #[cfg(test)]
+pub(crate) use catalogue::Features;
+#[cfg(test)]
 pub(crate) use catalogue::modules;
-pub use catalogue::{Module, Search};
+#[cfg(feature = "shaderc")]
+pub use catalogue::shading_macros;
+pub use catalogue::{Module, Search, shading_modules};
 #[cfg(feature = "other-shaders")]
 pub use module::catalogued;
 pub use module::{depth_less, words};
-pub use outputs::with_locations;
+pub use outputs::{instructions, with_locations, with_outputs_for};
 pub(crate) use variant::is_beveled;
-pub use variant::{Kind, ShadowCasters, Variant};
+pub use variant::{HostLook, Kind, ShadowCasters, Variant};
+pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // The list includes numbers that only the shaders read, or that only tests compare.

@@ -1,6 +1,7 @@
 //! Outputs of fragments at the locations of a host's attachments. Modules that draw a list of planes
 //! write all of them; one edit of the words moves each variable to its attachment, and makes those
-//! without an attachment private, so that the driver removes what only they need.
+//! without an attachment private, so that the driver removes what only they need. Outputs of vertices
+//! that a host's shading does not read become private, too.
 
 use std::collections::HashMap;
 
@@ -8,6 +9,8 @@ use std::collections::HashMap;
 const HEADER: usize = 5;
 /// Word of the header that is larger than every id.
 const BOUND: usize = 3;
+/// More than the locations of any module.
+const MOST_LOCATIONS: u32 = 64;
 
 /// Opcodes, decorations and storage classes of the SPIR-V specification.
 mod op {
@@ -15,8 +18,43 @@ mod op {
     pub const VARIABLE: u32 = 59;
     pub const DECORATE: u32 = 71;
     pub const LOCATION: u32 = 30;
+    pub const INPUT: u32 = 1;
     pub const OUTPUT: u32 = 3;
     pub const PRIVATE: u32 = 6;
+}
+
+/// The instructions of a module: opcode, all words.
+pub fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
+    let mut at = HEADER;
+    std::iter::from_fn(move || {
+        let count = (*words.get(at)? >> 16) as usize;
+        let one = words.get(at..at + count.max(1))?;
+        at += count.max(1);
+        Some((one[0] & 0xffff, one))
+    })
+}
+
+/// The variables of a storage class that have a location: ids, locations.
+fn located(words: &[u32], class: u32) -> HashMap<u32, u32> {
+    let variables: Vec<u32> = instructions(words)
+        .filter(|(code, one)| *code == op::VARIABLE && one[3] == class)
+        .map(|(_, one)| one[2])
+        .collect();
+    instructions(words)
+        .filter(|(code, one)| *code == op::DECORATE && one[2] == op::LOCATION)
+        .filter(|(_, one)| variables.contains(&one[1]))
+        .map(|(_, one)| (one[1], one[3]))
+        .collect()
+}
+
+/// The words of a vertex module that passes only what a fragment module reads. A host's function of
+/// shading need not read all that the vertices of the library pass.
+#[must_use]
+pub fn with_outputs_for(vertex: &[u32], fragment: &[u32]) -> Vec<u32> {
+    let read = located(fragment, op::INPUT);
+    let kept = |n: u32| read.values().any(|known| *known == n).then_some(n);
+    let locations: Vec<_> = (0..MOST_LOCATIONS).map(kept).collect();
+    with_locations(vertex, &locations)
 }
 
 /// The words of a fragment module whose output at location `n` is at `locations[n]`. Outputs beyond
@@ -26,38 +64,25 @@ mod op {
 /// entry point lists its private variables, too. A test checks both.
 #[must_use]
 pub fn with_locations(words: &[u32], locations: &[Option<u32>]) -> Vec<u32> {
-    let instructions = || {
-        let mut at = HEADER;
-        std::iter::from_fn(move || {
-            let count = (*words.get(at)? >> 16) as usize;
-            let one = words.get(at..at + count.max(1))?;
-            at += count.max(1);
-            Some((one[0] & 0xffff, one))
-        })
-    };
-    let outputs: Vec<u32> = instructions()
-        .filter(|(code, one)| *code == op::VARIABLE && one[3] == op::OUTPUT)
-        .map(|(_, one)| one[2])
-        .collect();
-    let at: HashMap<u32, Option<u32>> = instructions()
-        .filter(|(code, one)| *code == op::DECORATE && one[2] == op::LOCATION)
-        .filter(|(_, one)| outputs.contains(&one[1]))
-        .map(|(_, one)| (one[1], locations.get(one[3] as usize).copied().flatten()))
+    let at: HashMap<u32, Option<u32>> = located(words, op::OUTPUT)
+        .into_iter()
+        .map(|(id, n)| (id, locations.get(n as usize).copied().flatten()))
         .collect();
     let is_private = |id: &u32| at.get(id) == Some(&None);
-    let pointee: HashMap<u32, u32> = instructions()
+    let pointee: HashMap<u32, u32> = instructions(words)
         .filter(|(code, _)| *code == op::TYPE_POINTER)
         .map(|(_, one)| (one[1], one[3]))
         .collect();
 
     let mut out = words[..HEADER].to_vec();
     let mut private_types: HashMap<u32, u32> = HashMap::new();
-    for (code, one) in instructions() {
+    for (code, one) in instructions(words) {
         match code {
+            // Location and interpolation go with the interface.
+            op::DECORATE if is_private(&one[1]) => {}
             op::DECORATE if one[2] == op::LOCATION && at.contains_key(&one[1]) => {
-                if let Some(location) = at[&one[1]] {
-                    out.extend([one[0], one[1], one[2], location]);
-                }
+                let location = at[&one[1]].unwrap_or_default();
+                out.extend([one[0], one[1], one[2], location]);
             }
             op::VARIABLE if is_private(&one[2]) => {
                 let of = pointee[&one[1]];
@@ -83,17 +108,9 @@ mod tests {
     use crate::shader::tests::instructions;
     use crate::shader::{modules, words};
 
-    /// Variables with a location, of one storage class.
-    fn located(words: &[u32], class: u32) -> Vec<u32> {
-        let all = instructions(words);
-        let variables = all
-            .iter()
-            .filter(|(c, w)| *c == op::VARIABLE && w[2] == class);
-        let ids: Vec<u32> = variables.map(|(_, w)| w[1]).collect();
-        let decorations = all
-            .iter()
-            .filter(|(c, w)| *c == op::DECORATE && w[1] == op::LOCATION && ids.contains(&w[0]));
-        let mut found: Vec<u32> = decorations.map(|(_, w)| w[2]).collect();
+    /// Locations of variables of one storage class, in order.
+    fn locations(words: &[u32], class: u32) -> Vec<u32> {
+        let mut found: Vec<u32> = located(words, class).into_values().collect();
         found.sort_unstable();
         found
     }
@@ -109,13 +126,13 @@ mod tests {
             let words = words(module).unwrap();
             assert!(words[1] >= VERSION_1_4);
             let every: Vec<u32> = (0..Plane::COUNT as u32).collect();
-            assert_eq!(located(&words, op::OUTPUT), every, "{}", module.name());
-            let mut locations = [None; Plane::COUNT];
-            locations[Plane::Motion.location() as usize] = Some(0);
-            locations[Plane::Color.location() as usize] = Some(1);
-            let moved = with_locations(&words, &locations);
-            assert_eq!(located(&moved, op::OUTPUT), [0, 1]);
-            assert_eq!(located(&moved, op::PRIVATE), [] as [u32; 0]);
+            assert_eq!(locations(&words, op::OUTPUT), every, "{}", module.name());
+            let mut to = [None; Plane::COUNT];
+            to[Plane::Motion.location() as usize] = Some(0);
+            to[Plane::Color.location() as usize] = Some(1);
+            let moved = with_locations(&words, &to);
+            assert_eq!(locations(&moved, op::OUTPUT), [0, 1]);
+            assert_eq!(locations(&moved, op::PRIVATE), [] as [u32; 0]);
             let all = instructions(&moved);
             let is_private = |w: &&[u32]| w[2] == op::PRIVATE;
             let variables = all.iter().filter(|(c, _)| *c == op::VARIABLE);
@@ -131,5 +148,26 @@ mod tests {
             found += 1;
         }
         assert_eq!(found, 5);
+    }
+
+    /// Vertices pass to depths only what depths read, and to colours what they read.
+    #[test]
+    fn vertices_pass_what_fragments_read() {
+        let named = |name: &str| {
+            let module = modules().into_iter().find(|m| m.name() == name);
+            words(&module.unwrap()).unwrap()
+        };
+        let vertex = named("proxy_boxes.vert.quadric.plain.color");
+        let passed = locations(&vertex, op::OUTPUT);
+        for (fragment, fewer) in [
+            ("tree.frag.quadric.plain.color", false),
+            ("tree.frag.quadric.plain.depth", true),
+        ] {
+            let fragment = named(fragment);
+            let read = locations(&fragment, op::INPUT);
+            let fit = with_outputs_for(&vertex, &fragment);
+            assert_eq!(locations(&fit, op::OUTPUT), read);
+            assert_eq!(read.len() < passed.len(), fewer);
+        }
     }
 }

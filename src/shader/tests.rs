@@ -8,8 +8,8 @@ use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Features, Output, modules};
 use crate::shader::{
-    CasterNode, FrameBlock, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE, ObjectBlock,
-    ShadowCasters, Variant, depth_less, generated as g, words,
+    CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
+    ObjectBlock, ShadowCasters, Variant, depth_less, generated as g, words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,6 +105,7 @@ fn blocks_have_the_same_layout_in_rust_and_glsl() {
             caster_eye,
             caster_middle,
             caster_half_size,
+            view,
             lights
         }
     );
@@ -178,6 +179,7 @@ fn any(solver: Solver, planes: Planes) -> Variant {
         &lighting,
         &object,
         ShadowCasters::default(),
+        HostLook::default(),
     )
 }
 
@@ -196,8 +198,9 @@ fn a_variant_sets_every_specialisation_constant() {
         .constants()
         .iter()
         .map(|(id, _)| *id)
-        // Constants of the device.
+        // Constants of the device and of the pass.
         .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID, g::FETCHED_CELLS_ID])
+        .chain([g::VIEWS_ID, g::VIEW_INDEX_ID])
         .collect();
     let mut all = BTreeSet::new();
     for module in modules() {

@@ -69,6 +69,17 @@ pub struct ShadowCasters {
     pub beveled: bool,
 }
 
+/// What a host brings to the look of an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HostLook {
+    /// Its function shades. The function reads texture coordinates, and no light of ours.
+    pub shading: bool,
+    /// Its image has the colours.
+    pub colors: bool,
+    /// Its image has the slopes.
+    pub slopes: bool,
+}
+
 /// A module and the values of its specialisation constants. A variant and a [`Kind`] are the key of
 /// a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -147,6 +158,7 @@ impl Variant {
         lighting: &Lighting,
         object: &Object,
         casters: ShadowCasters,
+        host: HostLook,
     ) -> Self {
         let texturing = &object.texturing;
         let casts = lighting.shadow != Shadow::Off;
@@ -156,9 +168,9 @@ impl Variant {
             Shadow::Hard => g::SHADOW_HARD,
             Shadow::Soft => g::SHADOW_SOFT,
         };
-        let color_map = u32::from(texturing.color_map.is_some());
+        let color_map = u32::from(host.colors || texturing.color_map.is_some());
         let bump = match texturing.bump_form {
-            _ if texturing.displacement_map.is_none() => g::BUMP_OFF,
+            _ if !host.slopes && texturing.displacement_map.is_none() => g::BUMP_OFF,
             BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
             BumpForm::Papers => g::BUMP_PAPERS,
         };
@@ -185,7 +197,9 @@ impl Variant {
             bump,
             projection: match texturing.projection {
                 // No code reads coordinates.
-                _ if !textured && output != Output::Planes => g::PROJECTION_CYLINDRICAL,
+                _ if !textured && !host.shading && output != Output::Planes => {
+                    g::PROJECTION_CYLINDRICAL
+                }
                 Projection::Planar => g::PROJECTION_PLANAR,
                 Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
                 Projection::Spherical => g::PROJECTION_SPHERICAL,
@@ -199,6 +213,8 @@ impl Variant {
             depth_keep: 1,
             lights: if casts {
                 3
+            } else if host.shading {
+                1
             } else {
                 lighting.lights.len().clamp(1, 3) as u32
             },

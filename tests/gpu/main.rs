@@ -21,6 +21,7 @@ mod embedding_crowds;
 mod embedding_lists;
 mod embedding_outputs;
 mod embedding_samples;
+mod embedding_stereo;
 mod embedding_tools;
 mod embedding_visibility;
 mod exhausted;
@@ -28,6 +29,11 @@ mod extremes;
 mod fallback;
 mod gallery;
 mod golden;
+mod host_images;
+#[cfg(feature = "shaderc")] // compiles GLSL at run time
+mod host_shading;
+#[cfg(feature = "shaderc")]
+mod host_shading_faults;
 mod hulls;
 mod limits;
 mod memory_types;

@@ -22,6 +22,7 @@ mod render;
 mod samples;
 mod searches;
 mod shaders;
+mod shading;
 mod shell;
 mod stability;
 mod usage;
@@ -60,6 +61,7 @@ enum Command {
     Stability(stability::Stability),
     Shaders(shaders::Shaders),
     Searches(searches::Searches),
+    Shading(shading::Shading),
     Devices(devices::Devices),
     Compare(compare::Compare),
     View(view::View),
@@ -78,6 +80,7 @@ impl Command {
             Self::Stability(command) => command.run(),
             Self::Shaders(command) => command.run(),
             Self::Searches(command) => command.run(),
+            Self::Shading(command) => command.run(),
             Self::Devices(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::View(command) => command.run(),

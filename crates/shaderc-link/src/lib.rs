@@ -40,3 +40,15 @@ pub fn spirv(
     });
     compiler.compile_into_spirv(text, kind, file, "main", Some(&options))
 }
+
+/// The errors and warnings in a failure's text, as `file:line: message`. Other lines are headlines.
+#[cfg(feature = "shaderc")]
+pub fn complaints(text: &str) -> Vec<String> {
+    let parted = |line: &str| {
+        let (place, what) = line
+            .split_once(" error: ")
+            .or_else(|| line.split_once(" warning: "))?;
+        Some(format!("{place} {what}"))
+    };
+    text.lines().filter_map(parted).collect()
+}

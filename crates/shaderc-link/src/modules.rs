@@ -172,6 +172,19 @@ impl Modules<'_> {
     }
 }
 
+/// Rust code of a list of names and texts: GLSL of the folder `root` for programs that compile. Names
+/// are those in `#include`. The list is empty without the feature `shaderc`.
+pub fn texts(root: &str, sources: &[PathBuf]) -> Fallible<String> {
+    let mut files = String::new();
+    for path in sources.iter().filter(|_| cfg!(feature = "shaderc")) {
+        let name = path.strip_prefix(root)?;
+        let name = name.strip_prefix("include").unwrap_or(name);
+        let (name, full) = (name.to_string_lossy(), path.canonicalize()?);
+        writeln!(files, "({name:?}, include_str!({full:?})),")?;
+    }
+    Ok(format!("&[{files}]"))
+}
+
 /// The files of a folder with one of these endings, in order.
 pub fn files_in(folder: impl AsRef<Path>, endings: &[&str]) -> Fallible<Vec<PathBuf>> {
     let has_ending = |path: &PathBuf| {

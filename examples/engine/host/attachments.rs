@@ -1,4 +1,5 @@
-//! Colour attachments of any formats and a depth, drawn by dynamic rendering and read back.
+//! Colour attachments of any formats and a depth, drawn by dynamic rendering and read back. They have
+//! a layer for each view of a pass.
 
 use super::memory::{HostBuffer, HostImage};
 use super::{DEPTH, Fallible, Host, Options};
@@ -15,6 +16,7 @@ pub struct Attachments<'a> {
     options: Options,
     colors: Vec<Attachment<'a>>,
     depth: Attachment<'a>,
+    views: u32,
     host: &'a Host,
 }
 
@@ -25,10 +27,20 @@ impl<'a> Attachments<'a> {
         options: Options,
         formats: &[(vk::Format, usize)],
     ) -> Fallible<Self> {
-        let pixels = (options.width * options.height) as usize;
+        Self::of_views(host, options, formats, 1)
+    }
+
+    /// Attachments for a pass of several views, by multiview.
+    pub fn of_views(
+        host: &'a Host,
+        options: Options,
+        formats: &[(vk::Format, usize)],
+        views: u32,
+    ) -> Fallible<Self> {
+        let pixels = (options.width * options.height * views) as usize;
         let of = |&(format, bytes): &(vk::Format, usize)| {
             Ok(Attachment {
-                image: HostImage::new(host, &options, format, 1)?,
+                image: HostImage::layered(host, &options, format, views)?,
                 read: HostBuffer::new(host, bytes * pixels, vk::BufferUsageFlags::TRANSFER_DST)?,
             })
         };
@@ -36,6 +48,7 @@ impl<'a> Attachments<'a> {
             colors: formats.iter().map(of).collect::<Fallible<_>>()?,
             depth: of(&(DEPTH, 4))?,
             options,
+            views,
             host,
         })
     }
@@ -84,6 +97,10 @@ impl<'a> Attachments<'a> {
             })
             .render_area(area)
             .layer_count(1)
+            .view_mask(match self.views {
+                1 => 0,
+                views => (1 << views) - 1,
+            })
             .color_attachments(&colors)
             .depth_attachment(&depth);
         let undefined = vk::ImageLayout::UNDEFINED;
@@ -121,12 +138,12 @@ impl<'a> Attachments<'a> {
         }
     }
 
-    /// The bytes of a colour attachment, once the commands have run.
+    /// The bytes of a colour attachment, view after view, once the commands have run.
     pub fn color(&self, number: usize) -> Vec<u8> {
         self.colors[number].read.bytes()
     }
 
-    /// The depths, once the commands have run.
+    /// The depths, view after view, once the commands have run.
     pub fn depths(&self) -> Vec<f32> {
         bytemuck::pod_collect_to_vec(&self.depth.read.bytes())
     }

@@ -69,6 +69,7 @@ pub struct HostImage<'a> {
     pub raw: vk::Image,
     pub view: vk::ImageView,
     pub aspect: vk::ImageAspectFlags,
+    layers: u32,
     memory: vk::DeviceMemory,
     host: &'a Host,
 }
@@ -84,12 +85,33 @@ impl<'a> HostImage<'a> {
         Self::with_usage(host, options, format, samples, more)
     }
 
+    /// An image of so many layers, for a pass of as many views.
+    pub fn layered(
+        host: &'a Host,
+        options: &Options,
+        format: vk::Format,
+        layers: u32,
+    ) -> Fallible<Self> {
+        let more = vk::ImageUsageFlags::empty();
+        Self::made(host, options, format, [1, layers], more)
+    }
+
     /// An image that is also used in other ways than by a pass and for reading back.
     pub fn with_usage(
         host: &'a Host,
         options: &Options,
         format: vk::Format,
         samples: u32,
+        more: vk::ImageUsageFlags,
+    ) -> Fallible<Self> {
+        Self::made(host, options, format, [samples, 1], more)
+    }
+
+    fn made(
+        host: &'a Host,
+        options: &Options,
+        format: vk::Format,
+        [samples, layers]: [u32; 2],
         more: vk::ImageUsageFlags,
     ) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
@@ -105,7 +127,7 @@ impl<'a> HostImage<'a> {
                 .format(format)
                 .extent(options.extent().into())
                 .mip_levels(1)
-                .array_layers(1)
+                .array_layers(layers)
                 .samples(vk::SampleCountFlags::from_raw(samples))
                 .usage(if samples == 1 {
                     usage | more | U::TRANSFER_SRC
@@ -120,12 +142,16 @@ impl<'a> HostImage<'a> {
                 raw,
                 view: vk::ImageView::null(),
                 aspect,
+                layers,
                 memory,
                 host,
             };
             let info = vk::ImageViewCreateInfo::default()
                 .image(raw)
-                .view_type(vk::ImageViewType::TYPE_2D)
+                .view_type(match layers {
+                    1 => vk::ImageViewType::TYPE_2D,
+                    _ => vk::ImageViewType::TYPE_2D_ARRAY,
+                })
                 .format(format)
                 .subresource_range(image.range());
             image.view = host.device.create_image_view(&info, None)?;
@@ -138,7 +164,7 @@ impl<'a> HostImage<'a> {
         vk::ImageSubresourceRange::default()
             .aspect_mask(self.aspect)
             .level_count(1)
-            .layer_count(1)
+            .layer_count(self.layers)
     }
 
     /// The layout of the image while it is drawn into.
@@ -168,7 +194,7 @@ impl<'a> HostImage<'a> {
     pub fn region(&self, options: &Options) -> vk::BufferImageCopy {
         let layers = vk::ImageSubresourceLayers::default()
             .aspect_mask(self.aspect)
-            .layer_count(1);
+            .layer_count(self.layers);
         vk::BufferImageCopy::default()
             .image_subresource(layers)
             .image_extent(options.extent().into())

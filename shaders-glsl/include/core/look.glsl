@@ -14,6 +14,9 @@ struct Look {
 #if SHADOWED
     vec3 position; // position of the instance, from the eye, world axes
 #endif
+#if HOST_SHADING
+    uint instance; // number of the instance among all
+#endif
 };
 
 // The first two lights. Entry files copy them like the blocks.

@@ -22,6 +22,23 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
+#if TEXTURED
+// Returns the changes of the surface point a pixel to the right and a pixel down, profile units. A replica's are in its
+// own space.
+void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
+{
+    vec3 normal = unit(hit.normal);
+    float t = rays.base + hit.t; // relative to the eye
+    right = footprint(v, rays.dir_x, normal, t) * profile_units();
+    down = footprint(v, rays.dir_y, normal, t) * profile_units();
+    if (REPLICAS != 0u) {
+        right *= hit.sense * vec3(object.cells.xyz);
+        down *= hit.sense * vec3(object.cells.xyz);
+    }
+}
+#endif
+#include "core/host_shading.glsl"
+
 // Returns the light reflected from one light, in turned space.
 vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 {
@@ -71,13 +88,8 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
 #endif
 #if TEXTURED
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
-        vec3 normal = unit(hit.normal);
-        vec3 right = footprint(v, rays.dir_x, normal, t) * profile_units();
-        vec3 down = footprint(v, rays.dir_y, normal, t) * profile_units();
-        if (REPLICAS != 0u) {
-            right *= hit.sense * count;
-            down *= hit.sense * count;
-        }
+        vec3 right, down;
+        footprints(rays, v, hit, right, down);
         if (COLOR_MAP != 0u) {
             s.albedo = sample_repeated(color_map, c, right, down).rgb;
         }
@@ -92,6 +104,10 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     float facing = dot(turned, view) < 0.0 ? -1.0 : 1.0;
     vec3 lit = facing * shaded;
     s.shading_normal = rotate(look.rotation, lit);
+#if HOST_SHADING
+    s.color = host_shade(surface_of(look, rays, pixel, hit, s, c));
+    return s;
+#else
     vec3 color = s.albedo * look.ambient;
     vec3 point = vec3(0.0); // relative to the instance's position, world axes
 #if SHADOWED
@@ -119,6 +135,7 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     }
     s.color = vec4(color, 1.0);
     return s;
+#endif
 }
 
 #endif

@@ -86,13 +86,21 @@ vec3 footprint(vec3 v, vec3 dv, vec3 n, float t)
     return t * (dv - v * (dot(n, dv) / facing));
 }
 
+// Returns the position in a map; eta = 1 is the top row.
+vec2 map_position(Coordinates c)
+{
+    return vec2(c.uv.x * object.texturing.x, (1.0 - c.uv.y) * object.texturing.y);
+}
+
+// Returns the change of that position along `way`, profile units.
+vec2 map_change(Coordinates c, vec3 way)
+{
+    return vec2(dot(c.grad_xi, way), dot(c.grad_eta, way)) * (vec2(1.0, -1.0) * object.texturing.xy);
+}
+
 vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 {
-    vec2 repeat = object.texturing.xy;
-    vec2 turn = vec2(1.0, -1.0) * repeat; // eta = 1 is the top row
-    vec2 dx = vec2(dot(c.grad_xi, right), dot(c.grad_eta, right)) * turn;
-    vec2 dy = vec2(dot(c.grad_xi, down), dot(c.grad_eta, down)) * turn;
-    return textureGrad(map, vec2(c.uv.x * repeat.x, (1.0 - c.uv.y) * repeat.y), dx, dy);
+    return textureGrad(map, map_position(c), map_change(c, right), map_change(c, down));
 }
 
 #if TEXTURED

@@ -48,6 +48,9 @@
 #ifndef ORTHO
 #define ORTHO 0 // 1: rays are parallel
 #endif
+#ifndef HOST_SHADING
+#define HOST_SHADING 0 // 1: a function of the host shades; lights and shadows of the library are left out
+#endif
 
 // Smaller variations are specialisation constants.
 #if REPEATED
@@ -83,6 +86,8 @@ layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instan
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
+layout(constant_id = 19) const uint VIEWS = 1u; // views of the pass; more than 1 by multiview
+layout(constant_id = 20) const uint VIEW_INDEX = 0u; // index of the view; src/shader/view_index.rs puts gl_ViewIndex in its place
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it

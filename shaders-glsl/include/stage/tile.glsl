@@ -37,6 +37,9 @@ uvec2 tile_corner()
 void begin_tile()
 {
     tile_look = look_of(tile_instance);
+#if HOST_SHADING
+    tile_look.instance = ONE_INSTANCE != 0u ? pushed.instance : tile_record.y;
+#endif
     tile_rays = pixel_rays(tile_instance);
 }
 

@@ -56,6 +56,9 @@ Look varying_look()
 #if SHADOWED
     look.position = instances[uint(look_ambient.w)].position_sx.xyz;
 #endif
+#if HOST_SHADING
+    look.instance = uint(look_ambient.w);
+#endif
     return look;
 }
 #endif

@@ -27,9 +27,13 @@ vec3 fraction_of_pixel(Instance i)
     return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
 }
 
-// Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w.
+// Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w. Must follow the position: a pass of several views
+// draws each frame in all of them, and the frame's own view keeps it.
 void hand_over(Instance i, float scale)
 {
+    if (VIEWS > 1u && VIEW_INDEX != frame_block.view.x) {
+        gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
+    }
     PixelRays rays = pixel_rays(i);
     ray_origin_base = vec4(rays.origin, rays.base);
     ray_dir_00 = vec4(rays.dir_00, scale);

@@ -1,5 +1,6 @@
 //! A renderer's record of an object: its values, and the resources that are derived from them.
 
+use crate::gpu::resources::host_image::ObjectImages;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::TextureSet;
@@ -19,6 +20,9 @@ pub(in crate::gpu) struct Entry {
     pub object: Object,
     /// Values that were set since the last refresh.
     pub wanted: Option<Object>,
+    pub images: ObjectImages,
+    /// Images that were set since the last refresh.
+    pub wanted_images: Option<ObjectImages>,
     /// The object that is drawn in its place, in a box that has grown with the offset.
     pub grown: Option<GrownObject>,
     /// `None` before the first refresh, and if that failed.
@@ -96,6 +100,8 @@ impl Entry {
         Self {
             object,
             wanted: None,
+            images: ObjectImages::default(),
+            wanted_images: None,
             grown: None,
             derived: None,
             instances,
@@ -108,6 +114,11 @@ impl Entry {
     /// The values that were set last.
     pub fn latest(&self) -> &Object {
         self.wanted.as_ref().unwrap_or(&self.object)
+    }
+
+    /// The images that were set last.
+    pub fn latest_images(&self) -> &ObjectImages {
+        self.wanted_images.as_ref().unwrap_or(&self.images)
     }
 
     /// The values of the last refresh, in a box that cuts nothing.

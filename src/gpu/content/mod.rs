@@ -15,11 +15,12 @@ use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::resources::host_image::ObjectImages;
 use crate::gpu::resources::textures::{ShadowMaps, Textures};
 use crate::gpu::vk::output::Output;
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{ShadowCasters, Variant};
+use crate::shader::{HostLook, ShadowCasters, Variant};
 use objects::{Objects, next_renderer};
 use std::sync::Arc;
 use view_plan::ViewPlan;
@@ -54,6 +55,8 @@ pub(super) struct Content {
     pub notes: Vec<String>,
     pub settings: SearchSettings,
     pub output: Output,
+    /// True if a function of the host shades.
+    pub host_shades: bool,
     device: Arc<Shared>,
 }
 
@@ -87,6 +90,7 @@ impl Content {
             notes: Vec::new(),
             settings: *settings,
             output,
+            host_shades: false,
             device: device.clone(),
         })
     }
@@ -101,8 +105,13 @@ impl Content {
         self.lighting.shadow != Shadow::Off
     }
 
-    /// The variant that draws an object by this search.
-    pub fn variant(&self, solver: Solver, object: &Object) -> Variant {
+    /// The variant that draws an object with these images by this search.
+    pub fn variant(&self, solver: Solver, object: &Object, images: &ObjectImages) -> Variant {
+        let host = HostLook {
+            shading: self.host_shades,
+            colors: images.color.is_some(),
+            slopes: images.slopes.is_some(),
+        };
         let (settings, planes) = (&self.settings, self.output.planes());
         Variant::new(
             settings,
@@ -111,6 +120,7 @@ impl Content {
             &self.lighting,
             object,
             self.casters,
+            host,
         )
     }
 

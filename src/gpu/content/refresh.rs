@@ -81,6 +81,7 @@ impl Content {
             return Ok(());
         };
         entry.wanted = None;
+        entry.wanted_images = None;
         entry.version = version;
         self.version = version;
         let count = entry.object.placements().len();
@@ -122,6 +123,9 @@ impl Content {
             };
             if let Some(wanted) = entry.wanted.take() {
                 entry.object = wanted;
+            }
+            if let Some(images) = entry.wanted_images.take() {
+                entry.images = images;
             }
             entry.grown = grown;
             entry.derived = Some(derived);
@@ -320,13 +324,14 @@ impl Content {
         } else {
             None
         };
-        let variant = self.variant(solver, object);
+        let variant = self.variant(solver, object, entry.latest_images());
         let shadow_map = one.map.as_ref().and_then(|map| {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
         });
         let bound = ObjectTextures {
             look: &object.texturing,
+            images: entry.latest_images(),
             shape: one.map.clone(),
             arc: arc.clone(),
             shadows: &self.shadow_maps,

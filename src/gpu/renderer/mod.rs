@@ -19,9 +19,12 @@ use crate::gpu::open::Device;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::output::Output;
+use crate::gpu::vk::pipelines::Owner;
+use crate::gpu::vk::shading::HostShading;
 use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
+use ash::vk;
 use slot::FrameSlot;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -46,8 +49,8 @@ pub struct Renderer {
     pub(super) slots: Vec<FrameSlot>,
     /// The memory that shaders write to, in compute or for all planes, and how often it was set.
     pub(super) target: Option<(ComputeTarget, u64)>,
-    /// The owner of its pipelines, if they are not shared.
-    pub(super) owner: u64,
+    /// The owner of its pipelines, with the host's shading.
+    pub(super) owner: Owner,
     /// True if `prepare` compiles nothing.
     pub(super) hides: bool,
     pub(super) device: Arc<Shared>,
@@ -71,6 +74,46 @@ impl Renderer {
         settings: &SearchSettings,
         slots: usize,
     ) -> Result<Self> {
+        Self::make(device, output, settings, slots, None)
+    }
+
+    /// Same as [`Renderer::new`], with a function of the host that shades in place of the library's.
+    /// The function takes no lights of [`Renderer::set_lighting`].
+    ///
+    /// # Errors
+    /// The errors of [`Renderer::new`]. [`ErrorKind::Usage`] for a shading of the other stage, for an
+    /// output without colour, for a search other than `exact`, `quadric` and `live`, for a function
+    /// that reads another set than 3, and for one that reads set 3 if the layout is null.
+    ///
+    /// # Safety
+    /// The call makes a pipeline layout with the host's set, and pipelines are made with it.
+    ///
+    /// The caller must ensure that
+    /// * the shading was compiled by this library, or its bytes were written by it;
+    /// * the layout is of this device, has every binding that the function reads, and lives as long
+    ///   as the renderer and its [`Prewarm`](crate::gpu::Prewarm)s;
+    /// * the function ends and reads only what the bound set has;
+    /// * a set of the layout is bound at number 3, with [`Renderer::pipeline_layout`], whenever
+    ///   [`Renderer::record`], [`Renderer::record_compute`] or [`Renderer::record_prewarm`] is called.
+    ///   These calls leave it bound.
+    pub unsafe fn with_shading(
+        device: &Device,
+        output: Output,
+        settings: &SearchSettings,
+        slots: usize,
+        shading: &HostShading,
+    ) -> Result<Self> {
+        shading.check(&output, settings)?;
+        Self::make(device, output, settings, slots, Some(shading))
+    }
+
+    fn make(
+        device: &Device,
+        output: Output,
+        settings: &SearchSettings,
+        slots: usize,
+        shading: Option<&HostShading>,
+    ) -> Result<Self> {
         if !(1..=MOST_SLOTS).contains(&slots) {
             let message = format!("{slots} slots for frames in flight; give 1 to {MOST_SLOTS}");
             return Err(Error::new(ErrorKind::Usage, message));
@@ -79,14 +122,17 @@ impl Renderer {
         settings.check()?;
         let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();
+        let owner = device.pipelines()?.owner(&output, shading)?;
+        let mut content = Content::new(&device, geometry, output, settings)?;
+        content.host_shades = shading.is_some();
         Ok(Self {
             slots: (0..slots)
                 .map(|_| FrameSlot::new(&device))
                 .collect::<Result<_>>()?,
             target: None,
             hides: false,
-            owner: device.pipelines()?.owner(&output),
-            content: Content::new(&device, geometry, output, settings)?,
+            owner,
+            content,
             device,
         })
     }
@@ -161,6 +207,16 @@ impl Renderer {
         self.hides = hides;
     }
 
+    /// The layout of all pipelines of the renderer, with which a host binds its set 3. It lives as long
+    /// as the renderer.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Other`] while the device is being closed.
+    pub fn pipeline_layout(&self) -> Result<vk::PipelineLayout> {
+        let shared = self.device.pipelines()?.layout;
+        Ok(self.owner.shading.as_ref().map_or(shared, |own| own.layout))
+    }
+
     /// Sets the memory that compute writes to, from the next prepared frame on.
     ///
     /// # Errors
@@ -187,7 +243,7 @@ impl Renderer {
 impl Drop for Renderer {
     fn drop(&mut self) {
         if let Ok(pipelines) = self.device.pipelines() {
-            pipelines.forget(self.owner);
+            pipelines.forget(&self.owner);
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Changes of a renderer's objects and lights.
 
 use super::Renderer;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::objects::ObjectId;
 use crate::gpu::resources::block::check_lights;
-use crate::scene::{Copies, Lighting, Object, Offset, Placement};
+use crate::gpu::resources::host_image::{HostImage, ObjectImages};
+use crate::scene::{Copies, Lighting, Object, Offset, Placement, Shadow};
 
 impl Renderer {
     /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
@@ -76,6 +77,37 @@ impl Renderer {
         Ok(())
     }
 
+    /// Sets an image of the host as the colours of an object, in place of its
+    /// [`color_map`](crate::scene::Texturing::color_map); `None` for that map again. The image's upper
+    /// edge is at the top of the object, as a map's. Frames that were prepared earlier keep their
+    /// image.
+    ///
+    /// # Errors
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
+    pub fn set_color_image(&mut self, id: ObjectId, image: Option<HostImage>) -> Result<()> {
+        self.set_image(id, |images| images.color = image)
+    }
+
+    /// Sets an image of the host as the slopes of an object, in place of its
+    /// [`displacement_map`](crate::scene::Texturing::displacement_map); `None` for that map again. The
+    /// first two channels are the slopes of heights, as a
+    /// [`DisplacementMap`](crate::maps::DisplacementMap) has them: `dH/du` and `dH/dv` per unit of
+    /// texture coordinate, `v` upwards. An image of heights is no image of slopes.
+    ///
+    /// # Errors
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
+    pub fn set_slope_image(&mut self, id: ObjectId, image: Option<HostImage>) -> Result<()> {
+        self.set_image(id, |images| images.slopes = image)
+    }
+
+    fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {
+        let entry = self.content.change(id)?;
+        let images = &entry.images;
+        set(entry.wanted_images.get_or_insert_with(|| images.clone()));
+        self.content.changed.push(id.number);
+        Ok(())
+    }
+
     /// Moves the surface of an object.
     ///
     /// # Errors
@@ -144,9 +176,14 @@ impl Renderer {
     /// Sets lights and shadows for all objects.
     ///
     /// # Errors
-    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key.
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
+    /// [`Usage`](crate::error::ErrorKind::Usage) for shadows if a function of the host shades.
     pub fn set_lighting(&mut self, lighting: &Lighting) -> Result<()> {
         lighting.check()?;
+        if self.content.host_shades && lighting.shadow != Shadow::Off {
+            let message = "the host's function shades without shadows between solids; set \"off\"";
+            return Err(Error::new(ErrorKind::Usage, message).at_key("shadow"));
+        }
         check_lights(lighting)?;
         let codes = |l: &Lighting| (l.lights.len(), l.shadow);
         if codes(lighting) != codes(&self.content.lighting) {

@@ -83,11 +83,22 @@ impl Output {
     }
 }
 
+/// Most views of a pass; every device with multiview has this many.
+const MOST_VIEWS: u32 = 6;
+
 impl PassFormats {
     fn check_samples(&self, device: &Shared) -> Result<()> {
         if self.sample_rays && device.chosen.features.sample_rate_shading == vk::FALSE {
             let message = "rays through samples need the feature sampleRateShading; enable it";
             return Err(Error::new(ErrorKind::Unsupported, message));
+        }
+        if !(1..=MOST_VIEWS).contains(&self.views) {
+            let message = format!("{} views; give 1 to {MOST_VIEWS}", self.views);
+            return Err(usage("views", message));
+        }
+        if self.views > 1 && self.planes == Planes::All {
+            let message = "all planes are drawn for one view; give a list of planes";
+            return Err(usage("views", message.into()));
         }
         if [1, 2, 4, 8].contains(&self.samples) {
             return Ok(());

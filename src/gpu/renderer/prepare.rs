@@ -142,6 +142,13 @@ impl Renderer {
                 "parallel views go with an output of parallel depths, and no others".into(),
             );
         }
+        let views = self.content.output.views();
+        if view.layer >= views {
+            return usage(format!(
+                "view {} of a pass with {views}; give an index below that",
+                view.layer
+            ));
+        }
         self.content
             .output
             .check_target(self.target.as_ref().map(|t| &t.0))
@@ -172,8 +179,8 @@ impl Renderer {
             let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
             steps.push(BoundStep {
                 pipeline: match self.hides {
-                    true => pipelines.known(step.variant, step.kind, output, self.owner)?,
-                    false => Some(pipelines.get(step.variant, step.kind, output, self.owner)?),
+                    true => pipelines.known(step.variant, step.kind, output, &self.owner)?,
+                    false => Some(pipelines.get(step.variant, step.kind, output, &self.owner)?),
                 },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],

@@ -8,6 +8,7 @@ use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::output::Output;
+use crate::gpu::vk::pipelines::Owner;
 use crate::plan::{PlanObject, variants};
 use crate::settings::Solver;
 use crate::shader::Pushed;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
     output: Output,
-    owner: u64,
+    owner: Owner,
     device: Arc<Shared>,
 }
 
@@ -43,7 +44,7 @@ impl Prewarm {
     pub fn compile(&self) -> Result<()> {
         let pipelines = self.device.pipelines()?;
         for &(variant, kind) in &self.wanted {
-            pipelines.get(variant, kind, &self.output, self.owner)?;
+            pipelines.get(variant, kind, &self.output, &self.owner)?;
         }
         Ok(())
     }
@@ -68,7 +69,7 @@ impl Renderer {
                 .map(|(v, k, _)| (v, k))
                 .collect(),
             output: self.content.output.clone(),
-            owner: self.owner,
+            owner: self.owner.clone(),
             device: self.device.clone(),
         })
     }
@@ -100,7 +101,7 @@ impl Renderer {
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
         for (variant, kind, textures) in self.content.reachable() {
-            let pipeline = pipelines.get(variant, kind, &self.content.output, self.owner)?;
+            let pipeline = pipelines.get(variant, kind, &self.content.output, &self.owner)?;
             let point = if compute {
                 vk::PipelineBindPoint::COMPUTE
             } else {
@@ -144,7 +145,7 @@ impl Content {
             .iter()
             .filter_map(|(entry, _, planned)| {
                 Some(PlanObject {
-                    variant: self.variant(solver, entry.drawn()),
+                    variant: self.variant(solver, entry.drawn(), entry.latest_images()),
                     ..entry.plan_object(planned, &self.settings)?
                 })
             })
@@ -155,7 +156,7 @@ impl Content {
             derived.iter().zip(own.iter().zip(variants(&own, &with)))
         {
             let fallback = falls_back.then(|| PlanObject {
-                variant: self.variant(FALLBACK, entry.drawn()),
+                variant: self.variant(FALLBACK, entry.drawn(), entry.latest_images()),
                 surface: None,
                 takes_patches: false,
                 ..*object

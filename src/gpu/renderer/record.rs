@@ -188,10 +188,7 @@ impl Renderer {
         let stage = vk::ShaderStageFlags::COMPUTE;
         let bytes = bytemuck::bytes_of(pushed);
         let raw = &self.device.raw;
-        let layout = self
-            .device
-            .pipelines()
-            .map_or(vk::PipelineLayout::null(), |p| p.layout);
+        let layout = self.pipeline_layout().unwrap_or_default();
         // SAFETY: `cmd` is recording.
         unsafe { raw.cmd_push_constants(cmd, layout, stage, 0, bytes) };
     }
@@ -232,7 +229,7 @@ impl Renderer {
         textures: vk::DescriptorSet,
         offsets: &[u32; 2],
     ) -> Result<()> {
-        let layout = self.device.pipelines()?.layout;
+        let layout = self.pipeline_layout()?;
         let sets = [slot.frame_set, textures, slot.target_set];
         let raw = &self.device.raw;
         // SAFETY: the sets fit the layout, and all objects that they name live as long as the

@@ -102,6 +102,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
             (2.0 / v.height) as f32,
             (-2.0 * v.y / v.height - 1.0) as f32,
         ],
+        view: [view.layer, 0, 0, 0],
         lights,
         ..bytemuck::Zeroable::zeroed()
     }

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Image;
 use crate::gpu::memory::images::Uploads;
+use crate::gpu::resources::host_image::{HostImage, ObjectImages};
 use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
 use crate::gpu::resources::texture_binding::{Sampler, SetPool, Wrap};
 use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
@@ -25,6 +26,7 @@ pub(crate) struct TextureSet {
     pub set: vk::DescriptorSet,
     color: Option<Arc<Covering<ColorMap>>>,
     slopes: Option<Arc<Covering<DisplacementMap>>>,
+    images: ObjectImages,
     shape: Option<Arc<ShapeTexture>>,
     arc: Option<Arc<ArcTexture>>,
     shadows: Arc<ShadowMaps>,
@@ -56,6 +58,7 @@ pub(crate) struct Textures {
 /// The textures that an object binds.
 pub(crate) struct ObjectTextures<'a> {
     pub look: &'a Texturing,
+    pub images: &'a ObjectImages,
     pub shape: Option<Arc<ShapeTexture>>,
     pub arc: Option<Arc<ArcTexture>>,
     pub shadows: &'a Arc<ShadowMaps>,
@@ -92,22 +95,23 @@ impl Textures {
     ) -> Result<Arc<TextureSet>> {
         let ObjectTextures {
             look,
+            images,
             shape,
             arc,
             shadows,
         } = bound;
+        let color_map = look.color_map.as_ref().filter(|_| images.color.is_none());
+        let slope_map = look.displacement_map.as_ref();
+        let slope_map = slope_map.filter(|_| images.slopes.is_none());
+        let image = |of: &Option<HostImage>| of.as_ref().map(HostImage::address);
         let around =
             (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
         let address = |of: Option<usize>| of.unwrap_or(0);
         let key = (
             [
                 address(shape.as_ref().map(|s| Arc::as_ptr(s) as usize)),
-                address(look.color_map.as_ref().map(|m| Arc::as_ptr(m) as usize)),
-                address(
-                    look.displacement_map
-                        .as_ref()
-                        .map(|m| Arc::as_ptr(m) as usize),
-                ),
+                address(image(&images.color).or(color_map.map(|m| Arc::as_ptr(m) as usize))),
+                address(image(&images.slopes).or(slope_map.map(|m| Arc::as_ptr(m) as usize))),
                 address(arc.as_ref().map(|a| Arc::as_ptr(a) as usize)),
                 Arc::as_ptr(shadows) as usize,
             ],
@@ -116,11 +120,11 @@ impl Textures {
         if let Some(known) = self.sets.known(&key) {
             return Ok(known);
         }
-        let color = match &look.color_map {
+        let color = match color_map {
             Some(map) => Some(self.color(device, uploads, map)?),
             None => None,
         };
-        let slopes = match &look.displacement_map {
+        let slopes = match slope_map {
             Some(map) => Some(self.slopes(device, uploads, map)?),
             None => None,
         };
@@ -128,6 +132,7 @@ impl Textures {
             set: self.pool.take()?,
             color,
             slopes,
+            images: images.clone(),
             shape,
             arc,
             shadows: shadows.clone(),
@@ -188,14 +193,16 @@ impl Textures {
         );
         let blank = info(&self.blank, map);
         let shape = |s: &Arc<ShapeTexture>| info(&s.texture, map);
+        let covering = |of: Option<&Image>, host: &Option<HostImage>| {
+            let own = of.map(|image| info(image, surface));
+            host.as_ref().map(HostImage::info).or(own).unwrap_or(blank)
+        };
+        let color = made.color.as_ref().map(|c| c.image.as_ref());
+        let slopes = made.slopes.as_ref().map(|c| c.image.as_ref());
         let own = [
             made.shape.as_ref().map_or(blank, shape),
-            made.color
-                .as_ref()
-                .map_or(blank, |c| info(&c.image, surface)),
-            made.slopes
-                .as_ref()
-                .map_or(blank, |c| info(&c.image, surface)),
+            covering(color, &made.images.color),
+            covering(slopes, &made.images.slopes),
             made.arc.as_ref().map_or(blank, |a| info(&a.texture, map)),
         ];
         let shadows: Vec<_> = made

@@ -7,4 +7,5 @@ pub(crate) mod descriptors;
 pub(crate) mod output;
 pub(crate) mod pipelines;
 pub(crate) mod render_pass;
+pub(crate) mod shading;
 pub(crate) mod usage;

@@ -26,6 +26,13 @@ pub struct PassFormats {
     /// pixel is right; a pixel costs as many rays. Needs the feature `sampleRateShading`. False for
     /// one ray through the pixel's centre, which all samples share.
     pub sample_rays: bool,
+    /// Views of the pass: 1, or 2 to 6 with multiview, such as the two eyes of a headset.
+    ///
+    /// The pass's view mask has the lowest bits set, one for each view. Each view is a frame of its
+    /// own in a slot of its own: prepare it for [`View::with_layer`](crate::plan::View::with_layer),
+    /// and record all frames in the one pass. The device must have the feature `multiview` enabled;
+    /// devices that the library opens have it.
+    pub views: u32,
     /// The end of the depth range that is near.
     pub depth: DepthOrder,
     /// The depth test of every draw.
@@ -42,6 +49,7 @@ impl PassFormats {
             begun,
             samples: 1,
             sample_rays: false,
+            views: 1,
             depth: DepthOrder::Normal,
             depth_test: DepthTest::default(),
             planes,
@@ -99,6 +107,14 @@ impl Output {
         match self {
             Self::Pass(pass) => pass.planes,
             Self::Compute(planes) => *planes,
+        }
+    }
+
+    /// The views of a pass.
+    pub(crate) fn views(&self) -> u32 {
+        match self {
+            Self::Pass(pass) => pass.views,
+            Self::Compute(_) => 1,
         }
     }
 

@@ -8,6 +8,7 @@ use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::render_pass;
+use crate::gpu::vk::shading::{BoundShading, HostShading};
 use crate::settings::Planes;
 use crate::shader::Pushed;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID};
@@ -15,7 +16,7 @@ use crate::shader::{Kind, Variant};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Specialisation constants that are the same for all pipelines of a device.
 #[derive(Clone, Copy, Debug)]
@@ -68,12 +69,20 @@ pub(crate) struct Pipelines {
 pub type ShaderSource =
     Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
 
+/// The renderer that pipelines are for, and the host's shading in them.
+#[derive(Clone, Default)]
+pub(crate) struct Owner {
+    /// 0 if all renderers may share the pipelines.
+    number: u64,
+    pub shading: Option<Arc<BoundShading>>,
+}
+
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Key {
     variant: Variant,
     kind: Kind,
     output: Output,
-    /// The renderer whose host's pass the pipeline is for; 0 if all renderers may share it.
+    /// [`Owner::number`]; it also determines the shading.
     owner: u64,
 }
 
@@ -103,9 +112,7 @@ impl Pipelines {
         for (set, layout) in all.set_layouts.iter_mut().enumerate() {
             *layout = descriptors::layout(raw, set)?;
         }
-        let pushed = [vk::PushConstantRange::default()
-            .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(size_of::<Pushed>() as u32)];
+        let pushed = [pushed()];
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&all.set_layouts)
             .push_constant_ranges(&pushed);
@@ -138,18 +145,18 @@ impl Pipelines {
         variant: Variant,
         kind: Kind,
         output: &Output,
-        owner: u64,
+        owner: &Owner,
     ) -> Result<vk::Pipeline> {
         if let Some(made) = self.known(variant, kind, output, owner)? {
             return Ok(made);
         }
         // Compilation holds no lock, so that others can compile meanwhile.
-        let made = self.compile(&variant, kind, output)?;
+        let made = self.compile(&variant, kind, output, owner.shading.as_deref())?;
         let key = Key {
             variant,
             kind,
             output: output.clone(),
-            owner,
+            owner: owner.number,
         };
         let mut all = self.made()?;
         if let Some(before) = all.get(&key) {
@@ -168,31 +175,39 @@ impl Pipelines {
         variant: Variant,
         kind: Kind,
         output: &Output,
-        owner: u64,
+        owner: &Owner,
     ) -> Result<Option<vk::Pipeline>> {
         let key = Key {
             variant,
             kind,
             output: output.clone(),
-            owner,
+            owner: owner.number,
         };
         Ok(self.made()?.get(&key).copied())
     }
 
-    /// Returns the owner of pipelines for an output: 0 for shared ones, else a new owner. A host
-    /// may destroy its render pass once its renderer is gone, and make another of the same handle.
-    pub fn owner(&self, output: &Output) -> u64 {
-        match output {
+    /// Returns the owner of a renderer's pipelines. The pipelines of a host's render pass or shading
+    /// are the renderer's own: the host may destroy its pass once the renderer is gone, and make
+    /// another of the same handle. All others are shared.
+    pub fn owner(&self, output: &Output, host: Option<&HostShading>) -> Result<Owner> {
+        let of_host = match output {
             Output::Pass(PassFormats {
                 begun: PassKind::RenderPass { pass, .. },
                 ..
-            }) if !self.is_own(*pass) => self.owners.fetch_add(1, Ordering::Relaxed) + 1,
-            _ => 0,
-        }
+            }) => !self.is_own(*pass),
+            _ => false,
+        };
+        let bound = |host| BoundShading::new(&self.raw, host, &self.set_layouts, pushed());
+        let number = || self.owners.fetch_add(1, Ordering::Relaxed) + 1;
+        Ok(Owner {
+            number: (of_host || host.is_some()).then(number).unwrap_or_default(),
+            shading: host.map(bound).transpose()?.map(Arc::new),
+        })
     }
 
     /// Destroys all pipelines of `owner`, whose frames are done.
-    pub fn forget(&self, owner: u64) {
+    pub fn forget(&self, owner: &Owner) {
+        let owner = owner.number;
         if owner == 0 {
             return;
         }
@@ -265,6 +280,13 @@ impl Pipelines {
             .lock()
             .map_err(|_| Error::new(ErrorKind::Other, "the pipelines' lock is poisoned"))
     }
+}
+
+/// The range of push constants in every layout.
+fn pushed() -> vk::PushConstantRange {
+    vk::PushConstantRange::default()
+        .stage_flags(vk::ShaderStageFlags::COMPUTE)
+        .size(size_of::<Pushed>() as u32)
 }
 
 impl Drop for Pipelines {

@@ -11,6 +11,8 @@ mod own_search;
 mod pictures;
 mod run;
 mod shaders_command;
+#[cfg(feature = "shaderc")]
+mod shading_command;
 mod stability_command;
 mod warnings;
 mod words;

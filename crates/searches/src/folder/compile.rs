@@ -147,7 +147,7 @@ mod compiler {
     use super::*;
     use crate::{cache, modules::generated as g};
     use shaderc_link::modules::Fnv;
-    use shaderc_link::{Compiler, OptimizationLevel, spirv};
+    use shaderc_link::{Compiler, OptimizationLevel, complaints, spirv};
 
     /// The library's GLSL: names in `#include`, texts.
     const LIBRARY: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/library.rs"));
@@ -236,16 +236,9 @@ mod compiler {
     /// The compiler's first error in a file of the folder, as `file:line: text`. An error elsewhere
     /// means that the folder's function does not fit.
     fn message(folder: &Folder, text: &str) -> String {
-        // Warnings count as errors. The line "compilation error:" is a headline.
-        let lines = || {
-            let all = text.lines().filter_map(|line| {
-                let (place, what) = line
-                    .split_once(" error: ")
-                    .or_else(|| line.split_once(" warning: "))?;
-                Some(format!("{place} {what}"))
-            });
-            all.map(|line| line.replace("own_search", "search"))
-        };
+        // Warnings count as errors.
+        let all = complaints(text);
+        let lines = || all.iter().map(|line| line.replace("own_search", "search"));
         let own = |line: &String| {
             let starts = |(_, path, _): &(_, std::path::PathBuf, _)| {
                 line.starts_with(&format!("{}:", path.display()))

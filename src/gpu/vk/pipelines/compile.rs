@@ -5,9 +5,13 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::attachments;
+use crate::gpu::vk::shading::BoundShading;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
-use crate::shader::{Kind, Module, Search, Variant, depth_less, with_locations, words};
+use crate::shader::{
+    Kind, Module, Search, Variant, depth_less, generated, with_locations, with_outputs_for,
+    with_view_index, words,
+};
 use ash::vk;
 
 impl Pipelines {
@@ -16,9 +20,15 @@ impl Pipelines {
         variant: &Variant,
         kind: Kind,
         output: &Output,
+        host: Option<&BoundShading>,
     ) -> Result<vk::Pipeline> {
         let own = variant.constants();
-        let constants = || own.into_iter().chain(self.constants.values());
+        let views = (generated::VIEWS_ID, output.views());
+        let constants = || {
+            own.into_iter()
+                .chain([views])
+                .chain(self.constants.values())
+        };
         let entries: Vec<_> = constants()
             .zip(0u32..)
             .map(|((id, _), n)| {
@@ -34,9 +44,10 @@ impl Pipelines {
             .data(bytemuck::cast_slice(&values));
         let module = variant.module(kind);
         match (variant.vertices(kind), output) {
-            (None, _) => self.compute(variant, &module, &specialization),
+            (None, _) => self.compute(variant, &module, host, &specialization),
             (Some(vertices), Output::Pass(pass)) => {
-                self.graphics((variant, kind), pass, [&vertices, &module], &specialization)
+                let modules = [&vertices, &module];
+                self.graphics((variant, kind), pass, modules, host, &specialization)
             }
             (Some(_), Output::Compute(_)) => Err(Error::new(
                 ErrorKind::Other,
@@ -45,7 +56,15 @@ impl Pipelines {
         }
     }
 
-    fn words(&self, variant: &Variant, module: &Module) -> Result<Vec<u32>> {
+    fn words(
+        &self,
+        variant: &Variant,
+        module: &Module,
+        host: Option<&BoundShading>,
+    ) -> Result<Vec<u32>> {
+        if let Some(host) = host.filter(|_| module.entry.shades()) {
+            return Ok(host.shading.words(module)?.to_vec());
+        }
         if let (Some(external), Search::External) = (variant.external, module.search)
             && module.entry.searches()
         {
@@ -62,18 +81,15 @@ impl Pipelines {
         words(module).ok_or_else(none)
     }
 
-    fn module(&self, variant: &Variant, module: &Module) -> Result<ShaderModule<'_>> {
-        self.shader(&self.words(variant, module)?)
-    }
-
     /// The fragments of a pass: for its depth order, and with its attachments.
     fn fragments(
         &self,
         variant: &Variant,
         module: &Module,
         pass: &PassFormats,
+        host: Option<&BoundShading>,
     ) -> Result<ShaderModule<'_>> {
-        let mut words = self.words(variant, module)?;
+        let mut words = self.words(variant, module, host)?;
         if pass.depth == DepthOrder::Reversed {
             words = depth_less(&words);
         }
@@ -89,7 +105,8 @@ impl Pipelines {
 
     fn shader(&self, words: &[u32]) -> Result<ShaderModule<'_>> {
         let info = vk::ShaderModuleCreateInfo::default().code(words);
-        // SAFETY: the words are SPIR-V made by build.rs, or a search's, or what the host promised.
+        // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
+        // host promised.
         let raw =
             unsafe { self.raw.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
         Ok(ShaderModule {
@@ -102,13 +119,14 @@ impl Pipelines {
         &self,
         variant: &Variant,
         module: &Module,
+        host: Option<&BoundShading>,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
-        let module = self.module(variant, module)?;
+        let module = self.shader(&self.words(variant, module, host)?)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .flags(self.flags)
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
-            .layout(self.layout);
+            .layout(host.map_or(self.layout, |host| host.layout));
         // SAFETY: `info` and all it points to live until the call returns.
         let made = unsafe { self.raw.create_compute_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateComputePipelines")
@@ -119,11 +137,19 @@ impl Pipelines {
         (variant, kind): (&Variant, Kind),
         pass: &PassFormats,
         modules: [&Module; 2],
+        host: Option<&BoundShading>,
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
-        let vertex = self.module(variant, vertex)?;
-        let fragment = self.fragments(variant, fragment, pass)?;
+        let mut vertices = self.words(variant, vertex, None)?;
+        if let Some(host) = host {
+            vertices = with_outputs_for(&vertices, host.shading.words(fragment)?);
+        }
+        if pass.views > 1 {
+            vertices = with_view_index(&vertices);
+        }
+        let vertex = self.shader(&vertices)?;
+        let fragment = self.fragments(variant, fragment, pass, host)?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
@@ -171,7 +197,7 @@ impl Pipelines {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(self.layout);
+            .layout(host.map_or(self.layout, |host| host.layout));
         match &pass.begun {
             PassKind::RenderPass { pass, subpass } => {
                 info = info.render_pass(*pass).subpass(*subpass);
@@ -181,7 +207,13 @@ impl Pipelines {
                 depth,
                 stencil,
             } => {
+                let mask = if pass.views > 1 {
+                    (1 << pass.views) - 1
+                } else {
+                    0
+                };
                 rendering = rendering
+                    .view_mask(mask)
                     .color_attachment_formats(color)
                     .depth_attachment_format(*depth)
                     .stencil_attachment_format(*stencil);

@@ -1,0 +1,196 @@
+//! Shading by a host's function in place of the library's: its GLSL, compiled with the library's
+//! own, and its SPIR-V as bytes for programs without a compiler.
+//!
+//! The GLSL defines `vec4 host_shade(Surface surface)`. The structure `Surface` is in
+//! `shaders-glsl/include/core/host_shading.glsl`. The function returns a linear colour. The data that
+//! it reads is in descriptor set 3, which the host binds. A
+//! [`Renderer::with_shading`](crate::gpu::Renderer::with_shading) draws with it.
+//!
+//! The host's text comes after all GLSL of the library, so names of the library are taken. A message
+//! about a taken name has the line of the host's text.
+
+#[cfg(feature = "shaderc")]
+mod compile;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::settings::DrawStage;
+use crate::shader::generated::SOURCES_HASH;
+use crate::shader::{Module, instructions, shading_modules};
+use miniz_oxide::deflate::compress_to_vec_zlib;
+use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::OnceLock;
+
+/// The first bytes of [`Shading::to_bytes`].
+const MAGIC: [u8; 8] = *b"rvmshade";
+/// Upper limit on bytes of all modules.
+const MOST_BYTES: usize = 1 << 26;
+/// The first word of every module.
+const SPIRV_MAGIC: u32 = 0x0723_0203;
+
+/// A host's function of shading as SPIR-V, for one stage.
+///
+/// Modules are compiled when a pipeline first needs them, half a second each; modules that came as
+/// bytes are compiled already. Renderers share a shading by `Arc`.
+pub struct Shading {
+    stage: DrawStage,
+    modules: Vec<(Module, OnceLock<Result<Vec<u32>>>)>,
+    #[cfg(feature = "shaderc")]
+    source: Option<compile::Source>,
+}
+
+impl Shading {
+    /// Compiles GLSL for a stage. `files` are names and texts: the first defines `host_shade`, the
+    /// others are those that it includes, by their names in `#include`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] with the name of the file, the line and the compiler's message, and for
+    /// a text without the function; [`ErrorKind::Usage`] for no files, and for a file with the name
+    /// of one of the library's.
+    #[cfg(feature = "shaderc")]
+    pub fn compile(stage: DrawStage, files: &[(&str, &str)]) -> Result<Self> {
+        let made = Self {
+            source: Some(compile::Source::new(files)?),
+            ..Self::empty(stage)
+        };
+        // One module shows the faults of the text.
+        if let Some((module, _)) = made.modules.first() {
+            made.words(module)?;
+        }
+        Ok(made)
+    }
+
+    /// A shading that [`Shading::to_bytes`] has written.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] for bytes of another version of the library, and for damaged bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let refused = |why: &str| Error::new(ErrorKind::Content, format!("shading: {why}"));
+        let damaged = || refused("the bytes are damaged, or no shading; compile the shading again");
+        let (head, rest) = bytes.split_first_chunk::<8>().ok_or_else(damaged)?;
+        let (hash, rest) = rest.split_first_chunk::<8>().ok_or_else(damaged)?;
+        let (stage, packed) = rest.split_first().ok_or_else(damaged)?;
+        let stage = match stage {
+            0 => DrawStage::Fragment,
+            1 => DrawStage::Compute,
+            _ => return Err(damaged()),
+        };
+        if *head != MAGIC {
+            return Err(damaged());
+        }
+        if u64::from_le_bytes(*hash) != SOURCES_HASH {
+            return Err(refused(
+                "the bytes are of another version of revmap; compile the shading with this version",
+            ));
+        }
+        let all = decompress_to_vec_zlib_with_limit(packed, MOST_BYTES).map_err(|_| damaged())?;
+        let words = all.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
+        let mut words = words.map(u32::from_le_bytes);
+        let made = Self::empty(stage);
+        for (_, module) in &made.modules {
+            let count = words.next().ok_or_else(damaged)? as usize;
+            let own: Vec<u32> = words.by_ref().take(count).collect();
+            if own.len() != count || own.first() != Some(&SPIRV_MAGIC) {
+                return Err(damaged());
+            }
+            let _ = module.set(Ok(own));
+        }
+        match words.next() {
+            None => Ok(made),
+            Some(_) => Err(damaged()),
+        }
+    }
+
+    /// All modules as bytes for [`Shading::from_bytes`] of the same version of the library, for
+    /// programs that are built without a compiler. Compiles the modules that no pipeline has needed
+    /// yet, five seconds in all.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] if a module does not compile: code under a macro of the library.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        let mut all = Vec::new();
+        for (module, _) in &self.modules {
+            let words = self.words(module)?;
+            all.extend((words.len() as u32).to_le_bytes());
+            all.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        }
+        let stage = match self.stage {
+            DrawStage::Fragment => 0,
+            DrawStage::Compute => 1,
+        };
+        let packed = compress_to_vec_zlib(&all, 9);
+        Ok([&MAGIC[..], &SOURCES_HASH.to_le_bytes(), &[stage], &packed].concat())
+    }
+
+    /// The stage that it shades in.
+    #[must_use]
+    pub fn stage(&self) -> DrawStage {
+        self.stage
+    }
+
+    /// The words of the module that replaces `module` of the library.
+    pub(crate) fn words(&self, module: &Module) -> Result<&[u32]> {
+        let none = || Error::new(ErrorKind::Other, format!("no shading is {}", module.name()));
+        let own = module.covered_by(|known| self.modules.iter().any(|(own, _)| own == known));
+        let own = own.and_then(|own| self.modules.iter().find(|(known, _)| *known == own));
+        let (own, words) = own.ok_or_else(none)?;
+        let words = words.get_or_init(|| self.compiled(own));
+        words.as_deref().map_err(Clone::clone)
+    }
+
+    #[cfg(feature = "shaderc")]
+    fn compiled(&self, module: &Module) -> Result<Vec<u32>> {
+        let gone = || Error::new(ErrorKind::Other, "a shading of bytes lacks a module");
+        self.source.as_ref().ok_or_else(gone)?.words(module)
+    }
+
+    #[cfg(not(feature = "shaderc"))]
+    #[allow(clippy::unused_self)] // with the feature it is used
+    fn compiled(&self, _: &Module) -> Result<Vec<u32>> {
+        let message = "a shading of bytes lacks a module";
+        Err(Error::new(ErrorKind::Other, message))
+    }
+
+    /// `(set, binding)` of all descriptors that its compiled modules read.
+    pub(crate) fn bindings(&self) -> BTreeSet<(u32, u32)> {
+        let compiled = self.modules.iter().filter_map(|(_, words)| words.get());
+        let words = compiled.filter_map(|words| words.as_deref().ok());
+        words.flat_map(bindings).collect()
+    }
+
+    fn empty(stage: DrawStage) -> Self {
+        let all = shading_modules(stage == DrawStage::Compute).into_iter();
+        Self {
+            stage,
+            modules: all.map(|module| (module, OnceLock::new())).collect(),
+            #[cfg(feature = "shaderc")]
+            source: None,
+        }
+    }
+}
+
+impl fmt::Debug for Shading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Shading({})", self.stage.name())
+    }
+}
+
+/// `(set, binding)` of a module's descriptors.
+fn bindings(words: &[u32]) -> Vec<(u32, u32)> {
+    const DECORATE: u32 = 71;
+    const BINDING: u32 = 33;
+    const DESCRIPTOR_SET: u32 = 34;
+    let of = |what: u32| {
+        let all = instructions(words).filter(|(code, _)| *code == DECORATE);
+        all.filter(move |(_, one)| one[2] == what)
+            .map(|(_, one)| (one[1], one[3]))
+    };
+    let set = |id: u32| of(DESCRIPTOR_SET).find(|(known, _)| *known == id);
+    of(BINDING)
+        .filter_map(|(id, binding)| Some((set(id)?.1, binding)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

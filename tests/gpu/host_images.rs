@@ -1,0 +1,236 @@
+//! Images of the host as textures: those with the texels of a map give the map's picture, and change
+//! between frames in flight.
+#![allow(unsafe_code)]
+
+use crate::common::host::memory::{HostBuffer, HostImage as Memory};
+use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, once, open};
+use crate::common::shapes;
+use crate::embedding::{options, renderer, three};
+use ash::vk;
+use glam::DMat4;
+use revmap::error::ErrorKind;
+use revmap::gpu::{Device, HostImage, ObjectId, Renderer, View};
+use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
+use revmap::scene::{Object, Scene};
+use std::sync::Arc;
+
+const SIZE: u32 = 8;
+
+/// A texture of one level, and a sampler that repeats around the axis, as the library's does.
+struct Texture<'a> {
+    sampler: vk::Sampler,
+    memory: Memory<'a>,
+    host: &'a Host,
+}
+
+impl<'a> Texture<'a> {
+    fn new(host: &'a Host, format: vk::Format, texels: &[[u8; 4]]) -> Self {
+        let size = Options {
+            width: SIZE,
+            height: SIZE,
+            ..options()
+        };
+        type Usage = vk::ImageUsageFlags;
+        let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
+        let memory = Memory::with_usage(host, &size, format, 1, usage).unwrap();
+        let from = HostBuffer::of(host, texels, vk::BufferUsageFlags::TRANSFER_SRC).unwrap();
+        type Layout = vk::ImageLayout;
+        once(host, |cmd| {
+            let (all, none) = (
+                vk::PipelineStageFlags::ALL_COMMANDS,
+                vk::DependencyFlags::empty(),
+            );
+            let (to, read) = (
+                Layout::TRANSFER_DST_OPTIMAL,
+                Layout::SHADER_READ_ONLY_OPTIMAL,
+            );
+            let raw = &host.device;
+            let wait = |from, to| {
+                let barrier = [memory.barrier(from, to)];
+                // SAFETY: `cmd` is recording.
+                unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &barrier) };
+            };
+            wait(Layout::UNDEFINED, to);
+            // SAFETY: as above; the buffer outlives the submission.
+            unsafe {
+                let region = [memory.region(&size)];
+                raw.cmd_copy_buffer_to_image(cmd, from.raw, memory.raw, to, &region);
+            }
+            wait(to, read);
+        });
+        let info = vk::SamplerCreateInfo::default()
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .mag_filter(vk::Filter::LINEAR)
+            .min_filter(vk::Filter::LINEAR);
+        // SAFETY: a plain creation, destroyed in Drop.
+        let sampler = unsafe { host.device.create_sampler(&info, None) }.unwrap();
+        Self {
+            sampler,
+            memory,
+            host,
+        }
+    }
+
+    fn image(&self) -> HostImage {
+        // SAFETY: tests drop textures after renderers, or when they are held no more.
+        unsafe { HostImage::new(self.memory.view, self.sampler) }.unwrap()
+    }
+}
+
+impl Drop for Texture<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the device is done with it.
+        unsafe { self.host.device.destroy_sampler(self.sampler, None) };
+    }
+}
+
+fn colors(of: impl Fn(u32, u32) -> [u8; 4]) -> Vec<[u8; 4]> {
+    (0..SIZE * SIZE).map(|n| of(n % SIZE, n / SIZE)).collect()
+}
+
+fn stripes(column: u32, row: u32) -> [u8; 4] {
+    [40 + 25 * column as u8, 30 + 28 * row as u8, 200, 255]
+}
+
+/// One solid.
+fn close() -> Scene {
+    let mut scene = three();
+    scene.objects.truncate(1);
+    scene
+}
+
+fn view_of(scene: &Scene) -> View {
+    let size = (options().width, options().height);
+    View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap()
+}
+
+/// The host's picture of an object, after `change`.
+fn drawn(
+    host: &Host,
+    device: &Device,
+    object: &Object,
+    change: impl FnOnce(&mut Renderer, ObjectId),
+) -> Vec<u8> {
+    let scene = close();
+    let mut stage = Stage::new(host, options()).unwrap();
+    let mut made = renderer(device, &stage);
+    made.set_lighting(&scene.lighting()).unwrap();
+    let id = made.add(object.clone()).unwrap();
+    change(&mut made, id);
+    next(&mut stage, &mut made)
+}
+
+fn next(stage: &mut Stage, renderer: &mut Renderer) -> Vec<u8> {
+    let none: &[Mesh] = &[];
+    frame(stage, renderer, &view_of(&close()), DMat4::IDENTITY, none);
+    stage.read().unwrap().0
+}
+
+fn differ(a: &[u8], b: &[u8]) -> usize {
+    let far = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 1);
+    far.count()
+}
+
+/// An image with the texels of a map gives the map's picture; without it the map is back.
+#[test]
+fn images_with_the_texels_of_maps_give_their_pictures() {
+    let host = open();
+    let device = borrow(&host);
+    let texels = colors(stripes);
+    let map = ColorMap::from_texels(SIZE, SIZE, texels.clone()).unwrap();
+    let heights: Vec<f32> = (0..SIZE * SIZE)
+        .map(|n| (n * 29 % 64) as f32 / 64.0)
+        .collect();
+    let slopes = DisplacementMap::from_heights(SIZE, SIZE, &heights, SlopeFilter::Scharr).unwrap();
+    let halves: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&slopes.encode()[0].texels);
+    let color = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &texels);
+    let slope = Texture::new(&host, vk::Format::R16G16_SFLOAT, &halves);
+
+    let mut plain = close().objects[0].clone();
+    plain.texturing.bump = 0.02;
+    let mut mapped = plain.clone();
+    mapped.texturing.color_map = Some(Arc::new(map));
+    mapped.texturing.displacement_map = Some(Arc::new(slopes));
+    let without = drawn(&host, &device, &plain, |_, _| {});
+    let wanted = drawn(&host, &device, &mapped, |_, _| {});
+    let set = |renderer: &mut Renderer, id: ObjectId| {
+        renderer.set_color_image(id, Some(color.image())).unwrap();
+        renderer.set_slope_image(id, Some(slope.image())).unwrap();
+    };
+    let found = drawn(&host, &device, &plain, set);
+    let back = drawn(&host, &device, &mapped, |renderer, id| {
+        set(renderer, id);
+        renderer.prewarm().unwrap();
+        renderer.set_color_image(id, None).unwrap();
+        renderer.set_slope_image(id, None).unwrap();
+    });
+    let [texture, none] = [&found, &without].map(|picture| differ(&wanted, picture));
+    println!("{texture} bytes differ from the map's picture, {none} without a map");
+    assert!(none > 8000, "{none}");
+    // Mips are read near silhouettes, where a texel is smaller than a pixel.
+    assert!(texture < none / 50, "{texture}");
+    assert!(back == wanted);
+}
+
+/// An image that is replaced between frames in flight is held until the slots are prepared again, and
+/// may then be destroyed. A set of textures of a destroyed image is never bound again.
+#[test]
+fn images_change_between_frames_in_flight() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = close();
+    let mut stage = Stage::new(&host, options()).unwrap();
+    let mut made = renderer(&device, &stage);
+    made.set_lighting(&scene.lighting()).unwrap();
+    let id = made.add(scene.objects[0].clone()).unwrap();
+    let mut waiting: Vec<(HostImage, Texture)> = Vec::new();
+    let mut destroyed = 0;
+    for n in 0..8u8 {
+        let shade = [30 * n, 255 - 30 * n, 40, 255];
+        let texture = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &colors(|_, _| shade));
+        let image = texture.image();
+        made.set_color_image(id, Some(image.clone())).unwrap();
+        waiting.push((image, texture));
+        let picture = next(&mut stage, &mut made);
+        let mut alone = scene.objects[0].clone();
+        alone.color = [0, 1, 2].map(|k| {
+            let linear = revmap::frame::linear_from_srgb(f64::from(shade[k]) / 255.0);
+            linear as f32
+        });
+        let wanted = drawn(&host, &device, &alone, |_, _| {});
+        assert!(differ(&wanted, &picture) < 60, "frame {n}");
+        let before = waiting.len();
+        waiting.retain(|(image, _)| image.is_held());
+        destroyed += before - waiting.len();
+        assert!(
+            (1..=host::FRAMES).contains(&waiting.len()),
+            "frame {n}: {}",
+            waiting.len()
+        );
+    }
+    assert_eq!(destroyed, 8 - host::FRAMES);
+    made.remove(id).unwrap();
+    for _ in 0..host::FRAMES {
+        next(&mut stage, &mut made);
+    }
+    assert!(waiting.iter().all(|(image, _)| !image.is_held()));
+}
+
+/// Null handles and objects of other renderers are refused.
+#[test]
+fn wrong_images_are_refused() {
+    let host = open();
+    let device = borrow(&host);
+    // SAFETY: null handles are refused before they are kept.
+    let null = unsafe { HostImage::new(vk::ImageView::null(), vk::Sampler::null()) };
+    assert_eq!(null.unwrap_err().kind, ErrorKind::Usage);
+    let stage = Stage::new(&host, options()).unwrap();
+    let [mut one, mut other] = [0, 1].map(|_| renderer(&device, &stage));
+    let id = one.add(Object::new("vase", shapes::vase().into())).unwrap();
+    let texture = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &colors(stripes));
+    let error = other.set_color_image(id, Some(texture.image()));
+    assert_eq!(error.unwrap_err().kind, ErrorKind::Usage);
+    one.remove(id).unwrap();
+    let error = one.set_slope_image(id, Some(texture.image()));
+    assert_eq!(error.unwrap_err().kind, ErrorKind::Usage);
+}

@@ -1,0 +1,202 @@
+//! Shading by a host's function: what is refused, what validation reports, and that pipelines are
+//! prewarmed, hidden and told apart.
+#![allow(unsafe_code)]
+
+use crate::common::host::set::UniformSet;
+use crate::common::host::{Checked, borrow, open};
+use crate::host_shading::{
+    COPY, add, in_pass, lights, made, pass, picture, scene, shading, view_of,
+};
+use ash::vk;
+use revmap::error::ErrorKind;
+use revmap::gpu::{Device, HostShading, Output, Renderer};
+use revmap::maps::MapFormat;
+use revmap::scene::{Lighting, Shadow};
+use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings};
+use revmap::shading::Shading;
+use revmap_searches::CIRCLE;
+use std::sync::Arc;
+
+const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
+
+fn colors() -> Output {
+    pass(Planes::Color, &[SRGB])
+}
+
+fn shaded(
+    device: &Device,
+    output: Output,
+    settings: &SearchSettings,
+    shading: &Arc<Shading>,
+    set_layout: vk::DescriptorSetLayout,
+) -> revmap::Result<Renderer> {
+    let host = HostShading {
+        shading: shading.clone(),
+        set_layout,
+    };
+    // SAFETY: the layout is live until the renderer is dropped; the faults of tests draw nothing.
+    unsafe { Renderer::with_shading(device, output, settings, 1, &host) }
+}
+
+/// A shading is refused where it would not shade, each time with the key and the remedy.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let host = open();
+    let device = borrow(&host);
+    let set = UniformSet::of(&host, &[[0f32; 4]; 8]).unwrap();
+    let copy = shading(DrawStage::Fragment, COPY);
+    let exact = SearchSettings::exact();
+    type By<'a> = &'a Arc<Shading>;
+    let refused = |output, settings: &SearchSettings, by: By, layout, key: &str, words: &str| {
+        let made = shaded(&device, output, settings, by, layout);
+        let error = made.err().expect(key);
+        assert_eq!(error.kind, ErrorKind::Usage, "{error}");
+        assert_eq!(error.key.as_deref(), Some(key), "{error}");
+        assert!(error.message.contains(words), "{error}");
+    };
+    let null = vk::DescriptorSetLayout::null();
+    refused(colors(), &exact, &copy, null, "set_layout", "reads set 3");
+    let compute = Output::Compute(Planes::Color);
+    refused(
+        compute,
+        &exact,
+        &copy,
+        set.layout,
+        "shading",
+        "needs compute",
+    );
+    let in_compute = shading(DrawStage::Compute, COPY);
+    refused(
+        colors(),
+        &exact,
+        &in_compute,
+        set.layout,
+        "shading",
+        "needs fragment",
+    );
+    let list = Planes::List(PlaneList::new(&[Plane::Motion]).unwrap());
+    let motion = pass(list, &[vk::Format::R16G16_SFLOAT]);
+    refused(motion, &exact, &copy, set.layout, "planes", "with colour");
+    let depths = pass(Planes::Depth { parallel: false }, &[]);
+    refused(depths, &exact, &copy, set.layout, "planes", "with colour");
+    let circle = SearchSettings {
+        solver: CIRCLE,
+        ..exact
+    };
+    refused(
+        colors(),
+        &circle,
+        &copy,
+        set.layout,
+        "solver",
+        "exact, quadric or live",
+    );
+    let rgba8 = SearchSettings {
+        map_format: MapFormat::Rgba8,
+        ..exact
+    };
+    refused(colors(), &rgba8, &copy, set.layout, "solver", "r16");
+    for (name, binding) in [("set = 4", 0), ("set = 1", 9)] {
+        let text = format!(
+            "layout({name}, binding = {binding}) uniform Other {{ vec4 value; }} other;\n\
+             vec4 host_shade(Surface s) {{ return other.value; }}\n"
+        );
+        let by = shading(DrawStage::Fragment, &text);
+        refused(colors(), &exact, &by, set.layout, "shading", "in set 3");
+    }
+    let mut fits = shaded(&device, colors(), &exact, &copy, set.layout).unwrap();
+    let lighting = Lighting {
+        shadow: Shadow::Hard,
+        ..Lighting::default()
+    };
+    let error = fits.set_lighting(&lighting).unwrap_err();
+    assert_eq!(error.key.as_deref(), Some("shadow"), "{error}");
+}
+
+/// Messages of validation while every pipeline of a scene is compiled.
+fn messages(host: &Checked, text: &str) -> Vec<String> {
+    let device = borrow(host);
+    let set = UniformSet::of(host, &[[0f32; 4]; 8]).unwrap();
+    let by = shading(DrawStage::Fragment, text);
+    let exact = SearchSettings::exact();
+    let mut renderer = shaded(&device, colors(), &exact, &by, set.layout).unwrap();
+    add(&mut renderer, &scene());
+    renderer.prewarm().unwrap().compile().unwrap();
+    host.take_messages()
+}
+
+/// The layers report a function that reads a binding that the layout lacks, or has of another kind;
+/// they are silent on one that fits.
+#[test]
+fn validation_reports_a_binding_that_the_layout_lacks() {
+    let host = open();
+    let silent = messages(&host, COPY);
+    assert!(silent.is_empty(), "{silent:?}");
+    for declared in [
+        "binding = 1, std140) uniform",
+        "binding = 0, std430) readonly buffer",
+    ] {
+        let wrong = format!(
+            "layout(set = 3, {declared} Other {{ vec4 value; }} other;\n\
+             vec4 host_shade(Surface s) {{ return other.value; }}\n"
+        );
+        let found = messages(&host, &wrong);
+        let of_layout = |text: &String| text.contains("VkGraphicsPipelineCreateInfo-layout");
+        assert!(found.iter().any(of_layout), "{declared}: {found:?}");
+    }
+}
+
+/// A renderer that hides compiles nothing while it prepares; what was prewarmed shows. Two shadings
+/// on one device have pipelines of their own, and none of the library's.
+#[test]
+fn pipelines_are_prewarmed_and_told_apart() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = scene();
+    let set = UniformSet::of(&host, &lights(&scene)).unwrap();
+    let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";
+    let [copy, red] = [COPY, red].map(|text| shading(DrawStage::Fragment, text));
+    let view = view_of(&scene);
+    let color = [(SRGB, 4)];
+    let exact = SearchSettings::exact();
+    let mut shown = Vec::new();
+    for by in [&copy, &red] {
+        let mut renderer = made(&device, colors(), &exact, Some((by, &set)));
+        renderer.hide_until_compiled(true);
+        add(&mut renderer, &scene);
+        let before = device.pipelines_compiled();
+        let hidden = in_pass(&host, &mut renderer, &view, &color, Some(&set));
+        assert!(hidden.iter().all(|byte| *byte == 0), "drawn");
+        assert_eq!(device.pipelines_compiled(), before);
+        let warm = renderer.prewarm().unwrap();
+        std::thread::scope(|scope| scope.spawn(|| warm.compile()).join().unwrap()).unwrap();
+        let compiled = device.pipelines_compiled();
+        assert!(compiled > before);
+        shown.push(in_pass(&host, &mut renderer, &view, &color, Some(&set)));
+        assert_eq!(device.pipelines_compiled(), compiled, "compiled in a frame");
+    }
+    let ours = picture(&host, &device, &scene, &exact, DrawStage::Fragment, None).0;
+    assert!(shown[0] == ours, "a copy of the library's function");
+    let drawn = || shown[1].chunks(4).filter(|pixel| pixel[3] != 0);
+    assert!(drawn().count() > 3000 && drawn().all(|pixel| pixel == [255, 0, 0, 255]));
+}
+
+/// A shading from bytes draws what the compiled one draws.
+#[test]
+fn bytes_draw_what_was_compiled() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = scene();
+    let set = UniformSet::of(&host, &lights(&scene)).unwrap();
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let compiled = shading(stage, COPY);
+        let bytes = compiled.to_bytes().unwrap();
+        println!("{stage:?}: {} bytes", bytes.len());
+        let read = Arc::new(Shading::from_bytes(&bytes).unwrap());
+        let [a, b] = [&compiled, &read].map(|by| {
+            let by = Some((by, &set));
+            picture(&host, &device, &scene, &SearchSettings::exact(), stage, by).0
+        });
+        assert!(a == b && a.iter().any(|byte| *byte != 0));
+    }
+}
