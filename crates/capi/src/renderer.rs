@@ -77,6 +77,10 @@ pub struct RevmapPass {
     pub depth_compare: u32,
     /// 1 to leave the depth attachment as it is, 0 to write depths.
     pub depth_read_only: u32,
+    /// Views of the pass: 1 (or 0), or 2 to 6 with multiview, whose view mask has the lowest bits
+    /// set. Each view is a frame of its own in a slot of its own: prepare it with its
+    /// RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
+    pub views: u32,
 }
 
 /// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
@@ -133,6 +137,7 @@ impl RevmapPass {
         Ok(PassFormats {
             samples: self.samples,
             sample_rays: self.sample_rays != 0,
+            views: self.views.max(1),
             depth,
             depth_test,
             ..PassFormats::new(begun, planes)

@@ -105,6 +105,8 @@ pub struct RevmapView {
     /// The view shows the objects whose mask shares a bit with this one; 0: objects of any mask
     /// but 0. See revmap_renderer_set_mask().
     pub mask: u32,
+    /// Index among the views of the pass: see RevmapPass.views.
+    pub layer: u32,
 }
 
 /// Settings of the search. Defaults: revmap_search_defaults().
@@ -253,7 +255,8 @@ impl RevmapView {
             0 => u32::MAX,
             mask => mask,
         };
-        let made = made.with_mask(mask).with_jitter(self.jitter);
+        let made = made.with_mask(mask).with_layer(self.layer);
+        let made = made.with_jitter(self.jitter);
         Ok(made.with_depth_bias(self.depth_bias))
     }
 }

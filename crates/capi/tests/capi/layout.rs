@@ -40,13 +40,13 @@ fn structures_are_the_same_in_c() {
         RevmapLight { color, radius }
         RevmapLighting { ambient, light_count, lights }
         RevmapCamera { eye, target, up, fov_y }
-        RevmapView { view, projection, viewport, last, jitter, depth_bias, mask }
+        RevmapView { view, projection, viewport, last, jitter, depth_bias, mask, layer }
         RevmapSearch { proxy_min_pixels, tolerance }
         RevmapRequirements { features }
         RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
         RevmapDeviceInfo { pipelines_compiled, name, driver }
         RevmapObjectInfo { profile, height_map, color, bump, offset, repeat, placement, instances, instance_count, has_material, metalness }
-        RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only }
+        RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only, views }
         RevmapComputeTarget { words, images }
         RevmapStatistics { surfaces_made, notes }
         RevmapFrameStatistics { hidden, tiles, slot_bytes }

@@ -136,6 +136,22 @@ fn renderers_and_objects() {
             Content, "jitter": revmap_renderer_prepare(renderer, some, 0, &RevmapView { jitter, ..view });
             Content, "depth_bias": revmap_renderer_prepare(renderer, some, 0, &RevmapView { depth_bias: f64::NAN, ..view });
         }
+        let mut lens = [0.0; 16];
+        for (n, value) in [(0, 1.0), (5, 1.0), (10, 1.0), (11, 1.0), (14, -0.1)] {
+            lens[n] = value;
+        }
+        let mut unit = [0.0; 16];
+        (0..4).for_each(|k| unit[5 * k] = 1.0);
+        let second = RevmapView {
+            view: unit,
+            projection: lens,
+            viewport: [0.0, 0.0, 64.0, 48.0],
+            layer: 1,
+            ..view
+        };
+        fail! {
+            Usage, "view 1 of a pass with 1": revmap_renderer_prepare(renderer, some, 0, &second);
+        }
         let mut target = sized!(RevmapComputeTarget);
         fail! {
             Usage, "words": revmap_renderer_set_compute_target(other, &target);
