@@ -10,6 +10,7 @@ use crate::common::{draw, shapes, sized};
 use crate::embedding::{options, three};
 use ash::vk;
 use glam::{DVec3, Vec3};
+use revmap::frame::Frame;
 use revmap::gpu::{
     ComputeTarget, Device, DrawPath, HostShading, ObjectId, Output, PassFormats, Renderer, View,
 };
@@ -21,27 +22,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 /// The library's own light, from the host's set.
-pub const COPY: &str = "
-layout(set = 3, binding = 0, std140) uniform HostLights {
-    vec4 ambient;
-    vec4 towards[3];
-    vec4 radiance[3];
-    vec4 specular; // strength, shininess
-} host;
-
-vec4 host_shade(Surface s)
-{
-    vec3 color = s.base_color * host.ambient.rgb;
-    for (int k = 0; k < 3; ++k) {
-        vec3 middle = normalize(host.towards[k].xyz + s.to_eye);
-        float highlight = pow(max(dot(s.shading_normal, middle), 0.0), host.specular.y);
-        float facing = dot(s.shading_normal, host.towards[k].xyz);
-        vec3 reflected = host.radiance[k].rgb * (s.base_color * facing + host.specular.x * highlight);
-        color += facing > 0.0 ? reflected : vec3(0.0);
-    }
-    return vec4(color, 1.0);
-}
-";
+pub const COPY: &str = include_str!("../common/copy.glsl");
 
 /// A value of the surface, by the number in the host's set.
 const VALUES: &str = "
@@ -166,7 +147,7 @@ pub fn in_pass(
             let frame = renderer.prepare(cmd, 0, view).unwrap();
             let point = vk::PipelineBindPoint::GRAPHICS;
             if let Some(set) = set {
-                set.bind(cmd, point, renderer.pipeline_layout().unwrap());
+                set.bind(cmd, point, renderer.pipeline_layout().unwrap(), 3);
             }
             let record = || renderer.record(cmd, &frame).unwrap();
             into.draw(cmd, &clears, false, record);
@@ -201,7 +182,7 @@ pub fn in_compute(
             let frame = renderer.prepare(cmd, 0, view).unwrap();
             if let Some(set) = set {
                 let point = vk::PipelineBindPoint::COMPUTE;
-                set.bind(cmd, point, renderer.pipeline_layout().unwrap());
+                set.bind(cmd, point, renderer.pipeline_layout().unwrap(), 3);
             }
             renderer.record_compute(cmd, &frame).unwrap();
             let written = [vk::MemoryBarrier::default()
@@ -331,7 +312,7 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
     let (mut hits, mut wrong, mut copies) = (0, 0, HashSet::new());
     for n in (0..frame.pixels()).filter(|n| frame.hits(*n) && all[4][*n][3] == 1.0) {
         hits += 1;
-        let [position, to_eye, normal, bumped, base, uv, change, identity] =
+        let [position, to_eye, normal, bumped, base, uv, _, identity] =
             [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| all[k][n]);
         let three = |v: [f32; 4]| Vec3::new(v[0], v[1], v[2]);
         let object = number(identity[0]);
@@ -344,8 +325,8 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
             three(position).length() - frame.distance[n],
             position[3] - three(position).dot(forward),
             (three(position).normalize() + three(to_eye)).length(),
-            to_eye[3] - material.roughness as f32,
-            normal[3] - material.metalness as f32,
+            to_eye[3] - material.roughness,
+            normal[3] - material.metalness,
             (three(normal) - facing * Vec3::from(frame.normal[n])).length(),
             (three(bumped) - Vec3::from(frame.shading_normal[n])).length(),
             (three(base) - Vec3::from(frame.albedo[n])).length(),
@@ -355,13 +336,16 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
             uv[3] - pixel[1] as f32 - 0.5,
         ];
         wrong += usize::from(apart.iter().any(|a| a.abs().is_nan() || a.abs() > 3e-3));
-        let _ = change;
     }
     println!("{hits} hits, {wrong} wrong, {copies:?}");
     assert!(hits > 3000 && wrong <= hits / 200, "{wrong} of {hits}");
     let wanted = [(0, 0), (1, 0), (1, 1), (2, 0), (3, 0)];
     assert_eq!(copies, wanted.into_iter().collect());
-    // The change of uv is that to the next pixel, where both are on one smooth part.
+    assert_steps(&all, &frame);
+}
+
+/// The change of uv is that to the next pixel, where both are on one smooth part.
+fn assert_steps(all: &[Vec<[f32; 4]>], frame: &Frame) {
     let steps = (0..frame.pixels() - 1).filter_map(|n| {
         let [here, there] = [n, n + 1].map(|n| (all[7][n], all[5][n], all[6][n]));
         let same = frame.hits(n) && frame.hits(n + 1) && here.0 == there.0;

@@ -27,6 +27,7 @@ mod embedding_visibility;
 mod exhausted;
 mod extremes;
 mod fallback;
+mod forward_host;
 mod gallery;
 mod golden;
 mod host_images;

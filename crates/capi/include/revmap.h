@@ -641,6 +641,11 @@ typedef struct RevmapDevice RevmapDevice;
 typedef struct RevmapHeightMap RevmapHeightMap;
 
 /**
+ * An image of the host for textures of objects. Objects with the same image share draws.
+ */
+typedef struct RevmapHostImage RevmapHostImage;
+
+/**
  * A scene on a device and a picture that it is drawn into.
  */
 typedef struct RevmapOffscreen RevmapOffscreen;
@@ -667,6 +672,11 @@ typedef struct RevmapRayCaster RevmapRayCaster;
  * slots in turn. The renderer must not be destroyed before the frames that it recorded are done.
  */
 typedef struct RevmapRenderer RevmapRenderer;
+
+/**
+ * A host's function of shading for one stage, as SPIR-V. docs/embedding.md has its signature.
+ */
+typedef struct RevmapShading RevmapShading;
 
 /**
  * Requirements for a device that a host lends. No device extension is needed.
@@ -1859,6 +1869,56 @@ RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
                                             uint32_t slot);
 
 /**
+ * Makes an image of a 2D view and a sampler, both of the renderer's device. They stay valid while
+ * revmap_host_image_is_held() gives 1, and until commands recorded before have run. The image is in
+ * VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL while recorded frames run, and its writes are visible to
+ * the stage that draws.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_host_image_create(VkImageView view,
+                                      VkSampler sampler,
+                                      struct RevmapHostImage **image);
+
+/**
+ * Returns 1 if an object or a slot holds the image, else 0. A slot holds the images of its last frame
+ * until it is prepared again.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_host_image_is_held(const struct RevmapHostImage *image,
+                                       uint32_t *held);
+
+/**
+ * Destroys the handle; null is none. Objects keep the image, and the handle can no longer say whether
+ * it is held.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_host_image_destroy(struct RevmapHostImage *image);
+
+/**
+ * Sets an image as the colours of an object, in place of its color_map; null for that map again.
+ * Frames that were prepared earlier keep their image.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_color_image(struct RevmapRenderer *renderer,
+                                             RevmapObject object,
+                                             const struct RevmapHostImage *image);
+
+/**
+ * Sets an image as the slopes of an object, in place of its height_map; null for that map again. The
+ * first two channels are the slopes of heights over texture coordinates: to the right over the whole
+ * width, upwards over the whole height. An image of heights is no image of slopes.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_set_slope_image(struct RevmapRenderer *renderer,
+                                             RevmapObject object,
+                                             const struct RevmapHostImage *image);
+
+/**
  * Adds an object, which is drawn from the next prepared frame on.
  *
  * Fails with REVMAP_RESULT_CONTENT for values out of range.
@@ -2001,6 +2061,52 @@ RevmapResult revmap_renderer_record_prewarm(struct RevmapRenderer *renderer,
                                             uint32_t slot);
 
 /**
+ * Makes a renderer as revmap_renderer_create() does, with a host's function that shades in place of
+ * the library's. The function takes no lights of revmap_renderer_set_lighting(). set_layout is the
+ * layout of descriptor set 3, for fragments; null if the function reads none. The layout has every
+ * binding that the function reads, and lives as long as the renderer.
+ *
+ * Whenever the renderer records, a set of the layout is bound at number 3 with
+ * revmap_renderer_pipeline_layout().
+ *
+ * Fails with REVMAP_RESULT_USAGE for a shading of the other stage, for a pass without colour, and for
+ * a function that reads set 3 if the layout is null.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create_with_shading(const struct RevmapDevice *device,
+                                                 const struct RevmapPass *pass,
+                                                 const struct RevmapShading *shading,
+                                                 VkDescriptorSetLayout set_layout,
+                                                 const struct RevmapSearch *search,
+                                                 uint32_t frames,
+                                                 struct RevmapRenderer **renderer);
+
+/**
+ * Makes a renderer as revmap_renderer_create_compute() does, with a host's function that shades as in
+ * revmap_renderer_create_with_shading(). planes must be REVMAP_PLANES_COLOR; set_layout is for
+ * compute.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_renderer_create_compute_with_shading(const struct RevmapDevice *device,
+                                                         uint32_t planes,
+                                                         const struct RevmapShading *shading,
+                                                         VkDescriptorSetLayout set_layout,
+                                                         const struct RevmapSearch *search,
+                                                         uint32_t frames,
+                                                         struct RevmapRenderer **renderer);
+
+/**
+ * Returns the layout of all pipelines of a renderer, with which a host binds its set 3. The layout
+ * lives as long as the renderer.
+ *
+ * Thread: one at a time for a renderer.
+ */
+RevmapResult revmap_renderer_pipeline_layout(struct RevmapRenderer *renderer,
+                                             VkPipelineLayout *layout);
+
+/**
  * Returns the contents and work of a renderer. The size of statistics must be set.
  *
  * Thread: one at a time for a renderer.
@@ -2028,6 +2134,51 @@ RevmapResult revmap_renderer_frame_statistics(const struct RevmapRenderer *rende
 RevmapResult revmap_renderer_note(const struct RevmapRenderer *renderer,
                                   uint32_t number,
                                   const char **note);
+
+/**
+ * Reads a shading that the program `revmap shading` or revmap_shading_bytes() has written.
+ *
+ * Fails with REVMAP_RESULT_CONTENT for bytes of another version of the library, and for damaged
+ * bytes.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_shading_from_bytes(const void *bytes,
+                                       size_t count,
+                                       struct RevmapShading **shading);
+
+/**
+ * Compiles GLSL: count files, each with a name and a text in UTF-8. The first defines the function,
+ * the others are those that it includes, by their names in #include. stage is a RevmapStage.
+ *
+ * Fails with REVMAP_RESULT_CONTENT for GLSL that does not compile, with file, line and message; with
+ * REVMAP_RESULT_USAGE if the library was built without the feature `shaderc`.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_shading_compile(uint32_t stage,
+                                    const char *const *names,
+                                    const char *const *texts,
+                                    size_t count,
+                                    struct RevmapShading **shading);
+
+/**
+ * Returns a shading's bytes for revmap_shading_from_bytes() of the same version of the library. With
+ * null bytes, count becomes their number. Otherwise count is the room in bytes, which must be large
+ * enough, and becomes the number of bytes written.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_shading_bytes(const struct RevmapShading *shading,
+                                  void *bytes,
+                                  size_t *count);
+
+/**
+ * Destroys a shading; null is none. Renderers that use it stay as they are.
+ *
+ * Thread: any.
+ */
+RevmapResult revmap_shading_destroy(struct RevmapShading *shading);
 
 /**
  * Makes a colour map from a PNG or JPEG file. The path is UTF-8.

@@ -19,6 +19,7 @@ mod pointers;
 pub mod profile;
 pub mod rays;
 pub mod renderer;
+pub mod shading;
 pub mod texture;
 pub mod values;
 

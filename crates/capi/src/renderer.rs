@@ -1,8 +1,10 @@
 //! Renderers: objects recorded into a host's command buffers.
 
 pub mod frame;
+pub mod images;
 pub mod objects;
 pub mod prewarm;
+pub mod shading;
 pub mod statistics;
 
 use crate::device::RevmapDevice;
@@ -13,7 +15,8 @@ use crate::pointers::{described, list, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, DepthTest, Output, PassFormats, PassKind, PreparedFrame, Renderer,
+    ComputeTarget, DepthOrder, DepthTest, HostShading, Output, PassFormats, PassKind,
+    PreparedFrame, Renderer,
 };
 use revmap::settings::{PlaneList, Planes, SearchSettings};
 use std::ffi::CString;
@@ -168,10 +171,16 @@ fn recorder(
     output: Output,
     settings: &SearchSettings,
     frames: u32,
+    shading: Option<&HostShading>,
 ) -> Outcome<Arc<Mutex<Recorder>>> {
     let device = RevmapDevice::get(device)?;
     let in_pass = matches!(output, Output::Pass(_));
-    let renderer = Renderer::new(&device, output, settings, frames as usize)?;
+    let slots = frames as usize;
+    let renderer = match shading {
+        None => Renderer::new(&device, output, settings, slots),
+        // SAFETY: the shading and its layout are as the caller has promised.
+        Some(host) => unsafe { Renderer::with_shading(&device, output, settings, slots, host) },
+    }?;
     Ok(Arc::new(Mutex::new(Recorder {
         renderer,
         in_pass,
@@ -196,7 +205,13 @@ pub unsafe extern "C" fn revmap_renderer_create(
     unsafe {
         create(renderer, || {
             let output = Output::Pass(read(pass)?.formats()?);
-            recorder(device, output, &crate::values::search(search)?, frames)
+            recorder(
+                device,
+                output,
+                &crate::values::search(search)?,
+                frames,
+                None,
+            )
         })
     }
 }
@@ -218,7 +233,13 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     unsafe {
         create(renderer, || {
             let output = Output::Compute(enums::planes(planes)?);
-            recorder(device, output, &crate::values::search(search)?, frames)
+            recorder(
+                device,
+                output,
+                &crate::values::search(search)?,
+                frames,
+                None,
+            )
         })
     }
 }

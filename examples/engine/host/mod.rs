@@ -11,6 +11,8 @@ pub mod set;
 mod stage;
 
 pub use mesh::Mesh;
+#[allow(unused_imports)] // for the forward host
+pub use stage::MeshShaders;
 pub use stage::Stage;
 
 use ash::{ext, vk};

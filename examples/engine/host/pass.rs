@@ -1,5 +1,6 @@
 //! The pass that frames are drawn in, and the pipeline of the host's meshes.
 
+use super::stage::MeshShaders;
 use super::stage::Stage;
 use super::{COLOR, DEPTH, Fallible};
 use ash::vk;
@@ -59,13 +60,10 @@ impl Stage<'_> {
         Ok(())
     }
 
-    pub(super) unsafe fn make_pipeline(&mut self) -> Fallible<()> {
+    pub(super) unsafe fn make_pipeline(&mut self, shaders: &MeshShaders<'_>) -> Fallible<()> {
         let device = &self.host.device;
         let words = |bytes: &[u8]| ash::util::read_spv(&mut std::io::Cursor::new(bytes));
-        let codes = [
-            words(include_bytes!("mesh.vert.spv"))?,
-            words(include_bytes!("mesh.frag.spv"))?,
-        ];
+        let codes = [words(shaders.vertex)?, words(shaders.fragment)?];
         // SAFETY: plain creations; modules are not needed once the pipeline is made.
         unsafe {
             let module = |code: &[u32]| {

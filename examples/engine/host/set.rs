@@ -57,19 +57,20 @@ impl<'a> UniformSet<'a> {
         }
     }
 
-    /// Binds the set as number 3 of a layout.
+    /// Binds the set at a number of a layout.
     ///
     /// # Safety
-    /// `cmd` is recording; the layout has this set at number 3; the set lives until `cmd` has run.
+    /// `cmd` is recording; the layout has this set there; the set lives until `cmd` has run.
     pub unsafe fn bind(
         &self,
         cmd: vk::CommandBuffer,
         point: vk::PipelineBindPoint,
         layout: vk::PipelineLayout,
+        number: u32,
     ) {
         let device = &self.host.device;
         // SAFETY: as the caller promised.
-        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, 3, &[self.raw], &[]) };
+        unsafe { device.cmd_bind_descriptor_sets(cmd, point, layout, number, &[self.raw], &[]) };
     }
 }
 

@@ -28,7 +28,8 @@ pub struct Stage<'a> {
     /// Of several samples, where there are.
     pub(super) multisampled: Option<HostImage<'a>>,
     pub(super) depth: HostImage<'a>,
-    pub(super) layout: vk::PipelineLayout,
+    /// Of meshes.
+    pub layout: vk::PipelineLayout,
     pub(super) pipeline: vk::Pipeline,
     pool: vk::CommandPool,
     frames: Vec<InFlight>,
@@ -37,8 +38,34 @@ pub struct Stage<'a> {
     pub(super) host: &'a Host,
 }
 
+/// The shaders of meshes, and the layouts of the sets that they read.
+pub struct MeshShaders<'s> {
+    pub vertex: &'s [u8],
+    pub fragment: &'s [u8],
+    pub sets: &'s [vk::DescriptorSetLayout],
+}
+
+impl Default for MeshShaders<'_> {
+    /// One light, from above.
+    fn default() -> Self {
+        Self {
+            vertex: include_bytes!("mesh.vert.spv"),
+            fragment: include_bytes!("mesh.frag.spv"),
+            sets: &[],
+        }
+    }
+}
+
 impl<'a> Stage<'a> {
     pub fn new(host: &'a Host, options: Options) -> Fallible<Self> {
+        Self::with_shaders(host, options, &MeshShaders::default())
+    }
+
+    pub fn with_shaders(
+        host: &'a Host,
+        options: Options,
+        shaders: &MeshShaders<'_>,
+    ) -> Fallible<Self> {
         let device = &host.device;
         let pixels = (options.width * options.height) as usize;
         let color = HostImage::new(host, &options, COLOR, 1)?;
@@ -68,7 +95,9 @@ impl<'a> Stage<'a> {
             let push = [vk::PushConstantRange::default()
                 .stage_flags(vk::ShaderStageFlags::VERTEX)
                 .size(size_of::<Pushed>() as u32)];
-            let info = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&push);
+            let info = vk::PipelineLayoutCreateInfo::default()
+                .set_layouts(shaders.sets)
+                .push_constant_ranges(&push);
             let layout = device.create_pipeline_layout(&info, None)?;
             let mut stage = Self {
                 options,
@@ -88,7 +117,7 @@ impl<'a> Stage<'a> {
             if !options.dynamic {
                 stage.make_pass()?;
             }
-            stage.make_pipeline()?;
+            stage.make_pipeline(shaders)?;
             Ok(stage)
         }
     }

@@ -14,7 +14,7 @@ use revmap::gpu::{ObjectId, Renderer};
 pub type RevmapObject = u64;
 
 /// Calls `change` with a renderer and one of its objects.
-fn with_object(
+pub(super) fn with_object(
     renderer: *const RevmapRenderer,
     object: RevmapObject,
     change: impl FnOnce(&mut Renderer, ObjectId) -> revmap::Result<()>,

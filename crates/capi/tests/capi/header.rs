@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 const KEEP: &str = "REVMAP_KEEP_HEADER";
 
 /// The sources in the order of the header.
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 12] = [
     "lib",
     "fault",
     "enums",
@@ -16,6 +16,7 @@ const SOURCES: [&str; 11] = [
     "texture",
     "object",
     "rays",
+    "shading",
     "renderer",
     "offscreen",
 ];
@@ -31,7 +32,14 @@ fn sources() -> Vec<PathBuf> {
     for name in SOURCES {
         all.push(folder().join(format!("src/{name}.rs")));
         if name == "renderer" {
-            let parts = ["frame", "objects", "prewarm", "statistics"];
+            let parts = [
+                "frame",
+                "objects",
+                "images",
+                "shading",
+                "prewarm",
+                "statistics",
+            ];
             all.extend(parts.map(|n| folder().join(format!("src/renderer/{n}.rs"))));
         }
     }

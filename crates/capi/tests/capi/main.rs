@@ -80,6 +80,7 @@ mod programs;
 mod rays;
 mod recording;
 mod recording_compute;
+mod shading;
 
 #[path = "../../../../tests/common/host.rs"]
 mod host;

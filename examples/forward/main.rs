@@ -1,0 +1,239 @@
+//! A small forward renderer: one function lights its meshes and the revolved solids, by lamps in the
+//! host's own descriptor set. No pass comes after.
+//!
+//! `cargo run --release --example forward -- out` writes `forward.png` into `out/`, and the same
+//! picture with a mesh in place of the revolved ball, and without a ball. The solids' function is `shade.glsl`; `revmap
+//! shading examples/forward/shade.glsl examples/forward/light.glsl -o examples/forward/shade.shading`
+//! renews its bytes.
+#![allow(unsafe_code)] // raw handles enter here: each use says what it promises
+
+#[path = "../engine/host/mod.rs"]
+#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // other hosts take the rest
+mod host;
+
+use ash::vk;
+use glam::{DMat4, DQuat, DVec3, Vec3};
+use host::set::UniformSet;
+use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage};
+use revmap::gpu::{
+    self, DepthOrder, HostDevice, HostShading, Output, PassFormats, PassKind, Renderer,
+    Requirements, View, Viewport,
+};
+use revmap::profile::Profile;
+use revmap::scene::{Material, Object, Placement};
+use revmap::settings::{Planes, SearchSettings};
+use revmap::shading::Shading;
+use revmap_files::ProfileAxis;
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// The bytes of `shade.glsl`, which belong to one version of the library.
+pub const SHADING: &[u8] = include_bytes!("shade.shading");
+
+const OPTIONS: Options = Options {
+    width: 640,
+    height: 400,
+    dynamic: true,
+    samples: 1,
+    reversed: true,
+};
+const EYE: DVec3 = DVec3::new(3.1, 0.9, 1.5);
+const BALL: DVec3 = DVec3::new(0.55, 0.75, 0.3);
+const BALL_RADIUS: f64 = 0.3;
+const BALL_COLOR: Vec3 = Vec3::new(0.15, 0.3, 0.7);
+
+#[allow(dead_code)] // a test calls `run`
+fn main() -> Fallible<()> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
+    let validate = std::env::var_os(gpu::VALIDATION_VARIABLE).is_some();
+    let [mesh, none] = run(&folder, validate)?;
+    println!("pixels that differ: {mesh} with a mesh in place of the ball, {none} without a ball");
+    Ok(())
+}
+
+/// Draws the pictures into a folder. Returns how many pixels differ visibly if a mesh is in place of
+/// the ball, and if nothing is.
+pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
+    std::fs::create_dir_all(folder)?;
+    let host = Host::open(validate, |instance, physical| {
+        // SAFETY: both are live.
+        let needs = unsafe { Requirements::of(instance, physical) }?;
+        Ok((needs.queue_family, needs.features))
+    })?;
+    // SAFETY: the host outlives the device; all handles are its own, opened with these features.
+    let device = unsafe {
+        gpu::Device::borrow(&HostDevice {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &host.device,
+            queue_family: host.family,
+            queue: None,
+            features: host.features,
+            allocator: None,
+            pipeline_cache: None,
+        })
+    }?;
+    println!("{}", device.report().name);
+    let lights = UniformSet::of(&host, &lights())?;
+    let mut pictures = Vec::new();
+    for name in ["forward", "forward-mesh", "forward-none"] {
+        let mut renderer = renderer(&device, &lights)?;
+        chessmen(&mut renderer)?;
+        let mut meshes = vec![Mesh::floor(&host, 2.5, 0.0, Vec3::new(0.35, 0.33, 0.3))?];
+        if name == "forward" {
+            renderer.add(ball()?)?;
+        } else if name == "forward-mesh" {
+            let radius = BALL_RADIUS as f32;
+            let ball = Mesh::sphere(&host, 128, BALL.as_vec3(), radius, BALL_COLOR)?;
+            meshes.push(ball);
+        }
+        let pixels = picture(&host, &mut renderer, &meshes, &lights)?;
+        let path = format!("{folder}/{name}.png");
+        host::write_png(&path, &OPTIONS, &pixels)?;
+        println!("{path}");
+        pictures.push(pixels);
+    }
+    match host.take_messages().first() {
+        Some(message) => Err(message.clone().into()),
+        None => Ok([1, 2].map(|n| differing(&pictures[0], &pictures[n]))),
+    }
+}
+
+/// A renderer that shades by the host's function.
+fn renderer(device: &gpu::Device, lights: &UniformSet) -> Fallible<Renderer> {
+    let begun = PassKind::Dynamic {
+        color: vec![host::COLOR],
+        depth: host::DEPTH,
+        stencil: vk::Format::UNDEFINED,
+    };
+    let output = Output::Pass(PassFormats {
+        depth: DepthOrder::Reversed,
+        ..PassFormats::new(begun, Planes::Color)
+    });
+    let shading = HostShading {
+        shading: Arc::new(Shading::from_bytes(SHADING)?),
+        set_layout: lights.layout,
+    };
+    let settings = SearchSettings::default();
+    // SAFETY: the layout has the binding that `light.glsl` declares, and outlives the renderer.
+    let made = unsafe { Renderer::with_shading(device, output, &settings, host::FRAMES, &shading) };
+    Ok(made?)
+}
+
+/// Chessmen, and a row of pawns; every other pawn has rings.
+fn chessmen(renderer: &mut Renderer) -> Fallible<()> {
+    for (name, y, color, metalness) in [
+        ("king", 0.0, [0.95, 0.75, 0.35], 1.0),
+        ("rook", -0.8, [0.5, 0.12, 0.08], 0.0),
+        ("pawn", -1.3, [0.15, 0.3, 0.25], 0.0),
+    ] {
+        let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
+        let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
+        let mut object = Object::new(name, profile);
+        object.color = color;
+        object.material = Some(Material {
+            roughness: 0.3,
+            metalness,
+        });
+        object.placement.position.y = y;
+        if name == "pawn" {
+            let standing = |n: u32| Placement {
+                position: DVec3::new(-1.0, 0.5 * f64::from(n) - 1.5, 0.0),
+                rotation: DQuat::IDENTITY,
+                scale: DVec3::splat(0.55),
+            };
+            object.instances = (0..7).map(standing).collect();
+        }
+        renderer.add(object)?;
+    }
+    Ok(())
+}
+
+/// A ball, its outline half of a polygon of many corners.
+fn ball() -> Fallible<Object> {
+    const CORNERS: u32 = 512;
+    let corner = |n: u32| {
+        let (sine, cosine) = (std::f64::consts::PI * f64::from(n) / f64::from(CORNERS)).sin_cos();
+        [0.5 * sine, 0.5 - 0.5 * cosine]
+    };
+    let outline: Vec<_> = (0..=CORNERS).map(corner).collect();
+    let mut object = Object::new("ball", Arc::new(Profile::polygon(&outline, 0.5)?));
+    object.color = BALL_COLOR.to_array();
+    object.material = Some(Material {
+        roughness: 0.4,
+        metalness: 0.0,
+    });
+    object.placement = Placement {
+        position: BALL - DVec3::Z * BALL_RADIUS,
+        scale: DVec3::splat(2.0 * BALL_RADIUS),
+        ..Placement::default()
+    };
+    Ok(object)
+}
+
+/// The values of `HostLights` in `light.glsl`.
+fn lights() -> Vec<[f32; 4]> {
+    let sun = Vec3::new(0.5, -0.4, 0.7).normalize();
+    let lamps = [
+        (Vec3::new(1.2, 0.1, 0.5), Vec3::new(1.6, 0.5, 0.15)),
+        (Vec3::new(0.3, -1.6, 0.9), Vec3::new(0.3, 1.4, 0.4)),
+        (Vec3::new(-0.6, 1.5, 0.6), Vec3::new(0.4, 0.5, 2.0)),
+    ];
+    let mut all = vec![EYE.as_vec3(), sun, Vec3::splat(2.2), Vec3::splat(0.12)];
+    all.extend(lamps.map(|lamp| lamp.0));
+    all.extend(lamps.map(|lamp| lamp.1));
+    all.iter().map(|v| v.extend(1.0).to_array()).collect()
+}
+
+/// One frame: meshes, then solids, each with the host's set of lights.
+fn picture(
+    host: &Host,
+    renderer: &mut Renderer,
+    meshes: &[Mesh],
+    lights: &UniformSet,
+) -> Fallible<Vec<u8>> {
+    let shaders = MeshShaders {
+        vertex: include_bytes!("mesh.vert.spv"),
+        fragment: include_bytes!("mesh.frag.spv"),
+        sets: &[lights.layout],
+    };
+    let mut stage = Stage::with_shaders(host, OPTIONS, &shaders)?;
+    let [view, projection] = host::view_and_projection(EYE, DVec3::new(0.0, 0.0, 0.35), &OPTIONS);
+    let viewport = Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: f64::from(OPTIONS.width),
+        height: f64::from(OPTIONS.height),
+    };
+    let seen = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
+    let clip: DMat4 = projection * view;
+    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.layout);
+    let renderer = RefCell::new(renderer);
+    stage.frame(
+        clip,
+        Vec3::Z,
+        meshes,
+        // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its
+        // pass; the layout of meshes has the set at 0.
+        |cmd, slot| unsafe {
+            lights.bind(cmd, point, of_meshes, 0);
+            Ok(renderer.borrow_mut().prepare(cmd, slot, &seen)?)
+        },
+        // SAFETY: the frame was prepared, and the pass is of the output's formats; the renderer's
+        // layout has the set at 3.
+        |cmd, frame| unsafe {
+            lights.bind(cmd, point, renderer.borrow().pipeline_layout()?, 3);
+            Ok(renderer.borrow().record(cmd, frame)?)
+        },
+    )?;
+    let pixels = stage.read()?.0;
+    stage.wait()?;
+    Ok(pixels)
+}
+
+/// The number of pixels that differ by more than 2 of 255.
+fn differing(a: &[u8], b: &[u8]) -> usize {
+    let pixels = a.chunks(4).zip(b.chunks(4));
+    let far = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
+    far.count()
+}
