@@ -5,6 +5,7 @@
 //! ([`tiles`]). Objects with the same pipeline and the same set of textures share
 //! draws and dispatches, so their number does not grow with the number of objects.
 
+pub(crate) mod casters;
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;

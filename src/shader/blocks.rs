@@ -1,6 +1,6 @@
 //! Data that the CPU passes to the GPU. A test compares the layouts with `blocks.glsl`.
 
-use super::generated::{MAX_LIGHTS, MAX_SHADOW_OBJECTS};
+use super::generated::MAX_LIGHTS;
 use bytemuck::{Pod, Zeroable};
 
 /// `Light` of `blocks.glsl`.
@@ -37,6 +37,12 @@ pub struct FrameBlock {
     /// Clip x is x of a pixel's corner times the first value, plus the second. Clip y is y times
     /// the third value, plus the fourth.
     pub pixels: [f32; 4],
+    /// The eye, from the origin of the hierarchy of casters; bits of the number of shape maps.
+    pub caster_eye: [f32; 4],
+    /// Root of the hierarchy: the middle of its box; bits of the number of all nodes.
+    pub caster_middle: [f32; 4],
+    /// Root of the hierarchy: half of its box; bits of its member `instance`.
+    pub caster_half_size: [f32; 4],
     /// Only the first `size[2]` lights count.
     pub lights: [LightBlock; MAX_LIGHTS as usize],
 }
@@ -54,8 +60,7 @@ pub struct InstanceBlock {
     /// Origin of the ray of pixel (0, 0), object space, from the axis at z = 0; clip y of the box's
     /// middle.
     pub origin: [f32; 4],
-    /// Number of the instance's object; bits of the distance from its position that its box
-    /// reaches.
+    /// Number of the instance's object.
     pub object: [u32; 4],
 }
 
@@ -95,14 +100,17 @@ pub struct ObjectBlock {
 /// device may have.
 pub const OBJECT_STRIDE: u32 = 256;
 
-/// `ShadowBlock` of `blocks.glsl`.
+/// `CasterNode` of `shadow.glsl`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct ShadowBlock {
-    /// First: number of objects.
-    pub shadow_count: [u32; 4],
-    /// Only the first `shadow_count[0]` objects count.
-    pub shadow_objects: [ObjectBlock; MAX_SHADOW_OBJECTS as usize],
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CasterNode {
+    /// The middle of its box, from the origin of the hierarchy.
+    pub middle: [f32; 3],
+    /// Index of the node after its subtree; of a copy, the index of its shape map.
+    pub next: u32,
+    pub half_size: [f32; 3],
+    /// Index of the copy, or [`INNER_NODE`](super::generated::INNER_NODE).
+    pub instance: u32,
 }
 
 /// `Pushed` of `compute.glsl`.

@@ -9,7 +9,7 @@ mod outputs;
 mod variant;
 
 pub use blocks::{
-    FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, ShadowBlock,
+    CasterNode, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
 };
 #[cfg(test)]
 pub(crate) use catalogue::Features;

@@ -43,6 +43,7 @@ mod plans;
 mod proxy_hulls;
 mod refusals;
 mod replicas;
+mod shadow_crowds;
 mod shadows;
 mod smallest;
 mod texturing;

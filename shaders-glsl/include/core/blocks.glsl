@@ -19,6 +19,9 @@ struct Frame {
     vec4 ambient; // linear RGB; w: depth value of the near plane
     uvec4 size;   // width, height, number of lights, first record of the last frame's placements
     vec4 pixels;  // clip x = x * (x of a pixel's corner) + y; clip y = z * (y of a pixel's corner) + w
+    vec4 caster_eye;       // the eye, from the origin of the hierarchy of shadow.glsl; w: number of shape maps (bits)
+    vec4 caster_middle;    // root of the hierarchy: middle of its box; w: number of all nodes (bits)
+    vec4 caster_half_size; // root; w: index of the only copy, or INNER_NODE (bits)
     Light lights[MAX_LIGHTS];
 };
 
@@ -39,7 +42,7 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
     vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
-    uvec4 object;     // x: index of its object; y: radius of the box about the instance's position (float bits)
+    uvec4 object;     // x: index of its object
 };
 
 // An object: the data that its instances share.
@@ -52,7 +55,7 @@ struct Object {
     vec4 specular;   // strength, shininess; height of the box and of its part below z = 0, profile units
     vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
-    uvec4 instances; // first, count, index of the shape map among those of shadows
+    uvec4 instances; // first, count, index of the shape map among those of shadows, index of the object
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
     uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches; first vector of the rows of sides
@@ -118,6 +121,18 @@ void take_object(uint number)
     } else {
         TAKE_OBJECT(objects[number].object);
     }
+}
+
+// Loads the members of an object that a search reads.
+void take_shape(uint number)
+{
+    object.map = objects[number].object.map;
+    object.bounds = objects[number].object.bounds;
+    object.offset = objects[number].object.offset;
+    object.axis = objects[number].object.axis;
+    object.cells = objects[number].object.cells;
+    object.instances.w = number;
+    object.patches = objects[number].object.patches;
 }
 
 #endif

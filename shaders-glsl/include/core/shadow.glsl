@@ -5,9 +5,16 @@
 #include "core/pixel_ray.glsl"
 #include "core/replicas.glsl"
 
-layout(set = 0, binding = 3, std140) uniform ShadowBlock {
-    uvec4 shadow_count; // x: number of objects
-    Object shadow_objects[MAX_SHADOW_OBJECTS];
+// The hierarchy of boxes around the copies of all objects, in depth-first order. src/plan/casters.rs builds it.
+struct CasterNode {
+    vec3 middle; // of its box, from the origin of the hierarchy, world axes
+    uint next;   // index of the node after its subtree; of a copy: index of its shape map
+    vec3 half_size;
+    uint instance; // index of the copy, or INNER_NODE
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
+    CasterNode casters[];
 };
 
 // Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle.
@@ -58,14 +65,34 @@ vec2 next_angle(vec2 angle)
     return vec2(angle.x * GOLDEN_ANGLE.x - angle.y * GOLDEN_ANGLE.y, angle.x * GOLDEN_ANGLE.y + angle.y * GOLDEN_ANGLE.x);
 }
 
-// Returns true if the cone of rays to the disc may hit a sphere around `middle`, relative to the rays' origin.
-bool may_meet(Disc disc, vec3 middle, float radius)
+// The cone of rays from a point to a disc.
+struct Cone {
+    vec3 from; // from the origin of the hierarchy
+    vec3 inverse; // 1 / the middle ray
+    float widens; // tangent of the angle between the middle ray and the outermost one
+    float slack;
+};
+
+Cone cone_to(Disc disc, vec3 origin, vec3 point)
 {
-    float along = dot(middle, disc.middle);
-    float aside = sqrt(max(dot(middle, middle) - along * along, 0.0));
-    float from_cone = aside * (1.0 - disc.cap) - along * sqrt(disc.cap * (2.0 - disc.cap));
-    float slack = 1e-3 * (radius + abs(along));
-    return from_cone <= radius + slack && along >= -radius - slack;
+    Cone cone;
+    cone.from = frame_block.caster_eye.xyz + origin + point;
+    cone.inverse = 1.0 / mix(disc.middle, vec3(1e-20), lessThan(abs(disc.middle), vec3(1e-20)));
+    cone.widens = sqrt(disc.cap * (2.0 - disc.cap)) / max(1.0 - disc.cap, 1e-4);
+    cone.slack = 1e-6 * (length(frame_block.caster_eye.xyz) + length(origin) + length(point));
+    return cone;
+}
+
+// Returns true if a cone may hit a node's box.
+bool may_meet(Cone cone, vec3 middle, vec3 half_size)
+{
+    vec3 way = middle - cone.from;
+    vec3 reach = half_size + cone.widens * (length(way) + length(half_size)) + cone.slack;
+    vec3 a = (way - reach) * cone.inverse;
+    vec3 b = (way + reach) * cone.inverse;
+    vec3 near = min(a, b);
+    vec3 far = max(a, b);
+    return max(max(near.x, near.y), max(near.z, 0.0)) <= min(far.x, min(far.y, far.z));
 }
 
 // Returns the rays of `left` that the current object does not block.
@@ -84,21 +111,52 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint left)
     return left;
 }
 
+// Returns `met` if that is a copy, else the next copy that a cone may hit, or INNER_NODE. `k`: index of the next of
+// `count` nodes. `map`: index of the copy's shape map, where searches read maps.
+uint next_caster(Cone cone, uint map, uint met, uint count, inout uint k)
+{
+    while (met == INNER_NODE && k < count) {
+        CasterNode node = casters[k];
+        bool meets = may_meet(cone, node.middle, node.half_size);
+        k = meets || node.instance != INNER_NODE ? k + 1u : node.next;
+#if READS_MAP
+        meets = meets && node.next == map;
+#endif
+        met = meets ? node.instance : INNER_NODE;
+    }
+    return met;
+}
+
 // Returns the rays of `left`, one bit each, that no solid blocks.
 uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
 {
-    for (uint b = 0u; b < shadow_count.x && left != 0u; ++b) {
-        uint first = shadow_objects[b].instances.x;
-        uint end = first + shadow_objects[b].instances.y;
-        for (uint n = first; n < end && left != 0u; ++n) {
-            vec3 middle = instances[n].position_sx.xyz - origin - point;
-            bool near = may_meet(disc, middle, uintBitsToFloat(instances[n].object.y));
-            // This is a loop because software drivers execute the body of a branch even if no lane takes it.
-            for (uint k = near ? 0u : LIGHT_RAYS; k < LIGHT_RAYS; k = LIGHT_RAYS) {
-                object = shadow_objects[b];
-                shadow_map = int(object.instances.z);
-                left = unstopped_by(instances[n], origin, point, disc, left);
+    Cone cone = cone_to(disc, origin, point);
+    // The root is in the block of the frame, which software drivers read much faster than the nodes.
+    vec4 middle = frame_block.caster_middle;
+    vec4 half_size = frame_block.caster_half_size;
+    bool meets = may_meet(cone, middle.xyz, half_size.xyz);
+    uint count = meets ? floatBitsToUint(middle.w) : 0u;
+    uint root = meets ? floatBitsToUint(half_size.w) : INNER_NODE;
+    // The index of a map must be the same in all invocations, so each map has a walk of its own.
+#if READS_MAP
+    uint maps = floatBitsToUint(frame_block.caster_eye.w);
+#else
+    uint maps = 1u;
+#endif
+    for (uint map = 0u; map < maps; ++map) {
+        shadow_map = int(map);
+        uint k = 1u;
+        // All invocations first find a copy each (Aila and Laine 2009), then trace together.
+        for (uint met = root; left != 0u; met = INNER_NODE) {
+            met = next_caster(cone, map, met, count, k);
+            if (met == INNER_NODE) {
+                break;
             }
+            Instance i = instances[met];
+            for (bool other = i.object.x != object.instances.w; other; other = false) {
+                take_shape(i.object.x);
+            }
+            left = unstopped_by(i, origin, point, disc, left);
         }
     }
     return left;

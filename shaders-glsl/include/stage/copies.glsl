@@ -3,17 +3,6 @@
 #define COPIES_GLSL
 #include "stage/stores.glsl"
 
-// Loads the members of an object that a search reads.
-void take_shape(uint number)
-{
-    object.map = objects[number].object.map;
-    object.bounds = objects[number].object.bounds;
-    object.offset = objects[number].object.offset;
-    object.axis = objects[number].object.axis;
-    object.cells = objects[number].object.cells;
-    object.patches = objects[number].object.patches;
-}
-
 // Finds the nearest hit. The first of equal depths wins, as under the depth test. The loop ends when the next copy
 // begins behind the hit, or behind the initial `depth`. `index`: instance that was hit. `nearest.steps` and
 // `nearest.exhausted` are those of all searches, with or without a hit.

@@ -2,8 +2,10 @@
 //! plan of the last view. It records no commands.
 //!
 //! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
-//! derives resources from new values. `view_plan.rs` plans a view's frame.
+//! derives resources from new values. `view_plan.rs` plans a view's frame. `casters.rs` keeps the
+//! hierarchy of copies that cast shadows.
 
+mod casters;
 pub(super) mod entry;
 pub(super) mod objects;
 pub(super) mod refresh;
@@ -27,7 +29,7 @@ use view_plan::ViewPlan;
 pub(super) struct Content {
     pub objects: Objects,
     pub textures: Textures,
-    shadow_maps: Arc<ShadowMaps>,
+    pub shadow_maps: Arc<ShadowMaps>,
     pub uploads: Uploads,
     pub geometry: Arc<Geometry>,
     pub lighting: Lighting,
@@ -45,6 +47,8 @@ pub(super) struct Content {
     pub version: u64,
     /// The plan of the last view.
     pub plan: Option<Arc<ViewPlan>>,
+    /// The copies that may cast shadows, as of the last frame with shadows.
+    hierarchy: Option<casters::Casters>,
     /// True if compute compares depths with those of the target.
     pub target_has_depths: bool,
     pub rebuilds: u64,
@@ -80,6 +84,7 @@ impl Content {
             moved: Vec::new(),
             version: 1,
             plan: None,
+            hierarchy: None,
             target_has_depths: true,
             rebuilds: 0,
             notes: Vec::new(),

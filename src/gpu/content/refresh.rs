@@ -13,7 +13,7 @@ use crate::maps::Projection;
 use crate::scene::{GrownObject, Growth, Object};
 use crate::settings::Solver;
 use crate::shader::ShadowCasters;
-use crate::shader::generated::{MAX_SHADOW_MAPS, MAX_SHADOW_OBJECTS};
+use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OffsetContour;
 use rayon::prelude::*;
@@ -99,10 +99,6 @@ impl Content {
             (self.all_fall_back, self.casters) = common;
             // Other code draws each object from now on.
             work.extend(self.resolve(&self.others(&work))?);
-        }
-        if self.casts() {
-            let remedy = "use instances";
-            few_enough(self.objects.len(), "objects", MAX_SHADOW_OBJECTS, remedy)?;
         }
         self.find_maps(&mut work)?;
         let shadow_maps = self.shadow_maps_with(&work)?;

@@ -6,11 +6,11 @@ use super::Renderer;
 use super::slot::{BoundPlan, BoundStep};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::gpu::resources::block::{frame_block, instance_block};
+use crate::gpu::resources::block::{add_casters, frame_block, instance_block};
 use crate::gpu::resources::motion::last_block;
 use crate::plan::View;
 use crate::shader::Kind;
-use crate::shader::{OBJECT_STRIDE, ObjectBlock};
+use crate::shader::OBJECT_STRIDE;
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::sync::Arc;
@@ -113,7 +113,12 @@ impl Renderer {
         }
         let to = &mut self.slots[slot];
         let last_record = self.content.objects.instances();
-        to.write_frame(&frame_block(view, &self.content.lighting, last_record))?;
+        let mut block = frame_block(view, &self.content.lighting, last_record);
+        if let Some(hierarchy) = &to.hierarchy {
+            let maps = self.content.shadow_maps.maps.len();
+            add_casters(&mut block, hierarchy, view.eye, maps);
+        }
+        to.write_frame(&block)?;
         to.serial += 1;
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
@@ -184,6 +189,7 @@ impl Renderer {
     /// Writes blocks of a slot that are older than the renderer, or of another view.
     fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
         let casts = self.content.casts();
+        let hierarchy = casts.then(|| self.content.hierarchy(plan));
         let to = &mut self.slots[slot];
         let motion = self.content.output.planes().has_motion();
         let instances = self.content.objects.instances();
@@ -198,7 +204,6 @@ impl Renderer {
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
         let known = known.map_or(0, |(_, version)| version);
-        let mut throwing: Vec<ObjectBlock> = Vec::new();
         for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
             let number = object.number;
             let Some(entry) = self.content.objects.at(number) else {
@@ -211,9 +216,6 @@ impl Renderer {
             };
             let placements = entry.drawn().placements();
             to.write_object(number, &block)?;
-            if casts {
-                throwing.push(block);
-            }
             let mut write = |copy: u32| {
                 let placement = &placements[copy as usize];
                 let block = instance_block(entry.drawn(), placement, number, view);
@@ -232,8 +234,8 @@ impl Renderer {
                 None => {}
             }
         }
-        if casts {
-            to.write_shadows(&throwing)?;
+        if let Some(hierarchy) = hierarchy {
+            to.write_casters(&hierarchy)?;
         }
         to.written = Some((*view, plan.version));
         Ok(())

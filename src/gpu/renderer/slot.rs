@@ -12,8 +12,9 @@ use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
+use crate::plan::casters::Hierarchy;
 use crate::plan::{Call, DrawPath, FramePlan, View};
-use crate::shader::{FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock, ShadowBlock};
+use crate::shader::{CasterNode, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock};
 use ash::vk;
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ pub(crate) struct FrameSlot {
     frame: Buffer,
     objects: Buffer,
     instances: Buffer,
-    shadows: Buffer,
+    casters: Buffer,
     tiles: Buffer,
     pub bins: Buffer,
     pub draws: Buffer,
@@ -37,6 +38,8 @@ pub(crate) struct FrameSlot {
     pub written: Option<(View, u64)>,
     /// First of the records of the last frame's placements, when they were written.
     pub last_record: u32,
+    /// The copies in `casters`.
+    pub hierarchy: Option<Arc<Hierarchy>>,
     /// Copies that the frame's commands make.
     pub staging: Vec<Upload>,
     /// The buffer of tables that the sets name, and how often the target was set.
@@ -80,11 +83,7 @@ impl FrameSlot {
             frame: buffer(Use::Uniform, "frame block", size_of::<FrameBlock>() as u64)?,
             objects: buffer(Use::Storage, "objects", u64::from(OBJECT_STRIDE))?,
             instances: buffer(Use::Storage, "instances", 0)?,
-            shadows: buffer(
-                Use::Uniform,
-                "shadow block",
-                size_of::<ShadowBlock>() as u64,
-            )?,
+            casters: buffer(Use::Storage, "casters", size_of::<CasterNode>() as u64)?,
             tiles: buffer(Use::Storage, "tiles", 0)?,
             bins: buffer(Use::Bins, "bins of tiles", 0)?,
             draws: buffer(Use::Draws, "draws", 0)?,
@@ -92,6 +91,7 @@ impl FrameSlot {
             serial: 0,
             written: None,
             last_record: 0,
+            hierarchy: None,
             staging: Vec::new(),
             named: None,
             pool: vk::DescriptorPool::null(),
@@ -130,7 +130,7 @@ impl FrameSlot {
             &self.frame,
             &self.objects,
             &self.instances,
-            &self.shadows,
+            &self.casters,
             &self.tiles,
             &self.bins,
             &self.draws,
@@ -186,13 +186,19 @@ impl FrameSlot {
         write(&mut self.instances, at, instance)
     }
 
-    pub fn write_shadows(&mut self, blocks: &[ObjectBlock]) -> Result<()> {
-        let mut all: ShadowBlock = bytemuck::Zeroable::zeroed();
-        all.shadow_count[0] = u32::try_from(blocks.len()).unwrap_or(0);
-        for (to, block) in all.shadow_objects.iter_mut().zip(blocks) {
-            *to = *block;
+    /// Writes the copies that may cast shadows.
+    pub fn write_casters(&mut self, hierarchy: &Arc<Hierarchy>) -> Result<()> {
+        let known = self.hierarchy.as_ref();
+        if known.is_some_and(|known| Arc::ptr_eq(known, hierarchy)) {
+            return Ok(());
         }
-        write(&mut self.shadows, 0, &all)
+        let bytes = size_of_val(hierarchy.nodes.as_slice()) as u64;
+        if self.casters.bytes < bytes {
+            self.casters = roomy(&self.device, "casters", bytes)?;
+            self.named = None;
+        }
+        self.hierarchy = Some(hierarchy.clone());
+        write_slice(&mut self.casters, &hierarchy.nodes)
     }
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
@@ -229,7 +235,7 @@ impl FrameSlot {
             whole(&self.frame),
             whole(&self.objects),
             whole(&self.instances),
-            whole(&self.shadows),
+            whole(&self.casters),
             whole(tables),
             Resource::Buffer(tables.raw, window),
             Resource::Buffer(self.objects.raw, size_of::<ObjectBlock>() as u64),

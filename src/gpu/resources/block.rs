@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::maps::MapFormat;
+use crate::plan::casters::Hierarchy;
 use crate::plan::{DepthOrder, View};
 use crate::scene::{Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
@@ -48,14 +49,12 @@ pub(crate) fn instance_block(
         rotation.as_quat(),
         origin.as_vec3(),
     );
-    let radius = object.profile.radius;
-    let reach = (placement.scale * DVec3::new(radius, radius, 1.0)).length() as f32;
     InstanceBlock {
         position_sx: [p.x, p.y, p.z, s.x],
         rotation: q.to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
-        object: [number, reach.to_bits(), 0, 0],
+        object: [number, 0, 0, 0],
     }
 }
 
@@ -104,7 +103,18 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
             (-2.0 * v.y / v.height - 1.0) as f32,
         ],
         lights,
+        ..bytemuck::Zeroable::zeroed()
     }
+}
+
+/// Adds the root of the hierarchy of copies that cast shadows. `maps`: number of shape maps.
+pub(crate) fn add_casters(to: &mut FrameBlock, all: &Hierarchy, eye: DVec3, maps: usize) {
+    let with = |[x, y, z]: [f32; 3], bits: u32| [x, y, z, f32::from_bits(bits)];
+    let root = all.nodes.first().copied().unwrap_or(Hierarchy::EMPTY);
+    let from_origin = (eye - all.origin).as_vec3().to_array();
+    to.caster_eye = with(from_origin, maps as u32);
+    to.caster_middle = with(root.middle, all.nodes.len() as u32);
+    to.caster_half_size = with(root.half_size, root.instance);
 }
 
 /// Returns an error for more lights than shaders hold.

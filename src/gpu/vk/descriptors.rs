@@ -50,7 +50,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // the frame
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // objects
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // instances
-        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // objects that may throw shadows
+        one(vk::DescriptorType::STORAGE_BUFFER, PIXEL), // copies that may cast shadows
         one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tables of all solids
         one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
         one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
