@@ -1249,6 +1249,12 @@ typedef struct RevmapPass {
      * 1 to leave the depth attachment as it is, 0 to write depths.
      */
     uint32_t depth_read_only;
+    /**
+     * Views of the pass: 1 (or 0), or 2 to 6 with multiview, whose view mask has the lowest bits
+     * set. Each view is a frame of its own in a slot of its own: prepare it with its
+     * RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
+     */
+    uint32_t views;
 } RevmapPass;
 
 /**
@@ -1323,6 +1329,10 @@ typedef struct RevmapView {
      * but 0. See revmap_renderer_set_mask().
      */
     uint32_t mask;
+    /**
+     * Index among the views of the pass: see RevmapPass.views.
+     */
+    uint32_t layer;
 } RevmapView;
 
 /**
