@@ -24,6 +24,7 @@ mod searches;
 mod shaders;
 mod shell;
 mod stability;
+mod submit;
 mod usage;
 #[cfg(feature = "viewer")]
 mod view;
@@ -58,6 +59,7 @@ enum Command {
     Bench(bench::Bench),
     Chart(chart::Chart),
     Stability(stability::Stability),
+    Submit(submit::Submit),
     Shaders(shaders::Shaders),
     Searches(searches::Searches),
     Devices(devices::Devices),
@@ -76,6 +78,7 @@ impl Command {
             Self::Bench(command) => command.run(),
             Self::Chart(command) => command.run(),
             Self::Stability(command) => command.run(),
+            Self::Submit(command) => command.run(),
             Self::Shaders(command) => command.run(),
             Self::Searches(command) => command.run(),
             Self::Devices(command) => command.run(),

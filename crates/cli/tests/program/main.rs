@@ -12,5 +12,6 @@ mod pictures;
 mod run;
 mod shaders_command;
 mod stability_command;
+mod submit_command;
 mod warnings;
 mod words;
