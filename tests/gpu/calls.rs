@@ -207,6 +207,7 @@ impl Layer {
             REAL_QUERIES[n].store(real, Ordering::SeqCst);
             let queries = [
                 properties as *const c_void,
+                properties2 as *const c_void,
                 features as *const c_void,
                 families as *const c_void,
                 formats as *const c_void,
@@ -261,12 +262,15 @@ pub struct Mask {
     /// More than one sample per pixel.
     pub samples: bool,
     pub format: Option<vk::Format>,
+    /// Another number of invocations in a subgroup; 0 keeps the device's own.
+    pub subgroup: u32,
 }
 
 static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
 
-const QUERIES: [&CStr; 5] = [
+const QUERIES: [&CStr; 6] = [
     c"vkGetPhysicalDeviceProperties",
+    c"vkGetPhysicalDeviceProperties2",
     c"vkGetPhysicalDeviceFeatures",
     c"vkGetPhysicalDeviceQueueFamilyProperties",
     c"vkGetPhysicalDeviceFormatProperties",
@@ -316,7 +320,19 @@ queries! {
             limits.max_vertex_output_components = 64;
         }
     }
-    1 features: PFN_vkGetPhysicalDeviceFeatures(
+    1 properties2: PFN_vkGetPhysicalDeviceProperties2(
+        physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties2<'_>
+    ), |mask| {
+        let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'_>>();
+        while let Some(one) = next.as_mut() {
+            if mask.subgroup > 0 && one.s_type == vk::StructureType::PHYSICAL_DEVICE_SUBGROUP_PROPERTIES {
+                let properties = next.cast::<vk::PhysicalDeviceSubgroupProperties<'_>>();
+                (*properties).subgroup_size = mask.subgroup;
+            }
+            next = one.p_next;
+        }
+    }
+    2 features: PFN_vkGetPhysicalDeviceFeatures(
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures
     ), |mask| {
         if mask.stores {
@@ -326,7 +342,7 @@ queries! {
             (*out).sampler_anisotropy = vk::FALSE;
         }
     }
-    2 families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
+    3 families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
         physical: vk::PhysicalDevice, count: *mut u32, out: *mut vk::QueueFamilyProperties
     ), |mask| {
         // `out` has room for `count`, or is null.
@@ -340,14 +356,14 @@ queries! {
             }
         }
     }
-    3 formats: PFN_vkGetPhysicalDeviceFormatProperties(
+    4 formats: PFN_vkGetPhysicalDeviceFormatProperties(
         physical: vk::PhysicalDevice, format: vk::Format, out: *mut vk::FormatProperties
     ), |mask| {
         if mask.format == Some(format) {
             *out = vk::FormatProperties::default();
         }
     }
-    4 image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
+    5 image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
         physical: vk::PhysicalDevice, format: vk::Format, kind: vk::ImageType, tiling: vk::ImageTiling,
         usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags, out: *mut vk::ImageFormatProperties
     ) -> vk::Result, |mask| {

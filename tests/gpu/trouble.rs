@@ -4,6 +4,7 @@
 
 use crate::calls::{Layer, Mask};
 use crate::common::host::{Checked, Host, lent, open, open_with};
+use crate::common::ways::apart;
 use crate::common::{device, eye, next_frame, scene_of, shapes, updated};
 use crate::embedding::three;
 use ash::vk;
@@ -280,6 +281,43 @@ fn a_device_without_what_is_optional_draws_the_same() {
                 assert_same(&drawn.read().unwrap(), &wanted);
             }
         }
+    }
+}
+
+/// The size of a subgroup chooses between lists of patches and the tree. Both find the same surface, and
+/// nothing else depends on the size.
+#[test]
+fn subgroups_of_any_size_draw_the_same() {
+    let (layer, host, entry) = (Layer::take(), open(), entry());
+    let scene = scene_of(shapes::vase(), eye(25.0, 0.9));
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let settings = Settings {
+            width: 400,
+            height: 300,
+            ..settings(stage)
+        };
+        let [small, wide @ ..] = [4, 16, 32, 64].map(|subgroup| {
+            let mask = Mask {
+                subgroup,
+                ..Mask::default()
+            };
+            let instance = layer.instance(&entry, &host.instance, mask);
+            picture(
+                &borrow(&host, &host.device, &instance).unwrap(),
+                &scene,
+                &settings,
+            )
+        });
+        wide.iter().for_each(|frame| assert_same(frame, &wide[0]));
+        let (hits, edges, far) = apart(&wide[0], &small);
+        assert!(hits > 20_000, "{stage:?}: {hits} hits");
+        assert!(
+            edges <= 2 && far == 0,
+            "{stage:?}: {edges} at edges, {far} far"
+        );
+        // The planted size reached the plan: other patches were tested.
+        let other = wide[0].steps != small.steps;
+        assert_eq!(other, stage == DrawStage::Compute, "{stage:?}");
     }
 }
 

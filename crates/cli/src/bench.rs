@@ -18,9 +18,9 @@ use revmap_lab::report::measure::{Measured, Observer, measure};
 use revmap_lab::report::pictures::{Album, Sheets};
 use revmap_lab::report::plan::{Labels, Plan, PlanFile, embedded};
 use revmap_lab::report::report::Run;
-use revmap_lab::report::{DeviceBench, compare_runs, folder};
+use revmap_lab::report::{DeviceBench, compare_runs, folder, submission};
 use revmap_searches::folder::of as of_folder;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Plans of other techniques.
 const TECHNIQUES: [(&str, &str); 2] = [("usual", "techniques"), ("tables", "techniques-tables")];
@@ -33,7 +33,8 @@ const TECHNIQUES: [(&str, &str); 2] = [("usual", "techniques"), ("tables", "tech
     revmap bench --quick --out out/bench\n  \
     revmap bench assets/scenes/vase.toml --solver exact,live,mesh:64x128 --size 800x600,1920x1080\n  \
     revmap bench --list scaling > mine.toml && revmap bench --plan mine.toml\n  \
-    revmap bench --compare results/old results/new")]
+    revmap bench --compare results/old results/new\n  \
+    revmap bench --gather mine.toml yours.toml --out out/devices")]
 pub struct Bench {
     #[command(flatten)]
     lists: Lists,
@@ -41,6 +42,8 @@ pub struct Bench {
     scale: Scale,
     #[command(flatten)]
     what: What,
+    #[command(flatten)]
+    how: How,
 }
 
 /// How much is measured.
@@ -94,14 +97,35 @@ struct What {
     /// a column for each driver; measures nothing
     #[arg(long, num_args = 1.., value_name = "DIR")]
     drivers: Vec<PathBuf>,
+    /// Puts files of `revmap submit` side by side: a table and a chart across devices in the folder
+    /// of --out; measures nothing
+    #[arg(long, num_args = 1.., value_name = "FILE")]
+    gather: Vec<PathBuf>,
     /// Compares the results in folder NEW with those in folder OLD; measures nothing
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
     compare: Vec<PathBuf>,
 }
 
+/// How runs are compared.
+#[derive(Args)]
+struct How {
+    /// With --compare: judge line by line whether NEW repeats what OLD says of these methods (exact,
+    /// mesh:64x128, baseline), and fail if it does not
+    #[arg(
+        long,
+        requires = "compare",
+        value_name = "METHOD,...",
+        value_delimiter = ','
+    )]
+    repeats: Vec<String>,
+}
+
 impl Bench {
     pub fn run(self) -> Result<()> {
         let what = &self.what;
+        if let ([old, new], false) = (what.compare.as_slice(), self.how.repeats.is_empty()) {
+            return repeats(old, new, &self.how.repeats);
+        }
         if let [old, new] = what.compare.as_slice() {
             let found = compare_runs::compare(old, new)?;
             found.warnings.iter().for_each(|text| output::warn(text));
@@ -111,6 +135,9 @@ impl Bench {
         if !what.drivers.is_empty() {
             print(&compare_runs::drivers::markdown(&what.drivers)?);
             return Ok(());
+        }
+        if !what.gather.is_empty() {
+            return gather(&what.gather, &self.lists);
         }
         if let Some(name) = &what.list {
             return list(name);
@@ -139,6 +166,28 @@ impl Bench {
         let found = found.map(|(_, name)| *name);
         found.or(what.techniques).unwrap_or(usual)
     }
+}
+
+/// Judges whether a new run repeats a kept one.
+fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
+    let claims = compare_runs::repeat::claims(old, new, methods)?;
+    print(&compare_runs::repeat::as_text(&claims));
+    if claims.iter().all(|claim| claim.repeated) {
+        return Ok(());
+    }
+    let message = "does not repeat all that the kept run says; see the lines above";
+    Err(Error::new(ErrorKind::Content, message).in_file(new))
+}
+
+/// Puts submissions side by side.
+fn gather(files: &[PathBuf], lists: &Lists) -> Result<()> {
+    let all = submission::gather::load(files)?;
+    let inputs = files.iter().map(PathBuf::as_path);
+    let out = lists.folder_beside("submitted", inputs)?;
+    print(&submission::gather::write(&all, &out)?);
+    let (report, count) = (out.join("report.html"), all.len());
+    output::result(&format!("{}: {count} submissions", report.display()));
+    Ok(())
 }
 
 fn list(name: &str) -> Result<()> {

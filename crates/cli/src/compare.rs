@@ -1,5 +1,7 @@
 //! `revmap compare`: the difference of a frame from another that counts as the truth.
 
+mod pictures;
+
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -9,17 +11,21 @@ use serde_json::json;
 use std::path::PathBuf;
 
 /// Compares two frames: wrong pixels, errors of depth and normals, silhouettes, FLIP
+///
+/// Two PNG pictures are compared by their colours alone.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap render assets/scenes/pawn.toml -o truth.exr --stage reference\n  \
     revmap render assets/scenes/pawn.toml -o frame.exr --solver circle\n  \
-    revmap compare truth.exr frame.exr --heat errors.png")]
+    revmap compare truth.exr frame.exr --heat errors.png\n  \
+    revmap compare docs/pictures/chess.png chess.png --alike")]
 pub struct Compare {
-    /// The frame taken for the truth, an EXR file that `render` wrote (as with --stage reference)
+    /// The frame taken for the truth, an EXR file that `render` wrote (as with --stage reference), or a
+    /// PNG
     a: PathBuf,
-    /// The frame in question, an EXR file of the same size
+    /// The frame in question, a file of the same kind and size
     b: PathBuf,
-    /// A sheet of heat maps, one for each measure
+    /// A sheet of heat maps, one for each measure, of EXR files
     #[arg(long, value_name = "FILE.png")]
     heat: Option<PathBuf>,
     /// Length of a texel of the shape map in world units, the unit of depth errors [default: 1/512]
@@ -28,6 +34,9 @@ pub struct Compare {
     /// Fail unless the frames agree in every bit of every channel
     #[arg(long)]
     exact: bool,
+    /// Fail if PNG pictures differ visibly: more than 0.2 % of their channels by more than 3 of 255
+    #[arg(long, conflicts_with_all = ["exact", "heat", "texel"])]
+    alike: bool,
     /// Print one JSON object on standard output in place of text
     #[arg(long)]
     json: bool,
@@ -35,6 +44,15 @@ pub struct Compare {
 
 impl Compare {
     pub fn run(self) -> Result<()> {
+        let png = |file: &&PathBuf| output::has_ending(file, "png");
+        let of_depth = self.heat.is_some() || self.texel.is_some();
+        if [&self.a, &self.b].iter().all(png) && !of_depth {
+            return pictures::run([&self.a, &self.b], (self.exact, self.alike), self.json);
+        }
+        if self.alike {
+            let message = "compares the colours of two PNG pictures; leave it out, or give two";
+            return Err(Error::new(ErrorKind::Usage, message).at_key("--alike"));
+        }
         for file in [&self.a, &self.b] {
             if !output::has_ending(file, "exr") {
                 return Err(Error::new(

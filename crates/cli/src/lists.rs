@@ -132,17 +132,28 @@ impl Lists {
     /// # Errors
     /// See [`folder::claim`].
     pub fn folder(&self, name: &str) -> Result<PathBuf> {
-        let Some(out) = &self.out else {
-            return folder::fresh(Path::new("results"), name);
-        };
         let mut inputs = Vec::new();
-        for scene in &self.scenes {
+        for scene in self.scenes.iter().filter(|_| self.out.is_some()) {
             let mut file = SceneFile::open(scene)?;
             file.scene(&self.set)?;
             inputs.extend(file.files().map(Path::to_path_buf));
         }
-        let overwrite = self.overwrite || overrun::is_again();
-        folder::claim(out, overwrite, inputs.iter().map(PathBuf::as_path))?;
+        self.folder_beside(name, inputs.iter().map(PathBuf::as_path))
+    }
+
+    /// The folder of results of which none may be written over these inputs.
+    ///
+    /// # Errors
+    /// See [`folder::claim`].
+    pub fn folder_beside<'a>(
+        &self,
+        name: &str,
+        inputs: impl Iterator<Item = &'a Path>,
+    ) -> Result<PathBuf> {
+        let Some(out) = &self.out else {
+            return folder::fresh(Path::new("results"), name);
+        };
+        folder::claim(out, self.overwrite || overrun::is_again(), inputs)?;
         Ok(out.clone())
     }
 

@@ -25,6 +25,7 @@ mod shaders;
 mod shading;
 mod shell;
 mod stability;
+mod submit;
 mod usage;
 #[cfg(feature = "viewer")]
 mod view;
@@ -59,6 +60,7 @@ enum Command {
     Bench(bench::Bench),
     Chart(chart::Chart),
     Stability(stability::Stability),
+    Submit(submit::Submit),
     Shaders(shaders::Shaders),
     Searches(searches::Searches),
     Shading(shading::Shading),
@@ -78,6 +80,7 @@ impl Command {
             Self::Bench(command) => command.run(),
             Self::Chart(command) => command.run(),
             Self::Stability(command) => command.run(),
+            Self::Submit(command) => command.run(),
             Self::Shaders(command) => command.run(),
             Self::Searches(command) => command.run(),
             Self::Shading(command) => command.run(),

@@ -6,10 +6,11 @@ use super::options::{MethodParser, named, searches};
 use super::output;
 use clap::Args;
 use revmap::gpu::DeviceReport;
-use revmap::gpu::compiler::{Executable, PipelineCompiler};
+use revmap::gpu::compiler::{Executable, Look, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::Method;
-use revmap_searches::folder;
+use revmap_lab::report::submission::OneShader;
+use revmap_searches::{CIRCLE, folder};
 use serde_json::{Map, Value, json};
 use techniques::techniques;
 
@@ -77,7 +78,7 @@ impl Shaders {
             return failed;
         }
         let compiler = PipelineCompiler::open(self.device.as_deref())?;
-        let shaders = compiled(&compiler, &self.stage, &solvers)?;
+        let shaders = compiled(&compiler, techniques()?, &self.stage, &solvers)?;
         let device = &compiler.report;
         if self.json {
             output::json(&as_json(device, &shaders));
@@ -132,16 +133,39 @@ struct CompiledShader {
     executable: Executable,
 }
 
-/// The shaders of every technique, by these stages and searches. The shaders of a shared pipeline
+/// The shaders of a plain solid in both stages, by the searches that a submission measures.
+///
+/// # Errors
+/// [`ErrorKind::Unsupported`](revmap::error::ErrorKind::Unsupported) if the driver's compiler reports
+/// nothing.
+pub fn plain(device: Option<&str>) -> revmap::Result<Vec<OneShader>> {
+    let compiler = PipelineCompiler::open(device)?;
+    let plain = techniques()?.into_iter().take(1).collect();
+    let stages = DrawStage::NAMES.map(|(_, stage)| stage);
+    let solvers = [CIRCLE, Solver::Live, Solver::Quadric, Solver::Exact];
+    let shaders = compiled(&compiler, plain, &stages, &solvers)?.into_iter();
+    let one = |shader: CompiledShader| OneShader {
+        solver: shader.solver.name().to_owned(),
+        stage: shader.stage.name().to_owned(),
+        path: shader.path,
+        shader: shader.executable.shader,
+        subgroup_size: shader.executable.subgroup_size,
+        statistics: shader.executable.statistics.into_iter().collect(),
+    };
+    Ok(shaders.map(one).collect())
+}
+
+/// The shaders of these techniques, by these stages and searches. The shaders of a shared pipeline
 /// are listed once, at its first use.
 fn compiled(
     compiler: &PipelineCompiler,
+    techniques: Vec<(&'static str, Look)>,
     stages: &[DrawStage],
     solvers: &[Solver],
 ) -> revmap::Result<Vec<CompiledShader>> {
     let mut shaders = Vec::new();
     let mut known = Vec::new();
-    for (technique, look) in techniques()? {
+    for (technique, look) in techniques {
         for &stage in stages {
             for &solver in solvers {
                 for choice in compiler.pipelines(&look, stage, solver) {

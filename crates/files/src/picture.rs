@@ -1,5 +1,6 @@
 //! Writes frames as PNG: 8-bit sRGB RGBA, for viewing.
 
+use crate::pixels::decode;
 use crate::{file_fault, write_atomically};
 use revmap::error::Result;
 use revmap::frame::{Frame, linear_from_srgb};
@@ -39,6 +40,24 @@ impl Picture {
                 .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)])
                 .collect(),
         }
+    }
+
+    /// Reads a PNG or JPEG.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name: missing, damaged, no
+    /// picture, larger than 16384 on a side.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(|e| {
+            file_fault(format!("cannot be read ({e}); give a picture")).in_file(path)
+        })?;
+        let pixels = decode(&bytes, "PNG or JPEG").map_err(|e| e.in_file(path))?;
+        Ok(Self {
+            width: pixels.width,
+            height: pixels.height,
+            rgba: pixels.rgba8(),
+        })
     }
 
     /// Writes a PNG.
@@ -145,6 +164,13 @@ mod tests {
         assert_eq!(read.get_pixel(1, 0).0, [255, 188, 0, 255]);
         assert_eq!(read.get_pixel(0, 1).0, [0, 128, 255, 128]);
         assert_eq!(read.get_pixel(2, 1).0, [0, 0, 0, 0]);
+        assert_eq!(Picture::read(&path).unwrap(), Picture::of(&frame));
+        std::fs::write(&path, "x").unwrap();
+        let error = Picture::read(&path).unwrap_err().to_string();
+        assert!(
+            error.contains("a.png") && error.contains("no picture"),
+            "{error}"
+        );
     }
 
     #[cfg(target_os = "linux")]

@@ -189,17 +189,21 @@ impl Clock {
             )
         }
         .call("vkGetQueryPoolResults")?;
-        let bits = self.device.chosen.timestamp_bits;
-        let mask = if bits >= 64 {
-            u64::MAX
-        } else {
-            (1 << bits) - 1
-        };
-        let ticks = stamps[1].wrapping_sub(stamps[0]) & mask;
+        let ticks = elapsed(stamps, self.device.chosen.timestamp_bits);
         #[allow(clippy::cast_precision_loss)] // frames are shorter than 2^52 ns
         let ns = ticks as f64 * f64::from(self.device.limits().timestamp_period);
         Ok(Some(ns * 1e-6))
     }
+}
+
+/// The ticks between two timestamps, of which only the low `bits` count. A counter that began again
+/// between them is right, unless it ran through all its values.
+fn elapsed([start, end]: [u64; 2], bits: u32) -> u64 {
+    let mask = match bits {
+        64.. => u64::MAX,
+        _ => (1 << bits) - 1,
+    };
+    end.wrapping_sub(start) & mask
 }
 
 impl Drop for Clock {
@@ -208,5 +212,27 @@ impl Drop for Clock {
             // SAFETY: every submission was waited for.
             unsafe { self.device.raw.destroy_query_pool(pool, None) };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::elapsed;
+
+    /// Vulkan allows 36 to 64 valid bits. Bits above them may be anything here.
+    #[test]
+    fn a_counter_that_begins_again_is_right() {
+        for bits in [36, 48, 63, 64] {
+            let end = u64::MAX >> (64 - bits);
+            assert_eq!(elapsed([7, 1007], bits), 1000, "{bits} bits");
+            assert_eq!(elapsed([end - 9, 990], bits), 1000, "{bits} bits");
+            assert_eq!(elapsed([end, 0], bits), 1, "{bits} bits");
+            assert_eq!(elapsed([end, end], bits), 0, "{bits} bits");
+        }
+        let above = 0xabc << 36;
+        assert_eq!(elapsed([5 | above, 12], 36), 7);
+        assert_eq!(elapsed([5, 12 | above], 36), 7);
+        // One bit too many reads the start of the counter as an age.
+        assert!(elapsed([(1 << 36) - 1, 0], 37) > 1 << 35);
     }
 }

@@ -188,7 +188,9 @@ fn comparing_what_is_no_frame() {
         2,
         "compare a.exr scene.toml            | scene.toml | .exr
          compare a.exr c.exr --heat heat.jpg | --heat     | .png
-         compare a.exr c.exr --texel 0       | --texel    | above 0",
+         compare a.exr c.exr --texel 0       | --texel    | above 0
+         compare a.exr c.exr --alike         | --alike    | PNG
+         compare a.png a.png --texel 1       | a.png      | .exr",
     );
     let same = bench.said("compare a.exr a.exr --exact --heat heat.png");
     assert!(same.contains("equal in every channel"));
@@ -201,4 +203,52 @@ fn comparing_what_is_no_frame() {
         .output()
         .unwrap();
     assert_eq!((output.status.code(), lines(&output).len()), (Some(1), 1));
+}
+
+/// A planted pixel is found; one step of a channel is none that counts.
+#[test]
+fn comparing_pictures() {
+    let bench = Bench::new();
+    let shade = |x: u32, y: u32| ((x + y) % 100) as u8;
+    bench.grey("a.png", 20, 20, shade);
+    bench.grey("near.png", 20, 20, |x, y| shade(x, y) + 1);
+    bench.grey("far.png", 20, 20, |x, y| {
+        if x / 2 == 3 && y / 2 == 3 {
+            200
+        } else {
+            shade(x, y)
+        }
+    });
+    bench.grey("small.png", 20, 19, shade);
+    bench.file("half.png", &bench.read("a.png")[..60]);
+    let equal = bench.said("compare a.png a.png --exact");
+    assert!(equal.contains("0 of 1600 channels differ"), "{equal}");
+    let near = bench.said("compare a.png near.png --alike");
+    assert!(
+        near.contains("1200 of 1600") && near.contains("largest difference is 1"),
+        "{near}"
+    );
+    let far = bench.said("compare a.png far.png");
+    assert!(
+        far.contains("12 by more than 3 of 255; the largest difference is 188"),
+        "{far}"
+    );
+    for (arguments, wanted) in [
+        ("a.png far.png --alike", "differ visibly"),
+        ("a.png near.png --exact", "the pictures differ;"),
+    ] {
+        let output = bench
+            .command(&format!("compare {arguments}"))
+            .output()
+            .unwrap();
+        let said = lines(&output);
+        assert_eq!((output.status.code(), said.len()), (Some(1), 1));
+        assert!(said[0].contains(wanted), "{said:?}");
+    }
+    bench.refuses(
+        1,
+        "compare a.png small.png | small.png | 20x19
+         compare a.png half.png  | half.png  | damaged
+         compare a.png none.png  | none.png  | cannot be read",
+    );
 }

@@ -185,12 +185,14 @@ fn wrong_usage_is_told_in_one_line() {
          bench --framing near           | near
          bench --tables --scaling       | --scaling
          bench --list nothing           | give one of usual, quick
-         bench --compare a              | --compare",
+         bench --compare a              | --compare
+         bench --repeats exact          | --compare",
     );
     bench.refuses(
         1,
         "bench --plan none.toml       | none.toml: cannot be read
          bench --compare a b          | results.csv: cannot be read
+         bench --compare a b --repeats exact | results.csv: cannot be read
          bench missing.toml --quick   | missing.toml
          chart missing.toml --quick   | missing.toml",
     );

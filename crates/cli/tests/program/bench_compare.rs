@@ -46,3 +46,47 @@ fn runs_of_two_machines_bring_warnings() {
         assert!(line.starts_with(&start), "{line}");
     }
 }
+
+/// The kept run of the README, judged by itself; then a copy of it with one changed figure.
+#[test]
+fn a_changed_figure_of_a_kept_run_is_not_repeated() {
+    let bench = Bench::new();
+    let kept = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../results/2026-11-24-lavapipe-22.3.6-3"
+    );
+    let methods = "exact,mesh:64x128,mesh:512x1024,baseline";
+    let judge = |old: &str| format!("bench --compare {old} {kept} --repeats {methods}");
+    let said = bench.said(&judge(kept));
+    assert!(
+        said.contains("repeated      exact, fragment: takes 0.562"),
+        "{said}"
+    );
+    assert!(
+        said.contains("17 of 17 claims repeated") && !said.contains("NOT"),
+        "{said}"
+    );
+
+    std::fs::create_dir(bench.path("copy")).unwrap();
+    let copy = |name: &str, text: String| bench.file(&format!("copy/{name}"), text);
+    let read = |name: &str| std::fs::read_to_string(format!("{kept}/{name}")).unwrap();
+    let mut results = Table::parse(&read("results.csv")).unwrap();
+    let (solver, p99) = (
+        results.column("solver").unwrap(),
+        results.column("depth_p99_texels").unwrap(),
+    );
+    for record in results.records.iter_mut().filter(|r| r[solver] == "exact") {
+        record[p99] = (2.0 * record[p99].parse::<f64>().unwrap()).to_string();
+    }
+    copy("results.csv", results.csv());
+    copy("raw.csv", read("raw.csv"));
+    let output = bench.command(&judge("copy")).output().unwrap();
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("NOT repeated  exact, fragment: depth errors of"),
+        "{said}"
+    );
+    assert!(said.contains("15 of 17 claims repeated"), "{said}");
+    assert!(lines(&output)[0].contains("does not repeat"));
+}

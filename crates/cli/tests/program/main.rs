@@ -14,5 +14,6 @@ mod shaders_command;
 #[cfg(feature = "shaderc")]
 mod shading_command;
 mod stability_command;
+mod submit_command;
 mod warnings;
 mod words;

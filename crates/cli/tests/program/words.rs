@@ -4,7 +4,7 @@ use crate::run::Bench;
 use serde_json::Value;
 
 const COMMANDS: &str =
-    "render animate bake bench chart stability shaders devices compare view completions man";
+    "render animate bake bench chart stability submit shaders devices compare view completions man";
 
 /// Every example is a command line that the program takes.
 #[test]

@@ -1,6 +1,7 @@
 //! Two folders of results held against each other: two versions of the program, or two devices.
 
 pub mod drivers;
+pub mod repeat;
 mod run;
 
 use super::names::{number, range};

@@ -53,20 +53,25 @@ impl Machine {
 
     /// A folder's name after day, device and the driver's version: `2026-01-31-lavapipe-22.3.6`.
     pub fn folder(&self) -> String {
-        let device = self.device.to_lowercase();
-        let words = device.split(|c: char| !c.is_ascii_alphanumeric());
-        let name: Vec<&str> = words.filter(|w| !w.is_empty()).take(3).collect();
-        let name = match device.starts_with("llvmpipe") {
-            true => "lavapipe".to_owned(),
-            false => name.join("-"),
-        };
-        let digit = |c: char| c.is_ascii_digit() || c == '.';
-        let number = |word: &&str| word.contains('.') && word.chars().all(digit);
-        let version = self.driver.split([' ', '-']).find(number);
-        let version = version.map(|v| format!("-{v}")).unwrap_or_default();
         let day = self.date.split(' ').next().unwrap_or("undated");
-        format!("{day}-{name}{version}")
+        let name = label(&self.device, &self.driver).replace(' ', "-");
+        format!("{day}-{name}")
     }
+}
+
+/// A short name of a device and its driver's version: `lavapipe 22.3.6`.
+pub fn label(device: &str, driver: &str) -> String {
+    let device = device.to_lowercase();
+    let words = device.split(|c: char| !c.is_ascii_alphanumeric());
+    let name: Vec<&str> = words.filter(|w| !w.is_empty()).take(3).collect();
+    let name = match device.starts_with("llvmpipe") {
+        true => "lavapipe".to_owned(),
+        false => name.join(" "),
+    };
+    let digit = |c: char| c.is_ascii_digit() || c == '.';
+    let number = |word: &&str| word.contains('.') && word.chars().all(digit);
+    let version = driver.split([' ', '-']).find(number);
+    version.map_or(name.clone(), |v| format!("{name} {v}"))
 }
 
 /// The value of the first line that starts with `key`.

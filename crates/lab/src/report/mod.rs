@@ -11,6 +11,7 @@
 //! | [`columns`] | the one description of columns, for files, tables and charts |
 //! | [`exhibit`] | tables and charts, as TOML files |
 //! | [`report`] | the page |
+//! | [`submission`] | the figures of one device as a small file, and several side by side |
 
 pub mod chart;
 pub mod columns;
@@ -37,6 +38,7 @@ pub mod report;
 pub mod row;
 pub mod series_style;
 mod stats;
+pub mod submission;
 pub mod table;
 pub mod view;
 

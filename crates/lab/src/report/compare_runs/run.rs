@@ -36,14 +36,13 @@ const BASELINE: [(&str, &[&str]); 4] = [
     ("map_format", &["rgba8"]),
 ];
 
-/// Columns that name a picture in a stage.
-const PICTURE: [&str; 9] = [
+/// Columns that name a picture.
+const PICTURE: [&str; 8] = [
     "scene",
     "technique",
     "extend",
     "bevel",
     "chamfer",
-    "stage",
     "width",
     "height",
     "objects",
@@ -94,16 +93,29 @@ impl Run {
     /// The passes' medians of a row, each over the RBM baseline's of the same picture and stage.
     pub(super) fn over_baseline(&self, row: usize) -> Option<Vec<f64>> {
         let record = self.results.records.get(row)?;
-        let baseline = |r: &[String]| {
-            let mut columns = BASELINE.iter();
-            columns.all(|(column, values)| values.contains(&self.at(r, column)))
-        };
-        let same = |r: &[String]| PICTURE.iter().all(|c| self.at(r, c) == self.at(record, c));
-        let mut records = self.results.records.iter();
-        let rival = records.position(|r| baseline(r) && same(r))?;
+        let rival = self.baseline_of(record, self.at(record, "stage"))?;
         let (own, rival) = (self.medians(row), self.medians(rival));
         let over = own.iter().zip(rival).map(|(a, b)| a / b);
-        (!baseline(record)).then(|| over.collect())
+        (!self.is_baseline(record)).then(|| over.collect())
+    }
+
+    /// True if a record is the RBM baseline's.
+    pub(super) fn is_baseline(&self, record: &[String]) -> bool {
+        let mut columns = BASELINE.iter();
+        columns.all(|(column, values)| values.contains(&self.at(record, column)))
+    }
+
+    /// The row (counted from 0) of the RBM baseline in a record's picture and in this stage.
+    pub(super) fn baseline_of(&self, record: &[String], stage: &str) -> Option<usize> {
+        let same = |r: &[String]| PICTURE.iter().all(|c| self.at(r, c) == self.at(record, c));
+        let mut records = self.results.records.iter();
+        records.position(|r| self.is_baseline(r) && self.at(r, "stage") == stage && same(r))
+    }
+
+    /// The times of a row (counted from 0) by pass, in the order of their rounds.
+    pub(super) fn times(&self, row: usize) -> impl Iterator<Item = &[f64]> {
+        let passes = self.samples.range((row + 1, 0)..(row + 2, 0));
+        passes.map(|(_, times)| times.as_slice())
     }
 
     /// Device, driver and processor, each with its name; empty where unknown.

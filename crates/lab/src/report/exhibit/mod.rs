@@ -10,6 +10,7 @@ mod tables;
 pub use answers::Question;
 pub(in crate::report) use answers::{findings, unresolved};
 pub use charts::Chart;
+pub(in crate::report) use tables::cell;
 pub use tables::{Records, Table, left, ways_table};
 
 use super::columns::{self, Context};

@@ -160,7 +160,7 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
 }
 
 /// The cell of a way over the rows of a reference.
-pub(super) fn cell(
+pub(in crate::report) fn cell(
     context: &Context,
     rows: &[&Row],
     (primary, ratio): (Over, &Ratio),
