@@ -22,6 +22,7 @@ def arguments():
     parser = argparse.ArgumentParser(prog="scripts/judge/run", description=__doc__)
     parser.add_argument("--program", required=True, help="the program revmap")
     parser.add_argument("--set", choices=("small", "full"), default="small")
+    parser.add_argument("--scenes", help="judge the scenes of this folder in place of a set")
     parser.add_argument("--seed", type=int, default=1, help="of the random solids of the full set")
     parser.add_argument("--random", type=int, default=40, help="their number")
     parser.add_argument("--views", type=int, default=4, help="the most of a class and solid, full set")
@@ -46,9 +47,10 @@ def catalogued(row, known):
 
 
 def failures(rows, known):
-    """The pictures of the default search with wrong pixels that are not known."""
+    """The pictures of the default search that are refused, or have wrong pixels that are not known."""
     own = [row for row in rows if row["voice"].startswith(f"{court.DEFAULT}, ")]
-    return [row for row in own if row["wrong"] + row["normal"] > 0 and not catalogued(row, known)]
+    bad = [row for row in own if row["note"] or row["wrong"] + row["normal"] > 0]
+    return [row for row in bad if row["note"] or not catalogued(row, known)]
 
 
 def judged(chosen, given, size, scenes):
@@ -65,20 +67,29 @@ def judged(chosen, given, size, scenes):
     return rows
 
 
+def pictures(given):
+    """The solids and views that the command line names."""
+    if given.scenes:
+        chosen = court.scenes_of(given.scenes)
+    elif given.set == "small":
+        chosen = court.small_set()
+    else:
+        chosen = court.full_set(given.seed, given.random, given.views)
+    return [(solid, view) for solid, view in chosen if fnmatch.fnmatch(solid.name, given.only)]
+
+
 def main():
     """Exit code 1 for a wrong pixel that is not known, 2 for a picture that cannot be judged."""
     given = arguments()
     size = tuple(int(side) for side in given.size.split("x"))
     known = tomllib.loads((HERE / "known.toml").read_text()).get("known", [])
-    chosen = court.small_set() if given.set == "small" else None
-    chosen = chosen or court.full_set(given.seed, given.random, given.views)
-    chosen = [(solid, view) for solid, view in chosen if fnmatch.fnmatch(solid.name, given.only)]
     scenes = None
     if given.out:
         scenes = pathlib.Path(given.out, "scenes")
         scenes.mkdir(parents=True, exist_ok=True)
     begun = time.monotonic()
     try:
+        chosen = pictures(given)
         rows = judged(chosen, given, size, scenes)
     except frames.BadFrame as error:
         print(f"judge: {error}", file=sys.stderr)
@@ -92,7 +103,7 @@ def main():
     for row in bad:
         where = f"{row['solid']}, {row['view']}, {row['voice']}"
         kinds = ", ".join(f"{row[kind]} {kind}" for kind in (*verdict.KINDS, "normal") if row[kind])
-        print(f"wrong: {where}: {kinds} of {row['hits']} hits")
+        print(f"wrong: {where}: {row['note'] or kinds} of {row['hits']} hits")
     spent = time.monotonic() - begun
     print(f"{len(chosen)} pictures judged in {spent:.0f} s: {len(bad)} with wrong pixels that are not known.")
     return 1 if bad else 0

@@ -14,18 +14,16 @@ from rays import Placement
 
 @dataclasses.dataclass
 class Solid:
-    """One or more solids of revolution in one place. `outside`: the polygons that kernels are
-    given, where they refuse the polygons of the scene."""
+    """One or more solids of revolution in one place."""
 
     name: str
     family: str
     polygons: list
     placement: Placement = dataclasses.field(default_factory=Placement)
-    outside: list = None
 
     def kernel_polygons(self):
-        """The polygons for the kernels."""
-        return self.outside or self.polygons
+        """The polygons for the kernels, which refuse sections without thickness."""
+        return [without_spikes(polygon) for polygon in self.polygons]
 
     def toml(self):
         """The objects of a scene file."""
@@ -37,6 +35,21 @@ class Solid:
         points = [point for polygon in self.polygons for point in polygon]
         heights = [z for _, z in points]
         return max(r for r, _ in points), min(heights), max(heights)
+
+
+def without_spikes(polygon):
+    """A polygon without repeated points, and without the points of which both neighbours are one:
+    there it goes out and back along one segment, around nothing."""
+    points = list(polygon)
+    k = 0
+    while k < len(points):
+        before, after = points[k - 1], points[(k + 1) % len(points)]
+        if points[k] == before or before == after:
+            del points[k]
+            k = max(k - 2, 0)
+        else:
+            k += 1
+    return points
 
 
 def sections(rows):
@@ -109,7 +122,7 @@ def catalogue():
         Solid("touching-cylinders", "detector", TOUCHING),
         Solid("coinciding-cylinders", "detector", COINCIDING),
         Solid("hourglass", "detector", [HOURGLASS]),
-        Solid("no-thickness", "detector", [FIN], outside=[cylinder(0.2, 0.1, 0.9)]),
+        Solid("no-thickness", "detector", [FIN]),
         Solid("thin-disc", "detector", [cylinder(0.45, 0.5, 0.501)]),
         Solid("thin-wall", "detector", [sections(WALLS)]),
         Solid("flat", "engine", [[[0.0, 0.5], [0.5, 0.5], [0.4, 0.501], [0.0, 0.501]]]),

@@ -107,11 +107,14 @@ class Faults(unittest.TestCase):
         self.assertEqual(int(wrong.sum()), 5)
 
     def test_wrong_pixels_fail_unless_they_are_known(self):
-        row = {"voice": "exact, fragment", "solid": "lid", "view": "close", "wrong": 3, "normal": 0}
+        row = {"voice": "exact, fragment", "solid": "lid", "view": "close", "note": ""}
+        row |= {"wrong": 3, "normal": 0}
         known = {"solid": "lid", "view": "cl*", "wrong": 3}
         self.assertEqual(judge.failures([row], []), [row])
         self.assertEqual(judge.failures([row], [known]), [])
         self.assertEqual(judge.failures([row], [{**known, "wrong": 2}]), [row])
+        refused = {**row, "wrong": 0, "note": "refused"}
+        self.assertEqual(judge.failures([refused], [known]), [refused])
         self.assertEqual(judge.failures([{**row, "voice": "live, fragment"}], []), [])
 
 

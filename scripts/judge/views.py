@@ -5,7 +5,7 @@ import math
 
 from rays import Camera
 
-CLASSES = ("ordinary", "edge", "vertex", "grazing", "axis", "start")
+CLASSES = ("ordinary", "edge", "vertex", "grazing", "axis", "start", "scene")
 
 
 @dataclasses.dataclass
@@ -18,6 +18,7 @@ class View:
     - *grazing*: the eye is in the plane or cone of a face, or a ten-thousandth above it.
     - *axis*: the eye is on the axis and looks along it.
     - *start*: the eye is a thousandth of the solid's size off the surface, or twice the tolerance.
+    - *scene*: the view of a scene file.
     """
 
     kind: str
