@@ -147,6 +147,30 @@ fn flat_solids_are_drawn_from_their_map() {
     device.check().unwrap();
 }
 
+/// A ball of flat segments is closed: of a million rays through edges and between them, none passes.
+#[test]
+fn a_million_rays_at_edges_miss_none() {
+    let device = Device::open_validated(None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut cases = cases::named(&["million-edge-rays".to_owned()]).unwrap();
+    cases[0].values = vec![384.0];
+    let plan = Plan {
+        cases: &cases,
+        solvers: &[Solver::DEFAULT],
+        quick: false,
+        folder: folder.path(),
+    };
+    let outcome = run(&device, &plan, &mut |_, _, _| true).unwrap();
+    assert_eq!(outcome.trials.len(), 2);
+    for trial in &outcome.trials {
+        let judged = trial.judged.as_ref().unwrap();
+        assert_eq!(judged.hits, 1152 * 868, "{judged:?}");
+        let leaks = (judged.missed, judged.faults());
+        assert_eq!(leaks, (0, 0), "{judged:?}");
+    }
+    device.check().unwrap();
+}
+
 /// A seed gives one scene; its text is one that the program reads.
 #[test]
 fn random_scenes_are_scenes() {

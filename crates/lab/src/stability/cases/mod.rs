@@ -1,5 +1,6 @@
 //! The catalogue.
 
+mod polycones;
 mod solids;
 mod views;
 
@@ -40,7 +41,9 @@ fn broken(why: &dyn std::fmt::Display) -> Error {
 
 /// The scene of a case at a value of its parameter.
 pub(super) fn step(case: &Case, value: f64) -> Result<Step> {
-    let mut scenes = views::SCENES.iter().chain(solids::SCENES);
+    let mut scenes = (views::SCENES.iter())
+        .chain(solids::SCENES)
+        .chain(polycones::SCENES);
     let scene = scenes.find(|s| s.0 == case.name);
     let scene = scene.ok_or_else(|| broken(&format!("{} has no scene", case.name)))?;
     Ok(scene.1(value))
