@@ -132,7 +132,6 @@ void take_shape(uint number)
     object.offset = objects[number].object.offset;
     object.axis = objects[number].object.axis;
     object.cells = objects[number].object.cells;
-    object.instances.w = number;
     object.patches = objects[number].object.patches;
 }
 

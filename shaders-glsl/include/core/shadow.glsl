@@ -79,7 +79,8 @@ Cone cone_to(Disc disc, vec3 origin, vec3 point)
     cone.from = frame_block.caster_eye.xyz + origin + point;
     cone.inverse = 1.0 / mix(disc.middle, vec3(1e-20), lessThan(abs(disc.middle), vec3(1e-20)));
     cone.widens = sqrt(disc.cap * (2.0 - disc.cap)) / max(1.0 - disc.cap, 1e-4);
-    cone.slack = 1e-6 * (length(frame_block.caster_eye.xyz) + length(origin) + length(point));
+    // Rays begin in the hierarchy's box.
+    cone.slack = 2e-6 * (length(frame_block.caster_eye.xyz) + length(frame_block.caster_half_size.xyz));
     return cone;
 }
 
@@ -111,10 +112,12 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint left)
     return left;
 }
 
-// Returns `met` if that is a copy, else the next copy that a cone may hit, or INNER_NODE. `k`: index of the next of
+// Returns `met` if that is a copy, else the next copy that the rays may hit, or INNER_NODE. `k`: index of the next of
 // `count` nodes. `map`: index of the copy's shape map, where searches read maps.
-uint next_caster(Cone cone, uint map, uint met, uint count, inout uint k)
+uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, uint count, inout uint k)
 {
+    // The cone is made anew for each copy, since it would take 8 registers while rays are traced.
+    Cone cone = cone_to(disc, origin, point);
     while (met == INNER_NODE && k < count) {
         CasterNode node = casters[k];
         bool meets = may_meet(cone, node.middle, node.half_size);
@@ -130,11 +133,10 @@ uint next_caster(Cone cone, uint map, uint met, uint count, inout uint k)
 // Returns the rays of `left`, one bit each, that no solid blocks.
 uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
 {
-    Cone cone = cone_to(disc, origin, point);
     // The root is in the block of the frame, which software drivers read much faster than the nodes.
     vec4 middle = frame_block.caster_middle;
     vec4 half_size = frame_block.caster_half_size;
-    bool meets = may_meet(cone, middle.xyz, half_size.xyz);
+    bool meets = may_meet(cone_to(disc, origin, point), middle.xyz, half_size.xyz);
     uint count = meets ? floatBitsToUint(middle.w) : 0u;
     uint root = meets ? floatBitsToUint(half_size.w) : INNER_NODE;
     // The index of a map must be the same in all invocations, so each map has a walk of its own.
@@ -148,14 +150,12 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
         uint k = 1u;
         // All invocations first find a copy each (Aila and Laine 2009), then trace together.
         for (uint met = root; left != 0u; met = INNER_NODE) {
-            met = next_caster(cone, map, met, count, k);
+            met = next_caster(origin, point, disc, map, met, count, k);
             if (met == INNER_NODE) {
                 break;
             }
             Instance i = instances[met];
-            for (bool other = i.object.x != object.instances.w; other; other = false) {
-                take_shape(i.object.x);
-            }
+            take_shape(i.object.x);
             left = unstopped_by(i, origin, point, disc, left);
         }
     }
@@ -163,7 +163,8 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
 }
 
 // Returns the visible fraction of the light, 0 to 1. `point` is relative to `origin`, and `origin` to the eye; world
-// axes. `normal` points to the lit side; directions below its horizon are hidden.
+// axes. `normal` points to the lit side; directions below its horizon are hidden. The members of `object` that a search
+// reads are those of another solid afterwards: restoring them would take registers.
 float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
 {
     uint open = 0u;
@@ -172,7 +173,6 @@ float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
         open |= dot(normal, towards_disc(disc, k, angle)) > 0.0 ? 1u << k : 0u;
         angle = next_angle(angle);
     }
-    Object own = object;
     casts = true;
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
@@ -183,7 +183,6 @@ float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
-    object = own;
     casts = false;
     return float(bitCount(lit)) / float(LIGHT_RAYS);
 }
