@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 /// Words before the first instruction.
-const HEADER: usize = 5;
+pub const HEADER: usize = 5;
 /// Word of the header that is larger than every id.
-const BOUND: usize = 3;
+pub const BOUND: usize = 3;
 /// More than the locations of any module.
 const MOST_LOCATIONS: u32 = 64;
 

@@ -3,12 +3,7 @@
 //! edit of the words turns the constant into the builtin `ViewIndex`.
 
 use super::generated::VIEW_INDEX_ID;
-use super::outputs::instructions;
-
-/// Words before the first instruction.
-const HEADER: usize = 5;
-/// Word of the header that is larger than every id.
-const BOUND: usize = 3;
+use super::outputs::{BOUND, HEADER, instructions};
 
 /// Opcodes, decorations, capabilities and storage classes of the SPIR-V specification.
 mod op {
