@@ -176,7 +176,9 @@ fn pipelines_are_prewarmed_and_told_apart() {
         assert_eq!(device.pipelines_compiled(), compiled, "compiled in a frame");
     }
     let ours = picture(&host, &device, &scene, &exact, DrawStage::Fragment, None).0;
-    assert!(shown[0] == ours, "a copy of the library's function");
+    // Two modules may round differently: SwiftShader's do.
+    let alike = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= 1;
+    assert!(shown[0].len() == ours.len() && shown[0].iter().zip(&ours).all(alike));
     let drawn = || shown[1].chunks(4).filter(|pixel| pixel[3] != 0);
     assert!(drawn().count() > 3000 && drawn().all(|pixel| pixel == [255, 0, 0, 255]));
 }
