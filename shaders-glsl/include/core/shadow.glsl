@@ -146,7 +146,6 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
     uint maps = 1u;
 #endif
     for (uint map = 0u; map < maps; ++map) {
-        shadow_map = int(map);
         uint k = 1u;
         // All invocations first find a copy each (Aila and Laine 2009), then trace together.
         for (uint met = root; left != 0u; met = INNER_NODE) {
@@ -156,6 +155,11 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
             }
             Instance i = instances[met];
             take_shape(i.object.x);
+#if READS_MAP
+            // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load
+            // gives 0, and a loop's counter an index without a texture.
+            shadow_map = int(objects[i.object.x].object.instances.z);
+#endif
             left = unstopped_by(i, origin, point, disc, left);
         }
     }
