@@ -1,6 +1,6 @@
-//! What a host's function of shading costs: milliseconds of a frame by the library's shading, by a
-//! copy of it, by a constant and by the host of `examples/forward`, and the ratio to the library's,
-//! in rounds one after the other. `cargo bench --features shaderc --bench shading`.
+//! The cost of a host's function of shading. A round draws a frame by each function: the library's,
+//! a copy of it, a constant, and that of `examples/forward`. The bench prints milliseconds and the
+//! ratio to the library's. `cargo bench --features shaderc --bench shading`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 #[path = "../tests/common/host.rs"]

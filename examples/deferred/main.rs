@@ -10,6 +10,9 @@
 #[path = "../engine/host/mod.rs"]
 #[allow(dead_code, unused_imports, clippy::duplicate_mod)] // the forward host takes the rest
 mod host;
+#[path = "../engine/lend.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod lend;
 mod passes;
 
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3, Vec4};
@@ -17,8 +20,7 @@ use host::{Fallible, Host, Mesh, Options};
 use passes::{Blend, Passes};
 use revmap::frame::Frame;
 use revmap::gpu::{
-    self, DepthOrder, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer, Requirements,
-    View, Viewport,
+    self, DepthOrder, ObjectId, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{PlaneList, Planes, SearchSettings};
@@ -54,24 +56,9 @@ fn main() -> Fallible<()> {
 /// the mean of many frames.
 pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
     std::fs::create_dir_all(folder)?;
-    let host = Host::open(validate, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })?;
-    // SAFETY: the host outlives the device; all handles are its own, opened with these features.
-    let device = unsafe {
-        gpu::Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
-            queue: None,
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
-        })
-    }?;
+    let host = lend::open(validate)?;
+    // SAFETY: the host outlives the device.
+    let device = unsafe { lend::lend(&host) }?;
     println!("{}", device.report().name);
     let mut pictures = Vec::new();
     for name in ["with-motion", "without-motion", "64-frames"] {

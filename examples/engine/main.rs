@@ -6,12 +6,11 @@
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
 mod host;
+mod lend;
 
 use glam::{DQuat, DVec3, Vec3};
-use host::{Fallible, Host, Mesh, Options, Stage};
-use revmap::gpu::{
-    self, DepthOrder, HostDevice, Output, PassFormats, PassKind, Requirements, View, Viewport,
-};
+use host::{Fallible, Mesh, Options, Stage};
+use revmap::gpu::{self, DepthOrder, Output, PassFormats, PassKind, View, Viewport};
 use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
 use revmap::settings::{Planes, SearchSettings};
@@ -24,24 +23,9 @@ fn main() -> Fallible<()> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
     std::fs::create_dir_all(&folder)?;
     let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
-    let host = Host::open(validate, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })?;
-    // SAFETY: the host outlives the device; all handles are its own, opened with these features.
-    let device = unsafe {
-        gpu::Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
-            queue: None,
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
-        })
-    }?;
+    let host = lend::open(validate)?;
+    // SAFETY: the host outlives the device.
+    let device = unsafe { lend::lend(&host) }?;
     let options = Options {
         width: 960,
         height: 600,

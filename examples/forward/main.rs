@@ -10,14 +10,16 @@
 #[path = "../engine/host/mod.rs"]
 #[allow(dead_code, unused_imports, clippy::duplicate_mod)] // other hosts take the rest
 mod host;
+#[path = "../engine/lend.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod lend;
 
 use ash::vk;
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use host::set::UniformSet;
 use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage};
 use revmap::gpu::{
-    self, DepthOrder, HostDevice, HostShading, Output, PassFormats, PassKind, Renderer,
-    Requirements, View, Viewport,
+    self, DepthOrder, HostShading, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
 use revmap::profile::Profile;
 use revmap::scene::{Material, Object, Placement};
@@ -55,24 +57,9 @@ fn main() -> Fallible<()> {
 /// the ball, and if nothing is.
 pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
     std::fs::create_dir_all(folder)?;
-    let host = Host::open(validate, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })?;
-    // SAFETY: the host outlives the device; all handles are its own, opened with these features.
-    let device = unsafe {
-        gpu::Device::borrow(&HostDevice {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &host.device,
-            queue_family: host.family,
-            queue: None,
-            features: host.features,
-            allocator: None,
-            pipeline_cache: None,
-        })
-    }?;
+    let host = lend::open(validate)?;
+    // SAFETY: the host outlives the device.
+    let device = unsafe { lend::lend(&host) }?;
     println!("{}", device.report().name);
     let lights = UniformSet::of(&host, &lights())?;
     let mut pictures = Vec::new();

@@ -5,8 +5,8 @@ A frame of revmap is compared with them. Two answers **agree** where both miss, 
 the drawn point is within the tolerance of the judge's tangent plane, and the normals are within
 `NORMAL`. Where a kernel disagrees, it gets rays moved aside by the tolerance and by 1/4, 1/16 and 1/64 of it,
 in eight directions each. A miss agrees if one of these misses. A hit agrees if its distance is
-that of one of them, or is between the distances of those whose normals agree. So at a silhouette, along an edge and at a tip
-every side is right.
+that of one of them, or is between the distances of those whose normals agree. So every side is right
+at a silhouette, along an edge and at a tip.
 
 A voice is **wrong** where two judges agree with each other, and the voice agrees with neither. It is
 **undecided** where it is not wrong, but fewer than two judges agree with it. A **wrong normal** is a

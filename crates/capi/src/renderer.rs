@@ -18,7 +18,7 @@ use revmap::gpu::{
     ComputeTarget, DepthOrder, DepthTest, HostShading, Output, PassFormats, PassKind,
     PreparedFrame, Renderer,
 };
-use revmap::settings::{PlaneList, Planes, SearchSettings};
+use revmap::settings::{PlaneList, Planes};
 use std::ffi::CString;
 use std::sync::{Arc, Mutex};
 
@@ -166,20 +166,25 @@ fn with<R>(
 }
 
 /// A renderer without objects.
-fn recorder(
+///
+/// # Safety
+/// `search` is null or the caller's structure.
+unsafe fn recorder(
     device: *const RevmapDevice,
     output: Output,
-    settings: &SearchSettings,
+    search: *const RevmapSearch,
     frames: u32,
     shading: Option<&HostShading>,
 ) -> Outcome<Arc<Mutex<Recorder>>> {
+    // SAFETY: as the caller promised.
+    let settings = unsafe { crate::values::search(search) }?;
     let device = RevmapDevice::get(device)?;
     let in_pass = matches!(output, Output::Pass(_));
     let slots = frames as usize;
     let renderer = match shading {
-        None => Renderer::new(&device, output, settings, slots),
+        None => Renderer::new(&device, output, &settings, slots),
         // SAFETY: the shading and its layout are as the caller has promised.
-        Some(host) => unsafe { Renderer::with_shading(&device, output, settings, slots, host) },
+        Some(host) => unsafe { Renderer::with_shading(&device, output, &settings, slots, host) },
     }?;
     Ok(Arc::new(Mutex::new(Recorder {
         renderer,
@@ -205,13 +210,7 @@ pub unsafe extern "C" fn revmap_renderer_create(
     unsafe {
         create(renderer, || {
             let output = Output::Pass(read(pass)?.formats()?);
-            recorder(
-                device,
-                output,
-                &crate::values::search(search)?,
-                frames,
-                None,
-            )
+            recorder(device, output, search, frames, None)
         })
     }
 }
@@ -233,13 +232,7 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     unsafe {
         create(renderer, || {
             let output = Output::Compute(enums::planes(planes)?);
-            recorder(
-                device,
-                output,
-                &crate::values::search(search)?,
-                frames,
-                None,
-            )
+            recorder(device, output, search, frames, None)
         })
     }
 }

@@ -87,7 +87,7 @@ layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the unif
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
 layout(constant_id = 19) const uint VIEWS = 1u; // views of the pass; more than 1 by multiview
-layout(constant_id = 20) const uint VIEW_INDEX = 0u; // index of the view; src/shader/view_index.rs puts gl_ViewIndex in its place
+layout(constant_id = 20) const uint VIEW_INDEX = 0u; // replaced by gl_ViewIndex in src/shader/view_index.rs
 layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
 #ifndef BEVELED
 #define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
@@ -125,8 +125,8 @@ const uint SHORT_LIST = 8u; // first of the list lengths
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;
 const uint LONGEST_LIST = 48u;
-const uint MAX_SHADOW_MAPS = 12u; // upper limit on different shape maps of a scene with shadows, where searches read maps
-const uint INNER_NODE = 4294967295u; // in place of the copy of a node with children, in the hierarchy of copies that cast shadows
+const uint MAX_SHADOW_MAPS = 12u; // upper limit on shape maps of a scene with shadows, for searches on maps
+const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of the hierarchy of casters that have children
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
 const uint QUAD_BITS = 15u; // bits of each coordinate of a quad's corner
 const uint TILE_SPLIT = 2147483648u; // replaces a tile's number of copies: each of its pixels has a queue of its own

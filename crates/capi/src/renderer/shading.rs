@@ -3,13 +3,23 @@
 use super::{RevmapPass, RevmapRenderer, recorder, with};
 use crate::device::RevmapDevice;
 use crate::enums;
-use crate::fault::{RevmapResult, enter};
+use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create};
 use crate::pointers::{put, read};
 use crate::shading::RevmapShading;
 use crate::values::RevmapSearch;
 use ash::vk;
 use revmap::gpu::{HostShading, Output};
+
+fn host_shading(
+    shading: *const RevmapShading,
+    set_layout: vk::DescriptorSetLayout,
+) -> Outcome<HostShading> {
+    Ok(HostShading {
+        shading: RevmapShading::get(shading)?,
+        set_layout,
+    })
+}
 
 /// Makes a renderer as revmap_renderer_create() does, with a host's function that shades in place of
 /// the library's. The function takes no lights of revmap_renderer_set_lighting(). set_layout is the
@@ -37,12 +47,8 @@ pub unsafe extern "C" fn revmap_renderer_create_with_shading(
     unsafe {
         create(renderer, || {
             let output = Output::Pass(read(pass)?.formats()?);
-            let host = HostShading {
-                shading: RevmapShading::get(shading)?,
-                set_layout,
-            };
-            let search = crate::values::search(search)?;
-            recorder(device, output, &search, frames, Some(&host))
+            let host = host_shading(shading, set_layout)?;
+            recorder(device, output, search, frames, Some(&host))
         })
     }
 }
@@ -66,12 +72,8 @@ pub unsafe extern "C" fn revmap_renderer_create_compute_with_shading(
     unsafe {
         create(renderer, || {
             let output = Output::Compute(enums::planes(planes)?);
-            let host = HostShading {
-                shading: RevmapShading::get(shading)?,
-                set_layout,
-            };
-            let search = crate::values::search(search)?;
-            recorder(device, output, &search, frames, Some(&host))
+            let host = host_shading(shading, set_layout)?;
+            recorder(device, output, search, frames, Some(&host))
         })
     }
 }
