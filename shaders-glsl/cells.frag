@@ -15,10 +15,13 @@ void main()
     if (!found) {
         discard;
     }
-#if OUTPUT != OUTPUT_DEPTH
+#if OUTPUT == OUTPUT_DEPTH
+    float depth = biased_depth(varying_rays(), pixel, hit);
+#else
     store(shade(varying_look(), varying_rays(), pixel, hit), pixel, hit);
+    float depth = depth_of(ray_origin_base.w + hit.t);
 #endif
     // The triangle is never behind the surface that it wraps, except by rounding.
     float sense = ray_dir_00.w;
-    gl_FragDepth = sense * max(sense * depth_of(ray_origin_base.w + hit.t), sense * gl_FragCoord.z);
+    gl_FragDepth = sense * max(sense * depth, sense * gl_FragCoord.z);
 }

@@ -22,8 +22,10 @@ void main()
     if (!found) {
         discard;
     }
-#if OUTPUT != OUTPUT_DEPTH
+#if OUTPUT == OUTPUT_DEPTH
+    gl_FragDepth = biased_depth(rays, pixel, hit);
+#else
     store(shade(varying_look(), rays, pixel, hit), pixel, hit);
-#endif
     gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
+#endif
 }

@@ -34,7 +34,7 @@ pub use renderer::prepare::{FrameStatistics, PreparedFrame};
 pub use renderer::prewarm::Prewarm;
 pub use resources::host_image::HostImage;
 pub use vk::call::{allocation_error, vulkan_error};
-pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind};
+pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind, SlopeBias};
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;
 pub use vk::shading::HostShading;

@@ -156,7 +156,7 @@ impl View {
 
     /// The same view with depths shifted by `bias`, in units of the depth buffer: positive is
     /// farther in [`DepthOrder::Normal`] and nearer in [`DepthOrder::Reversed`]. For shadow maps.
-    /// The bias of a rasteriser does not reach depths that a shader writes. Parts of solids whose
+    /// [`SlopeBias`](crate::gpu::SlopeBias) adds a bias for slopes. Parts of solids whose
     /// shifted depth leaves 0 to 1 may be missing, and those at the near plane may have holes.
     #[must_use]
     pub fn with_depth_bias(mut self, bias: f64) -> Self {

@@ -5,7 +5,7 @@
 use crate::common::host::attachments::Attachments;
 use crate::common::host::once;
 use crate::common::host::{self, Host, Options, borrow, dynamic, open, viewport};
-use crate::common::{draw, sized};
+use crate::common::{draw, shapes, sized};
 use crate::embedding::{options, three};
 use ash::vk;
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
@@ -277,13 +277,18 @@ fn first_hit(
 }
 
 /// Motion leads to the same point of the same solid in the last frame: rays there, in double
-/// precision, meet it. Solids turn, move and swell, the eye moves, both frames are jittered.
+/// precision, meet it. Solids turn, move and swell, replicas too, the eye moves, both frames are
+/// jittered.
 #[test]
 fn motion_leads_to_the_last_frames_point() {
     let host = open();
     let device = borrow(&host);
     let mut scene = three();
     scene.objects[0].placement.scale = DVec3::new(1.0, 0.8, 1.1);
+    let mut replicas = Object::new("replicas", shapes::vase().into());
+    (replicas.repeat, replicas.mirror) = ([2, 1, 3], [false, false, true]);
+    replicas.placement.position = DVec3::new(-0.9, 0.1, 0.1);
+    scene.objects.push(replicas);
     let before = scene.clone();
     let planes = [Plane::Motion, Plane::Identity];
     let mut lists = Lists::new(&host, &device, &planes, &scene, &SearchSettings::exact());
@@ -299,6 +304,7 @@ fn motion_leads_to_the_last_frames_point() {
     scene.objects[0].placement.rotation = turn;
     scene.objects[1].placement.position.x += 0.1;
     scene.objects[2].offset.extend = 0.05;
+    scene.objects[3].offset.extend = 0.02;
     for (id, object) in lists.ids.iter().zip(&scene.objects) {
         lists.renderer.set(*id, object.clone()).unwrap();
     }
@@ -309,14 +315,13 @@ fn motion_leads_to_the_last_frames_point() {
         lists.floats::<2>(Plane::Motion),
         lists.read::<2>(Plane::Identity),
     );
-    let shifts = [
-        0.0,
-        0.0,
-        before.objects[2].offset.extend - scene.objects[2].offset.extend,
-    ];
+    let changes = before.objects.iter().zip(&scene.objects);
+    let shifts: Vec<_> = changes
+        .map(|(before, now)| before.offset.extend - now.offset.extend)
+        .collect();
     let (was_there, is_there) = (casters(&before), casters(&scene));
-    let (mut hits, mut occluded) = ([0; 3], 0);
-    let mut apart: [Vec<f64>; 3] = Default::default();
+    let (mut hits, mut occluded) = ([0; 4], 0);
+    let mut apart: [Vec<f64>; 4] = Default::default();
     for (n, moved) in motion.iter().enumerate().step_by(7) {
         let pixel = DVec2::new(f64::from(n as u32 % 240), f64::from(n as u32 / 240)) + 0.5;
         let now = first_hit(&is_there, ray(second_clip, pixel));
@@ -326,7 +331,8 @@ fn motion_leads_to_the_last_frames_point() {
         };
         let unjittered = pixel - DVec2::new(-0.25, 0.125);
         let landed = unjittered + DVec2::from(moved.map(f64::from)) + DVec2::new(0.25, -0.375);
-        let wanted = own + normal * shifts[object];
+        let count = DVec3::from(scene.objects[object].repeat.map(f64::from));
+        let wanted = own + (normal / count).normalize() / count * shifts[object];
         match first_hit(&was_there, ray(first_clip, landed)) {
             // Pixels of the solid, unless another part of it was in front.
             Some((other, was, _)) if other == object && was.distance(wanted) < 0.05 => {
@@ -336,15 +342,15 @@ fn motion_leads_to_the_last_frames_point() {
             _ => occluded += 1,
         }
     }
-    let [vase, ball, glass] = apart.map(|mut all| {
+    let apart = apart.map(|mut all| {
         all.sort_unstable_by(f64::total_cmp);
         [all[all.len() / 2], all[all.len() * 98 / 100]]
     });
-    println!("{hits:?} hits, {occluded} occluded before, apart {vase:?} {ball:?} {glass:?}");
+    println!("{hits:?} hits, {occluded} occluded before, apart {apart:?}");
     let all: usize = hits.iter().sum();
     assert!(hits.iter().all(|h| *h > 100) && occluded < all / 50);
     // Object units, half of the points and all but the most grazing ones.
-    for [middle, most] in [vase, ball, glass] {
+    for [middle, most] in apart {
         assert!(middle < 1e-5 && most < 1e-3, "{middle:e} {most:e}");
     }
 

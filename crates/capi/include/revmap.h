@@ -1255,6 +1255,15 @@ typedef struct RevmapPass {
      * RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
      */
     uint32_t views;
+    /**
+     * For REVMAP_PLANES_DEPTH and REVMAP_PLANES_DEPTH_PARALLEL: depths move away from the eye by
+     * this times the slope, the larger change of depth from a pixel to the next. 0 for no bias.
+     */
+    float slope_bias;
+    /**
+     * The most that slope_bias moves a depth, units of the depth buffer.
+     */
+    float slope_bias_limit;
 } RevmapPass;
 
 /**

@@ -16,7 +16,7 @@ use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{
     ComputeTarget, DepthOrder, DepthTest, HostShading, Output, PassFormats, PassKind,
-    PreparedFrame, Renderer,
+    PreparedFrame, Renderer, SlopeBias,
 };
 use revmap::settings::{PlaneList, Planes};
 use std::ffi::CString;
@@ -84,6 +84,11 @@ pub struct RevmapPass {
     /// set. Each view is a frame of its own in a slot of its own: prepare it with its
     /// RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
     pub views: u32,
+    /// For REVMAP_PLANES_DEPTH and REVMAP_PLANES_DEPTH_PARALLEL: depths move away from the eye by
+    /// this times the slope, the larger change of depth from a pixel to the next. 0 for no bias.
+    pub slope_bias: f32,
+    /// The most that slope_bias moves a depth, units of the depth buffer.
+    pub slope_bias_limit: f32,
 }
 
 /// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
@@ -143,6 +148,7 @@ impl RevmapPass {
             views: self.views.max(1),
             depth,
             depth_test,
+            slope_bias: SlopeBias::new(self.slope_bias, self.slope_bias_limit)?,
             ..PassFormats::new(begun, planes)
         })
     }

@@ -21,6 +21,23 @@ layout(location = 5) out vec4 motion;   // pixels, from this frame's position to
 layout(location = 6) out uvec4 identity; // number of the object, number of the copy
 #endif
 
+#if OUTPUT == OUTPUT_DEPTH
+// Returns the depth value of a hit, moved away from the eye by the bias for the slope of its tangent plane.
+float biased_depth(PixelRays rays, vec2 pixel, Hit hit)
+{
+    float t = rays.base + hit.t;
+    if (SLOPE_BIAS == 0u) {
+        return depth_of(t);
+    }
+    // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
+    vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
+    float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
+    float slope = abs(ORTHO != 0 ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
+    float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
+    return clamp(depth_of(t) + frame.forward.w * bias, 0.0, 1.0);
+}
+#endif
+
 // Adds the look-ups of a pixel, with or without a hit. `pixel`: of a sample, where each has a ray.
 void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
@@ -48,7 +65,10 @@ vec2 motion_of(uint instance, vec2 pixel, Hit hit)
     Instance before = instances[frame.size.w + instance];
     PixelRays rays = varying_rays();
     vec3 p = ray_origin(rays, pixel) + hit.t * ray_direction(rays, pixel);
-    vec4 at = vec4(p + before.origin.z * unit(hit.normal), 1.0);
+    // A replica is a solid of this extension, divided by the number of replicas along each axis.
+    vec3 count = vec3(object.cells.xyz);
+    vec3 way = REPLICAS == 0u ? unit(hit.normal) : unit(hit.normal / count) / count;
+    vec4 at = vec4(p + before.origin.z * way, 1.0);
     vec3 projected = vec3(dot(before.position_sx, at), dot(before.rotation, at), dot(before.scale_depth, at));
     // A point that was behind the eye has no position in the last frame.
     return projected.z > 0.0 ? projected.xy / projected.z - pixel - before.origin.xy : vec2(0.0);

@@ -96,6 +96,10 @@ impl PassFormats {
             let message = format!("{} views; give 1 to {MOST_VIEWS}", self.views);
             return Err(usage("views", message));
         }
+        if !self.slope_bias.is_none() && !matches!(self.planes, Planes::Depth { .. }) {
+            let message = "only depths alone have a bias for slopes; draw Planes::Depth";
+            return Err(usage("slope_bias", message.into()));
+        }
         if self.views > 1 && self.planes == Planes::All {
             let message = "all planes are drawn for one view; give a list of planes";
             return Err(usage("views", message.into()));

@@ -9,6 +9,7 @@ use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{add_casters, frame_block, instance_block};
 use crate::gpu::resources::motion::last_block;
 use crate::plan::View;
+use crate::settings::Planes;
 use crate::shader::Kind;
 use crate::shader::OBJECT_STRIDE;
 use crate::solid::table_slot::{Part, Slot};
@@ -195,8 +196,9 @@ impl Renderer {
 
     /// Writes blocks of a slot that are older than the renderer, or of another view.
     fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
-        let casts = self.content.casts();
-        let hierarchy = casts.then(|| self.content.hierarchy(plan));
+        let shades = !matches!(self.content.output.planes(), Planes::Depth { .. });
+        let shadowed = shades && self.content.casts();
+        let hierarchy = shadowed.then(|| self.content.hierarchy(plan));
         let to = &mut self.slots[slot];
         let motion = self.content.output.planes().has_motion();
         let instances = self.content.objects.instances();

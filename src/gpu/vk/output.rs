@@ -1,9 +1,11 @@
 //! The output of a renderer: formats and conventions, set once, and the memory that compute writes
 //! to.
 
+use crate::error::{Error, ErrorKind, Result};
 use crate::frame::srgb_from_linear;
 use crate::plan::DepthOrder;
 use crate::settings::Planes;
+use crate::shader::generated::{SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
 use ash::vk;
 
 /// The destination of a renderer's work, fixed when the renderer is made.
@@ -37,6 +39,8 @@ pub struct PassFormats {
     pub depth: DepthOrder,
     /// The depth test of every draw.
     pub depth_test: DepthTest,
+    /// The bias for slopes of [`Planes::Depth`]; none for other planes.
+    pub slope_bias: SlopeBias,
     /// The planes that the fragment shader writes, one per attachment.
     pub planes: Planes,
 }
@@ -52,8 +56,47 @@ impl PassFormats {
             views: 1,
             depth: DepthOrder::Normal,
             depth_test: DepthTest::default(),
+            slope_bias: SlopeBias::default(),
             planes,
         }
+    }
+}
+
+/// A bias of depths for the slope of the surface, for shadow maps. The bias of a rasteriser does not
+/// reach depths that a shader writes.
+///
+/// It moves the depth of each hit away from the eye, in either [`DepthOrder`]. Its slope is that of
+/// the tangent plane: the larger of the changes of depth from a pixel to the next in x and in y,
+/// units of the depth buffer. [`View::with_depth_bias`](crate::plan::View::with_depth_bias) adds a
+/// constant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SlopeBias {
+    factor: u32,
+    limit: u32,
+}
+
+impl SlopeBias {
+    /// A bias of `factor` times the slope, and at most `limit` units of the depth buffer. At
+    /// silhouettes slopes have no limit. `factor`: in the least, half of the filter's width in texels.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] if a number is negative or not finite.
+    pub fn new(factor: f32, limit: f32) -> Result<Self> {
+        for (key, value) in [("factor", factor), ("limit", limit)] {
+            if !(value.is_finite() && value >= 0.0) {
+                let message = format!("{value}; give a finite number that is not negative");
+                return Err(Error::new(ErrorKind::Usage, message).at_key(key));
+            }
+        }
+        // The sum turns -0 into 0, so that equal biases have equal bits.
+        let [factor, limit] = [factor, limit].map(|value| (value + 0.0).to_bits());
+        Ok(Self { factor, limit })
+    }
+
+    /// True if no depth is moved.
+    #[must_use]
+    pub fn is_none(self) -> bool {
+        self.factor == 0 || self.limit == 0
     }
 }
 
@@ -62,9 +105,10 @@ impl PassFormats {
 pub struct DepthTest {
     /// The comparison of a fragment's depth with the attachment's; `None` keeps the nearer one.
     ///
-    /// After a prepass of the same objects and view give `EQUAL` or `LESS_OR_EQUAL`
-    /// (`GREATER_OR_EQUAL` in reversed depth). The two passes compute equal depths if both take the
-    /// same [`DrawPath`](crate::gpu::DrawPath) and solver.
+    /// After a prepass give `EQUAL`, or `LESS_OR_EQUAL` (`GREATER_OR_EQUAL` in reversed depth). Depths
+    /// of two passes are equal if their renderers have the same search, lighting and objects, in
+    /// whatever planes they draw. If two patches are hit at equal depth, `EQUAL` keeps the colour of
+    /// the last one.
     pub compare: Option<vk::CompareOp>,
     /// True if depths are written.
     pub write: bool,
@@ -124,6 +168,19 @@ impl Output {
             Self::Pass(pass) if pass.sample_rays => std::f64::consts::FRAC_1_SQRT_2,
             _ => 0.0,
         }
+    }
+
+    /// `(constant_id, value)` of the specialisation constants of a pass.
+    pub(crate) fn constants(&self) -> [(u32, u32); 3] {
+        let bias = match self {
+            Self::Pass(pass) => pass.slope_bias,
+            Self::Compute(_) => SlopeBias::default(),
+        };
+        [
+            (VIEWS_ID, self.views()),
+            (SLOPE_BIAS_ID, bias.factor),
+            (SLOPE_BIAS_LIMIT_ID, bias.limit),
+        ]
     }
 
     /// The end of the depth range that is near.

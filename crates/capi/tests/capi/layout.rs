@@ -46,7 +46,7 @@ fn structures_are_the_same_in_c() {
         RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
         RevmapDeviceInfo { pipelines_compiled, name, driver }
         RevmapObjectInfo { profile, height_map, color, bump, offset, repeat, placement, instances, instance_count, has_material, metalness }
-        RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only, views }
+        RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only, views, slope_bias, slope_bias_limit }
         RevmapComputeTarget { words, images }
         RevmapStatistics { surfaces_made, notes }
         RevmapFrameStatistics { hidden, tiles, slot_bytes }

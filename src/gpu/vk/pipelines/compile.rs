@@ -9,8 +9,8 @@ use crate::gpu::vk::shading::BoundShading;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
-    Kind, Module, Search, Variant, depth_less, generated, with_locations, with_outputs_for,
-    with_view_index, words,
+    Kind, Module, Search, Variant, depth_less, with_locations, with_outputs_for, with_view_index,
+    words,
 };
 use ash::vk;
 
@@ -23,10 +23,9 @@ impl Pipelines {
         host: Option<&BoundShading>,
     ) -> Result<vk::Pipeline> {
         let own = variant.constants();
-        let views = (generated::VIEWS_ID, output.views());
         let constants = || {
             own.into_iter()
-                .chain([views])
+                .chain(output.constants())
                 .chain(self.constants.values())
         };
         let entries: Vec<_> = constants()

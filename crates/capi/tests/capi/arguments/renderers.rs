@@ -33,6 +33,8 @@ fn renderers_and_objects() {
             Usage, "1 attachments": make(&RevmapPass { planes: 1, ..pass }, 2);
             Usage, "stencil": make(&RevmapPass { stencil_format: color, ..pass }, 2);
             Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
+            Usage, "slope_bias": make(&RevmapPass { slope_bias: 1.0, slope_bias_limit: 1.0, ..pass }, 2);
+            Usage, "factor": make(&RevmapPass { slope_bias: -1.0, ..pass }, 2);
             Usage, "pass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
         }
         let numbers = [RevmapAttachment::Identity as u32, 0, 0, 7];
