@@ -200,7 +200,7 @@ impl PipelineCompiler {
             DrawStage::Compute => Output::Compute(planes),
             DrawStage::Fragment => Output::Pass(PassFormats::new(
                 PassKind::RenderPass {
-                    pass: self.pipelines.own_pass(planes, false, 1)?,
+                    pass: self.pipelines.own_pass(planes, false, 1, false)?,
                     subpass: 0,
                 },
                 planes,

@@ -5,6 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Camera, CameraFrame, Cluster, Growth, Placement, Scene};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 
 /// The end of the depth range that is near.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -56,6 +57,8 @@ pub struct View {
     pub(crate) jitter: DVec2,
     /// The view of the last frame.
     pub(crate) last: Option<LastView>,
+    /// First row and end of the rows that are drawn; all if none.
+    pub(crate) rows: Option<[u32; 2]>,
 }
 
 /// The view of the last frame, for motion: the rows of the map from the world to `(x w, y w, w)`,
@@ -111,6 +114,7 @@ impl View {
             layer: 0,
             jitter: DVec2::ZERO,
             last: None,
+            rows: None,
             viewport: Viewport {
                 x: 0.0,
                 y: 0.0,
@@ -162,6 +166,12 @@ impl View {
     pub fn with_depth_bias(mut self, bias: f64) -> Self {
         self.depth[0] += bias;
         self
+    }
+
+    /// The same view of some rows of the picture: tiles and copies beside them are left out.
+    pub(crate) fn with_rows(self, rows: Range<u32>) -> Self {
+        let rows = Some([rows.start, rows.end]);
+        Self { rows, ..self }
     }
 
     /// The rows of [`LastView`] for this view.
@@ -260,6 +270,7 @@ impl View {
             layer: 0,
             jitter: DVec2::ZERO,
             last: None,
+            rows: None,
         })
     }
 
@@ -312,6 +323,7 @@ impl View {
             layer: 0,
             jitter: DVec2::ZERO,
             last: None,
+            rows: None,
         })
     }
 

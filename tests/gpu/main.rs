@@ -49,6 +49,7 @@ mod shadow_crowds;
 mod shadows;
 mod smallest;
 mod spirv;
+mod submissions;
 mod texturing;
 mod tolerance;
 mod trouble;

@@ -42,6 +42,7 @@ impl MethodDevice {
         let options = OffscreenOptions {
             guests_only: settings.method.is_mesh(),
             samples: settings.edges.samples(),
+            ..OffscreenOptions::default()
         };
         let device = self.device_of(scene, settings.method)?;
         let own = Settings::from(settings);

@@ -4,6 +4,7 @@ use super::Offscreen;
 use crate::error::Result;
 use crate::settings::DrawStage;
 use ash::vk;
+use std::ops::Range;
 use std::time::Instant;
 
 /// The times of one frame.
@@ -15,6 +16,10 @@ pub struct Times {
     pub gpu_ms: Option<f64>,
     /// Milliseconds from submission to completion by the wall clock.
     pub frame_ms: f64,
+    /// Submissions of the frame, each of some rows
+    /// ([`OffscreenOptions::submission_ms`](super::OffscreenOptions::submission_ms)). The times are
+    /// sums.
+    pub submissions: u32,
 }
 
 /// Other content that is drawn in an off-screen frame's pass, into the same depth buffer.
@@ -59,7 +64,7 @@ impl Offscreen {
                 if compute {
                     return renderer.record_prewarm(cmd, &frame);
                 }
-                target.begin(cmd, self.pass, self.background);
+                target.begin(cmd, self.passes[0], self.background, &(0..target.height));
                 renderer.record_prewarm(cmd, &frame)?;
                 self.device.raw.cmd_end_render_pass(cmd);
             }
@@ -84,27 +89,55 @@ impl Offscreen {
     /// Same as [`Offscreen::draw`].
     pub fn draw_with(&mut self, guest: Option<&dyn Guest>) -> Result<Times> {
         self.check_whole()?;
+        let size = [self.settings.width, self.settings.height];
+        let (mut row, mut all) = (0, Times::default());
+        while row < size[1] {
+            let rows = self.bands.next(row, size);
+            row = rows.end;
+            let times = self.draw_rows(guest, &rows)?;
+            self.bands.took(&rows, times.frame_ms, row == size[1]);
+            all.prepare_ms += times.prepare_ms;
+            all.frame_ms += times.frame_ms;
+            all.gpu_ms = match (rows.start, all.gpu_ms) {
+                (0, _) => times.gpu_ms,
+                (_, sum) => sum.zip(times.gpu_ms).map(|(sum, ms)| sum + ms),
+            };
+            all.submissions += 1;
+        }
+        Ok(all)
+    }
+
+    /// Draws rows of a frame in one submission, and waits for it.
+    fn draw_rows(&mut self, guest: Option<&dyn Guest>, rows: &Range<u32>) -> Result<Times> {
         let start = Instant::now();
         let Self {
             renderer,
             target,
             commands,
             clock,
-            view,
             background,
             ..
         } = self;
-        let (compute, pass) = (self.settings.stage == DrawStage::Compute, self.pass);
+        let (begins, height) = (rows.start == 0, self.settings.height);
+        let whole = begins && rows.end == height;
+        let view = match whole {
+            true => self.view,
+            false => self.view.with_rows(rows.clone()),
+        };
+        let compute = self.settings.stage == DrawStage::Compute;
+        let pass = self.passes[usize::from(!begins)];
         commands.record(|cmd| {
-            // SAFETY: `cmd` is recording, and the previous frame was waited for.
-            let frame = unsafe { renderer.prepare(cmd, 0, view)? };
-            if let (Some(guest), false) = (guest, compute) {
+            // SAFETY: `cmd` is recording, and the previous submission was waited for.
+            let frame = unsafe { renderer.prepare(cmd, 0, &view)? };
+            if let (Some(guest), true, false) = (guest, begins, compute) {
                 // SAFETY: `cmd` is recording outside of a pass, and is waited for before this
                 // returns.
                 unsafe { guest.prepare(cmd) };
             }
             clock.start(cmd);
-            target.clear(cmd, *background, frame.reads_depths());
+            if begins {
+                target.clear(cmd, *background, !whole || frame.reads_depths());
+            }
             // SAFETY: the frame was prepared above; the target was cleared, the pass has the
             // output's formats and sets viewport and scissor; the commands are waited for before
             // anything is dropped.
@@ -112,7 +145,7 @@ impl Offscreen {
                 if compute {
                     renderer.record_compute(cmd, &frame)?;
                 } else {
-                    target.begin(cmd, pass, *background);
+                    target.begin(cmd, pass, *background, rows);
                     renderer.record(cmd, &frame)?;
                     if let Some(guest) = guest {
                         guest.record(cmd);
@@ -131,6 +164,7 @@ impl Offscreen {
             prepare_ms,
             gpu_ms: self.clock.milliseconds()?,
             frame_ms,
+            submissions: 1,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Frames without a host: a target, commands, and reading back. The first user of [`Renderer`].
 
+mod bands;
 mod commands;
 mod draw;
 mod read_back;
@@ -12,6 +13,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::frame::Frame;
 use crate::gpu::content::objects::ObjectId;
 use crate::gpu::device::Shared;
+use crate::gpu::offscreen::bands::Bands;
 use crate::gpu::offscreen::commands::Clock;
 use crate::gpu::offscreen::commands::Commands;
 use crate::gpu::offscreen::target::Target;
@@ -43,13 +45,14 @@ pub struct Offscreen {
     /// True between the first and the last change of an update. The remains of an update that
     /// failed in between must not be drawn.
     stale: bool,
-    /// Null in compute.
-    pass: vk::RenderPass,
+    bands: Bands,
+    /// The pass of a frame's first rows, and the one of the rows after them; null in compute.
+    passes: [vk::RenderPass; 2],
     device: Arc<Shared>,
 }
 
 /// How a scene is drawn off screen, beside the settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OffscreenOptions {
     /// True if a guest draws the scene's objects, now and after every update. Camera, background,
     /// lights and the range of depths are the scene's. Default: false.
@@ -57,6 +60,11 @@ pub struct OffscreenOptions {
     /// Samples of a pixel in the fragment stage, 1, 2, 4 or 8; a frame holds their means. Default:
     /// 1. Each sample has a ray, which needs `sampleRateShading`.
     pub samples: u32,
+    /// Most milliseconds of a submission, because systems reset a device whose submission takes
+    /// seconds (2 s on Windows). A frame that takes longer is drawn in several bands of rows, by the
+    /// times of the rows before and of the frame before. A first frame of up to 2^20 pixels is one
+    /// submission. Default: none, which is 500 on GPUs and no limit on CPUs.
+    pub submission_ms: Option<f64>,
 }
 
 impl Default for OffscreenOptions {
@@ -64,6 +72,7 @@ impl Default for OffscreenOptions {
         Self {
             guests_only: false,
             samples: 1,
+            submission_ms: None,
         }
     }
 }
@@ -92,6 +101,7 @@ impl Offscreen {
         let OffscreenOptions {
             guests_only,
             samples,
+            submission_ms,
         } = options;
         // Several samples smooth silhouettes by themselves.
         let settings = &Settings {
@@ -112,15 +122,16 @@ impl Offscreen {
         let keeps_depths = settings.antialias && settings.planes == Planes::Color;
         let shared = device.shared.clone();
         let commands = Commands::new(&shared)?;
-        let raw = match settings.stage {
-            DrawStage::Compute => vk::RenderPass::null(),
+        let pass = |resumes| match settings.stage {
+            DrawStage::Compute => Ok(vk::RenderPass::null()),
             _ => shared
                 .pipelines()?
-                .own_pass(settings.planes, keeps_depths, samples)?,
+                .own_pass(settings.planes, keeps_depths, samples, resumes),
         };
+        let passes = [pass(false)?, pass(true)?];
         let target = Target::new(
             &shared,
-            raw,
+            passes[0],
             settings.stage,
             settings.planes,
             keeps_depths,
@@ -134,7 +145,7 @@ impl Offscreen {
                 sample_rays: samples > 1,
                 ..PassFormats::new(
                     PassKind::RenderPass {
-                        pass: raw,
+                        pass: passes[0],
                         subpass: 0,
                     },
                     settings.planes,
@@ -159,7 +170,8 @@ impl Offscreen {
             guests_only,
             solids: None,
             stale: true,
-            pass: raw,
+            bands: Bands::new(submission_ms, shared.chosen.report.kind == "cpu"),
+            passes,
             device: shared,
         };
         offscreen.update(scene)?;
@@ -238,7 +250,7 @@ impl Offscreen {
     /// The pass for a guest's pipelines; null in compute. The pass lives as long as the device.
     #[must_use]
     pub fn render_pass(&self) -> vk::RenderPass {
-        self.pass
+        self.passes[0]
     }
 
     /// The view of the last scene.

@@ -12,6 +12,7 @@ use crate::gpu::vk::render_pass::{DEPTH_FORMAT, color_formats};
 use crate::gpu::vk::usage::Usage;
 use crate::settings::{DrawStage, Planes};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The images of an off-screen frame.
@@ -218,13 +219,23 @@ impl Target {
         }
     }
 
-    /// Begins the render pass of the fragment path, cleared to `background`.
-    pub fn begin(&self, cmd: vk::CommandBuffer, pass: vk::RenderPass, background: [f32; 4]) {
+    /// Begins the render pass of the fragment path in some rows, cleared to `background`.
+    pub fn begin(
+        &self,
+        cmd: vk::CommandBuffer,
+        pass: vk::RenderPass,
+        background: [f32; 4],
+        rows: &Range<u32>,
+    ) {
+        #[allow(clippy::cast_possible_wrap)] // sizes are far below 2^31
         let area = vk::Rect2D {
-            offset: vk::Offset2D::default(),
+            offset: vk::Offset2D {
+                x: 0,
+                y: rows.start as i32,
+            },
             extent: vk::Extent2D {
                 width: self.width,
-                height: self.height,
+                height: rows.end - rows.start,
             },
         };
         let mut clears: Vec<_> = clear_values(self.planes, background)

@@ -53,7 +53,7 @@ pub(crate) struct Pipelines {
     compiled: AtomicU64,
     owners: AtomicU64,
     /// The passes of off-screen frames. A pass lives as long as the pipelines that are keyed by it.
-    passes: Mutex<HashMap<(Planes, bool, u32), vk::RenderPass>>,
+    passes: Mutex<HashMap<(Planes, bool, u32, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
     /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
@@ -227,23 +227,25 @@ impl Pipelines {
         passes.is_ok_and(|passes| passes.values().any(|own| *own == pass))
     }
 
-    /// Returns the render pass of off-screen frames, made now if it is new.
+    /// Returns the render pass of off-screen frames, made now if it is new. `resumes`: other pixels
+    /// keep what an earlier pass drew.
     pub fn own_pass(
         &self,
         planes: Planes,
         keeps_depths: bool,
         samples: u32,
+        resumes: bool,
     ) -> Result<vk::RenderPass> {
         let mut passes = self
             .passes
             .lock()
             .map_err(|_| Error::new(ErrorKind::Other, "the render passes' lock is poisoned"))?;
-        let key = (planes, keeps_depths, samples);
+        let key = (planes, keeps_depths, samples, resumes);
         if let Some(known) = passes.get(&key) {
             return Ok(*known);
         }
         let count = vk::SampleCountFlags::from_raw(samples);
-        let made = render_pass(&self.raw, planes, keeps_depths, count)?;
+        let made = render_pass(&self.raw, planes, keeps_depths, count, resumes)?;
         passes.insert(key, made);
         Ok(made)
     }

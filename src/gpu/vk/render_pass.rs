@@ -67,12 +67,14 @@ fn dependencies(keeps_depths: bool) -> [vk::SubpassDependency; 2] {
 
 /// Makes a render pass of so many samples a pixel that clears its attachments at its start. At the
 /// end, colours and kept depths are ready to be copied from. Several samples of a colour are
-/// resolved into an attachment behind the others.
+/// resolved into an attachment behind the others. `resumes`: pixels outside of the render area keep
+/// what an earlier pass of the same attachments drew.
 pub(crate) fn render_pass(
     raw: &ash::Device,
     planes: Planes,
     keeps_depths: bool,
     samples: vk::SampleCountFlags,
+    resumes: bool,
 ) -> Result<vk::RenderPass> {
     use vk::AttachmentLoadOp as Load;
     use vk::AttachmentStoreOp as Store;
@@ -83,6 +85,7 @@ pub(crate) fn render_pass(
             .samples(samples)
             .load_op(load)
             .store_op(store)
+            .initial_layout(if resumes { layout } else { Layout::UNDEFINED })
             .final_layout(layout)
     };
     let one = vk::SampleCountFlags::TYPE_1;

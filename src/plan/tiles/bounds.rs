@@ -67,7 +67,10 @@ impl Projector {
             d + view.forward * (0.5 - view.dir_00.dot(d))
         };
         let rows = [row(view.dir_x), row(view.dir_y), view.forward];
-        let [low, high] = view.corners();
+        let [mut low, mut high] = view.corners();
+        if let Some([first, end]) = view.rows.map(|rows| rows.map(f64::from)) {
+            (low.y, high.y) = (low.y.max(first), high.y.min(end));
+        }
         Self {
             ends: [
                 first_pixel(low.x).max(0),

@@ -1,0 +1,101 @@
+//! Frames in several submissions, because systems reset a device whose submission takes seconds.
+
+use crate::shader::generated::GROUP_PIXELS;
+use std::ops::Range;
+
+/// Most milliseconds of a submission on a GPU. Windows resets a device after 2 s.
+const MOST_MS: f64 = 500.0;
+
+/// Most pixels of a submission in the first frame: rows that were not drawn may take longer than
+/// those that were.
+const FIRST_PIXELS: u32 = 1 << 20;
+
+/// Divides frames into bands of rows, by the time that rows took.
+pub(super) struct Bands {
+    /// Most milliseconds of a submission; infinite without a limit.
+    most_ms: f64,
+    /// Milliseconds of the slowest row of the last frame.
+    last_frame: Option<f64>,
+    /// Milliseconds of the slowest row of this frame so far.
+    this_frame: f64,
+}
+
+impl Bands {
+    /// `most_ms`: most milliseconds of a submission; none for the default, which is no limit on a
+    /// CPU.
+    pub fn new(most_ms: Option<f64>, is_cpu: bool) -> Self {
+        let default = if is_cpu { f64::INFINITY } else { MOST_MS };
+        Self {
+            most_ms: most_ms.unwrap_or(default),
+            last_frame: None,
+            this_frame: 0.0,
+        }
+    }
+
+    /// The rows of a frame's next submission, from row `first` on.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // `as` saturates
+    pub fn next(&self, first: u32, [width, height]: [u32; 2]) -> Range<u32> {
+        // Half of the time, as other rows or frames may take longer.
+        let in_time = |row_ms: f64| (0.5 * self.most_ms / row_ms.max(1e-9)) as u32;
+        let rows = match self.last_frame {
+            _ if self.most_ms == f64::INFINITY => height,
+            Some(row_ms) => in_time(row_ms.max(self.this_frame)),
+            None => in_time(self.this_frame).min(FIRST_PIXELS / width.max(1)),
+        };
+        let whole_tiles = (rows / GROUP_PIXELS).max(1) * GROUP_PIXELS;
+        first..first.saturating_add(whole_tiles).min(height)
+    }
+
+    /// Takes the time of a submission of so many rows. `ends`: it ends the frame.
+    pub fn took(&mut self, rows: &Range<u32>, ms: f64, ends: bool) {
+        let row_ms = ms / f64::from((rows.end - rows.start).max(1));
+        self.this_frame = self.this_frame.max(row_ms);
+        if ends {
+            self.last_frame = Some(std::mem::take(&mut self.this_frame));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Draws a frame whose row `y` takes `row_ms(y)`. Returns the time of each submission.
+    fn frame(bands: &mut Bands, size: [u32; 2], row_ms: impl Fn(u32) -> f64) -> Vec<f64> {
+        let (mut row, mut times) = (0, Vec::new());
+        while row < size[1] {
+            let rows = bands.next(row, size);
+            assert!(rows.start == row && rows.end > row && rows.end <= size[1]);
+            assert!(rows.end % GROUP_PIXELS == 0 || rows.end == size[1]);
+            let ms: f64 = rows.clone().map(&row_ms).sum();
+            row = rows.end;
+            bands.took(&rows, ms, row == size[1]);
+            times.push(ms);
+        }
+        times
+    }
+
+    #[test]
+    fn submissions_stay_below_the_limit() {
+        let size = [4000, 3000];
+        let mut bands = Bands::new(None, false);
+        // Sky above, then rows that take 7 ms: 14 s in all.
+        let row_ms = |y: u32| if y < 1000 { 0.01 } else { 7.0 };
+        let first = frame(&mut bands, size, row_ms);
+        let second = frame(&mut bands, size, row_ms);
+        assert!(second.iter().all(|ms| *ms <= MOST_MS), "{second:?}");
+        let long = first.iter().filter(|ms| **ms > MOST_MS).count();
+        assert!(long <= 1, "{first:?}");
+        // A frame that became fast is one submission after the next.
+        frame(&mut bands, size, |_| 0.01);
+        assert_eq!(frame(&mut bands, size, |_| 0.01).len(), 1);
+    }
+
+    #[test]
+    fn frames_of_a_cpu_are_whole() {
+        let mut bands = Bands::new(None, true);
+        assert_eq!(frame(&mut bands, [4000, 3000], |_| 7.0).len(), 1);
+        let mut bands = Bands::new(Some(100.0), true);
+        assert!(frame(&mut bands, [4000, 3000], |_| 7.0).len() > 1);
+    }
+}
