@@ -207,7 +207,7 @@ impl<'a> Engine<'a> {
         let now = jittered * view;
         let renderer = std::cell::RefCell::new(&mut self.renderer);
         self.passes.frame(
-            now.as_mat4(),
+            now,
             &self.meshes,
             |cmd| {
                 let mut renderer = renderer.borrow_mut();

@@ -82,7 +82,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
     }
     match host.take_messages().first() {
         Some(message) => Err(message.clone().into()),
-        None => Ok([1, 2].map(|n| differing(&pictures[0], &pictures[n]))),
+        None => Ok([1, 2].map(|n| host::differing(&pictures[0], &pictures[n]))),
     }
 }
 
@@ -194,7 +194,7 @@ fn picture(
     };
     let seen = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
     let clip: DMat4 = projection * view;
-    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.layout);
+    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
     let renderer = RefCell::new(renderer);
     stage.frame(
         clip,
@@ -216,11 +216,4 @@ fn picture(
     let pixels = stage.read()?.0;
     stage.wait()?;
     Ok(pixels)
-}
-
-/// The number of pixels that differ by more than 2 of 255.
-fn differing(a: &[u8], b: &[u8]) -> usize {
-    let pixels = a.chunks(4).zip(b.chunks(4));
-    let far = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
-    far.count()
 }
