@@ -4,7 +4,7 @@ use super::memory::HostBuffer;
 use super::{Fallible, Host};
 use ash::vk;
 
-/// A set whose binding 0 is a uniform buffer, for fragments and compute. Images with samplers follow.
+/// A set for fragments and compute: binding 0 is a uniform buffer, images with samplers follow.
 pub struct UniformSet<'a> {
     pub layout: vk::DescriptorSetLayout,
     pub raw: vk::DescriptorSet,
