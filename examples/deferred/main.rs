@@ -14,6 +14,9 @@ mod host;
 #[allow(clippy::duplicate_mod)] // in tests of several hosts
 mod lend;
 mod passes;
+#[path = "../engine/solids.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod solids;
 
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3, Vec4};
 use host::{Fallible, Host, Mesh, Options};
@@ -22,10 +25,8 @@ use revmap::frame::Frame;
 use revmap::gpu::{
     self, DepthOrder, ObjectId, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
-use revmap::scene::{Material, Object, Placement};
+use revmap::scene::{Material, Placement};
 use revmap::settings::{PlaneList, Planes, SearchSettings};
-use revmap_files::ProfileAxis;
-use std::sync::Arc;
 
 const OPTIONS: Options = Options {
     width: 640,
@@ -145,10 +146,7 @@ impl<'a> Engine<'a> {
             ("rook", [0.55, 0.15, 0.1], 0.0),
             ("pawn", [0.8, 0.8, 0.75], 0.0),
         ] {
-            let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-            let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
-            let mut object = Object::new(name, profile);
-            object.color = color;
+            let mut object = solids::chessman(name, color)?;
             object.material = Some(Material {
                 roughness: 0.35,
                 metalness,
@@ -207,7 +205,7 @@ impl<'a> Engine<'a> {
         let now = jittered * view;
         let renderer = std::cell::RefCell::new(&mut self.renderer);
         self.passes.frame(
-            now.as_mat4(),
+            now,
             &self.meshes,
             |cmd| {
                 let mut renderer = renderer.borrow_mut();

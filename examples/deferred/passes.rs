@@ -1,9 +1,10 @@
 //! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
 
 use super::host::memory::{HostBuffer, HostImage};
-use super::host::{DEPTH, Fallible, Host, Mesh, Options, attachments};
+use super::host::{DEPTH, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options};
+use super::host::{attachments, module};
 use ash::vk;
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
 use revmap::settings::Plane;
 
 /// The planes of the G-buffer, and their formats.
@@ -57,7 +58,7 @@ pub struct Resolve {
     pub blend: Blend,
 }
 
-/// Push constants of all shaders.
+/// Push constants of the compute shaders.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Pushed {
@@ -80,7 +81,7 @@ pub struct Passes<'a> {
     set_layout: vk::DescriptorSetLayout,
     layout: vk::PipelineLayout,
     descriptors: vk::DescriptorPool,
-    mesh: vk::Pipeline,
+    mesh: MeshPipeline<'a>,
     light: vk::Pipeline,
     resolve: vk::Pipeline,
     pool: vk::CommandPool,
@@ -97,6 +98,11 @@ impl<'a> Passes<'a> {
         let planes = FORMATS.map(sampled).into_iter().collect::<Fallible<_>>()?;
         let bytes = 16 * (options.width * options.height) as usize;
         let null = vk::Pipeline::null();
+        let shaders = MeshShaders {
+            vertex: include_bytes!("mesh.vert.spv"),
+            fragment: include_bytes!("mesh.frag.spv"),
+            sets: &[],
+        };
         let mut passes = Self {
             planes,
             depth: sampled(DEPTH)?,
@@ -109,7 +115,7 @@ impl<'a> Passes<'a> {
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
             descriptors: vk::DescriptorPool::null(),
-            mesh: null,
+            mesh: MeshPipeline::new(host, &shaders, &options, vk::RenderPass::null(), &FORMATS)?,
             light: null,
             resolve: null,
             pool: vk::CommandPool::null(),
@@ -120,7 +126,6 @@ impl<'a> Passes<'a> {
         // SAFETY: plain creations, destroyed in Drop.
         unsafe {
             passes.make_sets()?;
-            passes.mesh = passes.mesh_pipeline()?;
             passes.light = passes.compute(include_bytes!("light.comp.spv"))?;
             passes.resolve = passes.compute(include_bytes!("resolve.comp.spv"))?;
             let info = vk::CommandPoolCreateInfo::default()
@@ -196,7 +201,7 @@ impl<'a> Passes<'a> {
             }
             self.sets = [sets[0], sets[1]];
             let pushed = [vk::PushConstantRange::default()
-                .stage_flags(vk::ShaderStageFlags::COMPUTE | vk::ShaderStageFlags::VERTEX)
+                .stage_flags(vk::ShaderStageFlags::COMPUTE)
                 .size(size_of::<Pushed>() as u32)];
             let info = vk::PipelineLayoutCreateInfo::default()
                 .set_layouts(&layouts[..1])
@@ -206,18 +211,11 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    unsafe fn module(&self, bytes: &[u8]) -> Fallible<vk::ShaderModule> {
-        let words = ash::util::read_spv(&mut std::io::Cursor::new(bytes))?;
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are those of the shaders beside this file.
-        Ok(unsafe { self.host.device.create_shader_module(&info, None) }?)
-    }
-
     unsafe fn compute(&self, bytes: &[u8]) -> Fallible<vk::Pipeline> {
         let raw = &self.host.device;
         // SAFETY: plain creations; the module is not needed once the pipeline is made.
         unsafe {
-            let module = self.module(bytes)?;
+            let module = module(self.host, bytes)?;
             let stage = vk::PipelineShaderStageCreateInfo::default()
                 .stage(vk::ShaderStageFlags::COMPUTE)
                 .module(module)
@@ -231,80 +229,11 @@ impl<'a> Passes<'a> {
         }
     }
 
-    unsafe fn mesh_pipeline(&self) -> Fallible<vk::Pipeline> {
-        let raw = &self.host.device;
-        let bindings = [vk::VertexInputBindingDescription::default().stride(24)];
-        let attribute = |n| {
-            vk::VertexInputAttributeDescription::default()
-                .location(n)
-                .format(vk::Format::R32G32B32_SFLOAT)
-                .offset(12 * n)
-        };
-        let attributes = [attribute(0), attribute(1)];
-        let input = vk::PipelineVertexInputStateCreateInfo::default()
-            .vertex_binding_descriptions(&bindings)
-            .vertex_attribute_descriptions(&attributes);
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-        let viewport = vk::PipelineViewportStateCreateInfo::default()
-            .viewport_count(1)
-            .scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
-        let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(true)
-            .depth_write_enable(true)
-            .depth_compare_op(vk::CompareOp::LESS);
-        let blends = [vk::PipelineColorBlendAttachmentState::default()
-            .color_write_mask(vk::ColorComponentFlags::RGBA); 5];
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
-        let states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
-        let mut rendering = vk::PipelineRenderingCreateInfo::default()
-            .color_attachment_formats(&FORMATS)
-            .depth_attachment_format(DEPTH);
-        // SAFETY: plain creations; modules are not needed once the pipeline is made.
-        unsafe {
-            let modules = [
-                self.module(include_bytes!("mesh.vert.spv"))?,
-                self.module(include_bytes!("mesh.frag.spv"))?,
-            ];
-            let stage = |stage, module| {
-                vk::PipelineShaderStageCreateInfo::default()
-                    .stage(stage)
-                    .module(module)
-                    .name(c"main")
-            };
-            let stages = [
-                stage(vk::ShaderStageFlags::VERTEX, modules[0]),
-                stage(vk::ShaderStageFlags::FRAGMENT, modules[1]),
-            ];
-            let info = [vk::GraphicsPipelineCreateInfo::default()
-                .stages(&stages)
-                .vertex_input_state(&input)
-                .input_assembly_state(&assembly)
-                .viewport_state(&viewport)
-                .rasterization_state(&raster)
-                .multisample_state(&samples)
-                .depth_stencil_state(&depth)
-                .color_blend_state(&blend)
-                .dynamic_state(&dynamic)
-                .layout(self.layout)
-                .push_next(&mut rendering)];
-            let made = raw.create_graphics_pipelines(vk::PipelineCache::null(), &info, None);
-            for module in modules {
-                raw.destroy_shader_module(module, None);
-            }
-            Ok(made.map_err(|(_, code)| code)?[0])
-        }
-    }
-
     /// Draws a frame and waits for it. `before` records outside of the pass; `within` draws into the
     /// G-buffer what `before` returned.
     pub fn frame<T>(
         &mut self,
-        clip_from_world: Mat4,
+        clip_from_world: DMat4,
         meshes: &[Mesh<'_>],
         before: impl FnOnce(vk::CommandBuffer) -> Fallible<T>,
         within: impl FnOnce(vk::CommandBuffer, &T) -> Fallible<()>,
@@ -335,17 +264,7 @@ impl<'a> Passes<'a> {
             raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
             let prepared = before(cmd)?;
             self.begin_pass(cmd);
-            raw.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.mesh);
-            for mesh in meshes {
-                let pushed = Pushed {
-                    matrix: clip_from_world.to_cols_array_2d(),
-                    first: mesh.offset_scale.to_array(),
-                    second: mesh.color.extend(1.0).to_array(),
-                };
-                self.push(cmd, &pushed);
-                raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
-                raw.cmd_draw(cmd, mesh.count, 1, 0, 0);
-            }
+            self.mesh.draw(cmd, clip_from_world, Vec3::Z, meshes);
             within(cmd, &prepared)?;
             raw.cmd_end_rendering(cmd);
             let drawn = self.planes.iter().chain([&self.depth]);
@@ -427,7 +346,7 @@ impl<'a> Passes<'a> {
     }
 
     unsafe fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
-        let stages = vk::ShaderStageFlags::COMPUTE | vk::ShaderStageFlags::VERTEX;
+        let stages = vk::ShaderStageFlags::COMPUTE;
         let bytes = bytemuck::bytes_of(pushed);
         // SAFETY: `cmd` is recording; the range is the layout's.
         unsafe {
@@ -488,7 +407,7 @@ impl Drop for Passes<'_> {
         // SAFETY: every submission was waited for; null handles may be destroyed.
         unsafe {
             raw.destroy_command_pool(self.pool, None);
-            for pipeline in [self.mesh, self.light, self.resolve] {
+            for pipeline in [self.light, self.resolve] {
                 raw.destroy_pipeline(pipeline, None);
             }
             raw.destroy_pipeline_layout(self.layout, None);

@@ -7,6 +7,7 @@
 
 mod host;
 mod lend;
+mod solids;
 
 use glam::{DQuat, DVec3, Vec3};
 use host::{Fallible, Mesh, Options, Stage};
@@ -14,7 +15,6 @@ use revmap::gpu::{self, DepthOrder, Output, PassFormats, PassKind, View, Viewpor
 use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
 use revmap::settings::{Planes, SearchSettings};
-use revmap_files::ProfileAxis;
 use std::sync::Arc;
 
 const COUNT: u32 = 120;
@@ -67,10 +67,7 @@ fn main() -> Fallible<()> {
         ("rook", -0.9, [0.6, 0.2, 0.15]),
         ("king", 0.9, [0.7, 0.7, 0.65]),
     ] {
-        let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
-        let mut object = Object::new(name, profile);
-        object.color = color;
+        let mut object = solids::chessman(name, color)?;
         object.placement.position.y = y;
         patches.push(renderer.add(object)?);
     }

@@ -13,6 +13,9 @@ mod host;
 #[path = "../engine/lend.rs"]
 #[allow(clippy::duplicate_mod)] // in tests of several hosts
 mod lend;
+#[path = "../engine/solids.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod solids;
 
 use ash::vk;
 use glam::{DMat4, DQuat, DVec3, Vec3};
@@ -21,11 +24,9 @@ use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage};
 use revmap::gpu::{
     self, DepthOrder, HostShading, Output, PassFormats, PassKind, Renderer, View, Viewport,
 };
-use revmap::profile::Profile;
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
-use revmap_files::ProfileAxis;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -82,7 +83,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
     }
     match host.take_messages().first() {
         Some(message) => Err(message.clone().into()),
-        None => Ok([1, 2].map(|n| differing(&pictures[0], &pictures[n]))),
+        None => Ok([1, 2].map(|n| host::differing(&pictures[0], &pictures[n]))),
     }
 }
 
@@ -114,10 +115,7 @@ fn chessmen(renderer: &mut Renderer) -> Fallible<()> {
         ("rook", -0.8, [0.5, 0.12, 0.08], 0.0),
         ("pawn", -1.3, [0.15, 0.3, 0.25], 0.0),
     ] {
-        let path = format!("{}/assets/profiles/{name}.svg", env!("CARGO_MANIFEST_DIR"));
-        let profile = Arc::new(revmap_files::profile(path, ProfileAxis::Center)?);
-        let mut object = Object::new(name, profile);
-        object.color = color;
+        let mut object = solids::chessman(name, color)?;
         object.material = Some(Material {
             roughness: 0.3,
             metalness,
@@ -136,25 +134,13 @@ fn chessmen(renderer: &mut Renderer) -> Fallible<()> {
     Ok(())
 }
 
-/// A ball, its outline half of a polygon of many corners.
+/// The ball, with a material.
 fn ball() -> Fallible<Object> {
-    const CORNERS: u32 = 512;
-    let corner = |n: u32| {
-        let (sine, cosine) = (std::f64::consts::PI * f64::from(n) / f64::from(CORNERS)).sin_cos();
-        [0.5 * sine, 0.5 - 0.5 * cosine]
-    };
-    let outline: Vec<_> = (0..=CORNERS).map(corner).collect();
-    let mut object = Object::new("ball", Arc::new(Profile::polygon(&outline, 0.5)?));
-    object.color = BALL_COLOR.to_array();
+    let mut object = solids::ball(BALL, BALL_RADIUS, BALL_COLOR)?;
     object.material = Some(Material {
         roughness: 0.4,
         metalness: 0.0,
     });
-    object.placement = Placement {
-        position: BALL - DVec3::Z * BALL_RADIUS,
-        scale: DVec3::splat(2.0 * BALL_RADIUS),
-        ..Placement::default()
-    };
     Ok(object)
 }
 
@@ -194,7 +180,7 @@ fn picture(
     };
     let seen = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
     let clip: DMat4 = projection * view;
-    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.layout);
+    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
     let renderer = RefCell::new(renderer);
     stage.frame(
         clip,
@@ -216,11 +202,4 @@ fn picture(
     let pixels = stage.read()?.0;
     stage.wait()?;
     Ok(pixels)
-}
-
-/// The number of pixels that differ by more than 2 of 255.
-fn differing(a: &[u8], b: &[u8]) -> usize {
-    let pixels = a.chunks(4).zip(b.chunks(4));
-    let far = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
-    far.count()
 }

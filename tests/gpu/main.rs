@@ -46,6 +46,7 @@ mod refusals;
 mod replicas;
 mod rounding;
 mod shadow_crowds;
+mod shadowed_host;
 mod shadows;
 mod smallest;
 mod spirv;

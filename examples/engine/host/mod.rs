@@ -5,14 +5,15 @@
 pub mod attachments;
 pub mod memory;
 mod mesh;
+mod mesh_pipeline;
 mod pass;
 #[allow(dead_code)] // for the forward host and tests
 pub mod set;
 mod stage;
 
 pub use mesh::Mesh;
-#[allow(unused_imports)] // for the forward host
-pub use stage::MeshShaders;
+#[allow(unused_imports)] // for hosts with shaders of their own
+pub use mesh_pipeline::{MeshPipeline, MeshShaders, module};
 pub use stage::Stage;
 
 use ash::{ext, vk};
@@ -238,4 +239,12 @@ pub fn write_png(path: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
         rgba: pixels.as_chunks().0.to_vec(),
     };
     Ok(picture.write_png(path)?)
+}
+
+/// The number of pixels that differ by more than 2 of 255.
+#[allow(dead_code)] // for hosts that compare pictures
+pub fn differing(a: &[u8], b: &[u8]) -> usize {
+    let pixels = a.chunks(4).zip(b.chunks(4));
+    let far = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
+    far.count()
 }

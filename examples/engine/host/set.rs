@@ -1,10 +1,10 @@
-//! A descriptor set with one uniform buffer, as a host has for its lights.
+//! A descriptor set with a uniform buffer and images, as a host has for its lights.
 
 use super::memory::HostBuffer;
 use super::{Fallible, Host};
 use ash::vk;
 
-/// A set whose binding 0 is a uniform buffer, for fragments and compute.
+/// A set for fragments and compute: binding 0 is a uniform buffer, images with samplers follow.
 pub struct UniformSet<'a> {
     pub layout: vk::DescriptorSetLayout,
     pub raw: vk::DescriptorSet,
@@ -15,18 +15,36 @@ pub struct UniformSet<'a> {
 
 impl<'a> UniformSet<'a> {
     pub fn of<T: bytemuck::Pod>(host: &'a Host, values: &[T]) -> Fallible<Self> {
+        Self::with_images(host, values, &[])
+    }
+
+    /// The images live as long as the set.
+    pub fn with_images<V: bytemuck::Pod>(
+        host: &'a Host,
+        values: &[V],
+        images: &[vk::DescriptorImageInfo],
+    ) -> Fallible<Self> {
+        use vk::DescriptorType as T;
         let buffer = HostBuffer::of(host, values, vk::BufferUsageFlags::UNIFORM_BUFFER)?;
         let device = &host.device;
-        let kind = vk::DescriptorType::UNIFORM_BUFFER;
         let stages = vk::ShaderStageFlags::FRAGMENT | vk::ShaderStageFlags::COMPUTE;
-        let bindings = [vk::DescriptorSetLayoutBinding::default()
-            .descriptor_type(kind)
-            .descriptor_count(1)
-            .stage_flags(stages)];
+        let kinds = std::iter::once(T::UNIFORM_BUFFER)
+            .chain(images.iter().map(|_| T::COMBINED_IMAGE_SAMPLER));
+        let binding = |(n, kind)| {
+            vk::DescriptorSetLayoutBinding::default()
+                .binding(n)
+                .descriptor_type(kind)
+                .descriptor_count(1)
+                .stage_flags(stages)
+        };
+        let bindings: Vec<_> = (0..).zip(kinds.clone()).map(binding).collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        let sizes = [vk::DescriptorPoolSize::default()
-            .ty(kind)
-            .descriptor_count(1)];
+        let size = |kind| {
+            vk::DescriptorPoolSize::default()
+                .ty(kind)
+                .descriptor_count(1)
+        };
+        let sizes: Vec<_> = kinds.map(size).collect();
         let pool = vk::DescriptorPoolCreateInfo::default()
             .max_sets(1)
             .pool_sizes(&sizes);
@@ -42,11 +60,17 @@ impl<'a> UniformSet<'a> {
             let whole = [vk::DescriptorBufferInfo::default()
                 .buffer(buffer.raw)
                 .range(vk::WHOLE_SIZE)];
-            let write = vk::WriteDescriptorSet::default()
-                .dst_set(raw)
-                .descriptor_type(kind)
-                .buffer_info(&whole);
-            device.update_descriptor_sets(&[write], &[]);
+            let write = |n, kind| {
+                vk::WriteDescriptorSet::default()
+                    .dst_set(raw)
+                    .dst_binding(n)
+                    .descriptor_type(kind)
+            };
+            let mut writes = vec![write(0, T::UNIFORM_BUFFER).buffer_info(&whole)];
+            writes.extend((1..).zip(images).map(|(n, image)| {
+                write(n, T::COMBINED_IMAGE_SAMPLER).image_info(std::slice::from_ref(image))
+            }));
+            device.update_descriptor_sets(&writes, &[]);
             Ok(Self {
                 layout,
                 raw,

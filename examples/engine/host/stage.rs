@@ -2,18 +2,11 @@
 
 use super::memory::{HostBuffer, HostImage};
 use super::mesh::Mesh;
+use super::mesh_pipeline::{MeshPipeline, MeshShaders};
+use super::pass::make_pass;
 use super::{COLOR, DEPTH, FRAMES, Fallible, Host, Options};
 use ash::vk;
 use glam::{DMat4, Vec3};
-
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Pushed {
-    clip_from_world: [[f32; 4]; 4],
-    offset_scale: [f32; 4],
-    color: [f32; 4],
-    towards_light: [f32; 4],
-}
 
 /// The commands of a frame in flight, and what tells that they have run.
 type InFlight = (vk::CommandBuffer, vk::Fence);
@@ -22,38 +15,18 @@ type InFlight = (vk::CommandBuffer, vk::Fence);
 pub struct Stage<'a> {
     pub options: Options,
     pub pass: vk::RenderPass,
-    pub(super) framebuffer: vk::Framebuffer,
+    framebuffer: vk::Framebuffer,
     /// What is read back: of one sample.
-    pub(super) color: HostImage<'a>,
+    color: HostImage<'a>,
     /// Of several samples, where there are.
-    pub(super) multisampled: Option<HostImage<'a>>,
-    pub(super) depth: HostImage<'a>,
-    /// Of meshes.
-    pub layout: vk::PipelineLayout,
-    pub(super) pipeline: vk::Pipeline,
+    multisampled: Option<HostImage<'a>>,
+    depth: HostImage<'a>,
+    pub meshes: MeshPipeline<'a>,
     pool: vk::CommandPool,
     frames: Vec<InFlight>,
     next: usize,
     read: [HostBuffer<'a>; 2],
-    pub(super) host: &'a Host,
-}
-
-/// The shaders of meshes, and the layouts of the sets that they read.
-pub struct MeshShaders<'s> {
-    pub vertex: &'s [u8],
-    pub fragment: &'s [u8],
-    pub sets: &'s [vk::DescriptorSetLayout],
-}
-
-impl Default for MeshShaders<'_> {
-    /// One light, from above.
-    fn default() -> Self {
-        Self {
-            vertex: include_bytes!("mesh.vert.spv"),
-            fragment: include_bytes!("mesh.frag.spv"),
-            sets: &[],
-        }
-    }
+    host: &'a Host,
 }
 
 impl<'a> Stage<'a> {
@@ -92,33 +65,25 @@ impl<'a> Stage<'a> {
                 let fence = device.create_fence(&signaled, None)?;
                 frames.push((commands, fence));
             }
-            let push = [vk::PushConstantRange::default()
-                .stage_flags(vk::ShaderStageFlags::VERTEX)
-                .size(size_of::<Pushed>() as u32)];
-            let info = vk::PipelineLayoutCreateInfo::default()
-                .set_layouts(shaders.sets)
-                .push_constant_ranges(&push);
-            let layout = device.create_pipeline_layout(&info, None)?;
-            let mut stage = Self {
+            let (mut pass, mut framebuffer) = Default::default();
+            if !options.dynamic {
+                let images = [&color, &depth];
+                (pass, framebuffer) = make_pass(host, &options, images, multisampled.as_ref())?;
+            }
+            Ok(Self {
+                meshes: MeshPipeline::new(host, shaders, &options, pass, &[COLOR])?,
                 options,
-                pass: vk::RenderPass::null(),
-                framebuffer: vk::Framebuffer::null(),
+                pass,
+                framebuffer,
                 color,
                 multisampled,
                 depth,
-                layout,
-                pipeline: vk::Pipeline::null(),
                 pool,
                 frames,
                 next: 0,
                 read,
                 host,
-            };
-            if !options.dynamic {
-                stage.make_pass()?;
-            }
-            stage.make_pipeline(shaders)?;
-            Ok(stage)
+            })
         }
     }
 
@@ -142,19 +107,8 @@ impl<'a> Stage<'a> {
             device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
             let prepared = before(cmd, slot)?;
             self.begin_pass(cmd);
-            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::GRAPHICS, self.pipeline);
-            for mesh in meshes {
-                let pushed = Pushed {
-                    clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
-                    offset_scale: mesh.offset_scale.to_array(),
-                    color: mesh.color.extend(1.0).to_array(),
-                    towards_light: towards_light.normalize().extend(0.0).to_array(),
-                };
-                let bytes = bytemuck::bytes_of(&pushed);
-                device.cmd_push_constants(cmd, self.layout, vk::ShaderStageFlags::VERTEX, 0, bytes);
-                device.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
-                device.cmd_draw(cmd, mesh.count, 1, 0, 0);
-            }
+            self.meshes
+                .draw(cmd, clip_from_world, towards_light, meshes);
             within(cmd, &prepared)?;
             if self.options.dynamic {
                 device.cmd_end_rendering(cmd);
@@ -305,8 +259,6 @@ impl Drop for Stage<'_> {
                 device.destroy_fence(*fence, None);
             }
             device.destroy_command_pool(self.pool, None);
-            device.destroy_pipeline(self.pipeline, None);
-            device.destroy_pipeline_layout(self.layout, None);
             device.destroy_framebuffer(self.framebuffer, None);
             device.destroy_render_pass(self.pass, None);
         }

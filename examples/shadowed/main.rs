@@ -1,0 +1,250 @@
+//! A small forward renderer with the shadow map of a sun: meshes and revolved solids cast shadows
+//! on each other and on themselves. A second renderer draws the solids into the map.
+//!
+//! `cargo run --release --example shadowed -- out` writes `shadowed.png` into `out/`, and the same
+//! picture with a mesh in place of the revolved ball, without shadows, and without the ball's. The
+//! solids' function is `shade.glsl`; `revmap shading examples/shadowed/shade.glsl
+//! examples/shadowed/sun.glsl -o examples/shadowed/shade.shading` renews its bytes.
+#![allow(unsafe_code)] // raw handles enter here: each use says what it promises
+
+#[path = "../engine/host/mod.rs"]
+#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // other hosts take the rest
+mod host;
+#[path = "../engine/lend.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod lend;
+pub mod map;
+pub mod scene;
+#[path = "../engine/solids.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
+mod solids;
+
+use ash::vk;
+use glam::{DMat4, Vec3, Vec4};
+pub use host::differing;
+use host::set::UniformSet;
+use host::{Fallible, Host, MeshShaders, Options, Stage};
+use map::SunMap;
+use revmap::gpu::{
+    self, DepthOrder, HostShading, ObjectId, Output, PassFormats, PassKind, Renderer, View,
+    Viewport,
+};
+use revmap::scene::Object;
+use revmap::settings::{Planes, SearchSettings};
+use revmap::shading::Shading;
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// The bytes of `shade.glsl`, which belong to one version of the library.
+pub const SHADING: &[u8] = include_bytes!("shade.shading");
+/// Of the picture.
+pub const OPTIONS: Options = Options {
+    width: 640,
+    height: 400,
+    dynamic: true,
+    samples: 1,
+    reversed: true,
+};
+/// Frames in which the pawns move; the last is the picture.
+pub const COUNT: u32 = 4;
+
+/// What a picture draws.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Case {
+    /// Everything, and all of it into the map.
+    All,
+    /// The same with a mesh in place of the ball.
+    MeshBall,
+    /// Nothing into the map.
+    EmptyMap,
+    /// The ball is left out of the map: a fault, which a test has to see.
+    BallNotInMap,
+}
+
+#[allow(dead_code)] // a test calls `run`
+fn main() -> Fallible<()> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
+    let validate = std::env::var_os(gpu::VALIDATION_VARIABLE).is_some();
+    let [all, mesh, empty, fault] = run(&folder, validate)?;
+    let [mesh, empty, fault] = [mesh, empty, fault].map(|picture| differing(&all, &picture));
+    println!("pixels that differ: {mesh} with a mesh in place of the ball");
+    println!("{empty} without shadows, {fault} without the ball's");
+    Ok(())
+}
+
+/// Draws a picture of each case into a folder, and returns them: sRGB, and the visible part of the
+/// sun in alpha.
+pub fn run(folder: &str, validate: bool) -> Fallible<[Vec<u8>; 4]> {
+    std::fs::create_dir_all(folder)?;
+    let host = lend::open(validate)?;
+    // SAFETY: the host outlives the device.
+    let device = unsafe { lend::lend(&host) }?;
+    println!("{}", device.report().name);
+    let mut pictures = Vec::new();
+    for (name, case) in [
+        ("shadowed", Case::All),
+        ("shadowed-mesh", Case::MeshBall),
+        ("shadowed-empty", Case::EmptyMap),
+        ("shadowed-fault", Case::BallNotInMap),
+    ] {
+        let pixels = picture(&host, &device, case)?;
+        let mut opaque = pixels.clone();
+        opaque.chunks_mut(4).for_each(|pixel| pixel[3] = u8::MAX);
+        let path = format!("{folder}/{name}.png");
+        host::write_png(&path, &OPTIONS, &opaque)?;
+        println!("{path}");
+        pictures.push(pixels);
+    }
+    match host.take_messages().first() {
+        Some(message) => Err(message.clone().into()),
+        None => Ok(pictures.try_into().map_err(|_| "four pictures")?),
+    }
+}
+
+/// A renderer of solids for one of the passes, and the row that moves.
+struct Solids {
+    renderer: RefCell<Renderer>,
+    row: ObjectId,
+}
+
+impl Solids {
+    fn new(mut renderer: Renderer, objects: &[Object]) -> Fallible<Self> {
+        let ids: Vec<_> = (objects.iter().cloned())
+            .map(|object| renderer.add(object))
+            .collect::<revmap::Result<_>>()?;
+        let (renderer, row) = (RefCell::new(renderer), ids[0]);
+        Ok(Self { renderer, row })
+    }
+
+    /// Prepares a frame.
+    ///
+    /// # Safety
+    /// As for [`Renderer::prepare`].
+    unsafe fn prepare(
+        &self,
+        cmd: vk::CommandBuffer,
+        (frame, slot): (u32, usize),
+        view: &View,
+    ) -> revmap::Result<gpu::PreparedFrame> {
+        let mut renderer = self.renderer.borrow_mut();
+        renderer.set_instances(self.row, scene::row(frame))?;
+        // SAFETY: as the caller promised.
+        unsafe { renderer.prepare(cmd, slot, view) }
+    }
+}
+
+/// The formats of a pass by dynamic rendering.
+fn pass(color: &[vk::Format], depth: DepthOrder, planes: Planes) -> Output {
+    let begun = PassKind::Dynamic {
+        color: color.to_vec(),
+        depth: host::DEPTH,
+        stencil: vk::Format::UNDEFINED,
+    };
+    Output::Pass(PassFormats {
+        depth,
+        ..PassFormats::new(begun, planes)
+    })
+}
+
+/// Renderers of the map and of the picture.
+fn renderers(device: &gpu::Device, set: &UniformSet, case: Case) -> Fallible<[Solids; 2]> {
+    let (settings, mut objects) = (SearchSettings::default(), scene::objects(0)?);
+    if case == Case::MeshBall {
+        objects.pop();
+    }
+    let output = pass(&[host::COLOR], DepthOrder::Reversed, Planes::Color);
+    let shading = HostShading {
+        shading: Arc::new(Shading::from_bytes(SHADING)?),
+        set_layout: set.layout,
+    };
+    // SAFETY: the layout has the bindings that `sun.glsl` declares, and outlives the renderer.
+    let seen =
+        unsafe { Renderer::with_shading(device, output, &settings, host::FRAMES, &shading) }?;
+    let seen = Solids::new(seen, &objects)?;
+    let parallel = Planes::Depth { parallel: true };
+    let output = pass(&[], DepthOrder::Normal, parallel);
+    let casting = Renderer::new(device, output, &settings, host::FRAMES)?;
+    if case == Case::BallNotInMap {
+        objects.pop();
+    }
+    Ok([Solids::new(casting, &objects)?, seen])
+}
+
+/// The values of `HostSun` in `sun.glsl`.
+fn sun(map: &SunMap) -> Vec<[f32; 4]> {
+    let texel = Vec4::new(map::TEXEL as f32, 1.0 / map::SIZE as f32, 0.0, 0.0);
+    let mut all = vec![
+        scene::EYE.as_vec3().extend(1.0),
+        scene::towards_sun().as_vec3().extend(0.0),
+        Vec3::new(2.4, 2.2, 1.9).extend(1.0),
+        Vec3::new(0.24, 0.28, 0.36).extend(1.0),
+        texel,
+    ];
+    let map_from_world = map.map_from_world().as_mat4();
+    all.extend((0..4).map(|n| map_from_world.col(n)));
+    all.iter().map(Vec4::to_array).collect()
+}
+
+/// The matrices of the picture.
+pub fn view_and_projection() -> [DMat4; 2] {
+    host::view_and_projection(scene::EYE, scene::TARGET, &OPTIONS)
+}
+
+/// The last of some frames. Each draws the map, then meshes and solids that read it.
+fn picture(host: &Host, device: &gpu::Device, case: Case) -> Fallible<Vec<u8>> {
+    let map = SunMap::new(host, scene::towards_sun())?;
+    let set = UniformSet::with_images(host, &sun(&map), &[map.described()])?;
+    let [casting, seen] = renderers(device, &set, case)?;
+    let meshes = scene::meshes(host, case == Case::MeshBall)?;
+    let shaders = MeshShaders {
+        vertex: include_bytes!("../forward/mesh.vert.spv"),
+        fragment: include_bytes!("mesh.frag.spv"),
+        sets: &[set.layout],
+    };
+    let mut stage = Stage::with_shaders(host, OPTIONS, &shaders)?;
+    let [view, projection] = view_and_projection();
+    let viewport = Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: f64::from(OPTIONS.width),
+        height: f64::from(OPTIONS.height),
+    };
+    let from_eye = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
+    let from_sun = map.view()?;
+    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
+    for frame in 0..COUNT {
+        stage.frame(
+            projection * view,
+            Vec3::Z,
+            &meshes,
+            // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of
+            // its pass; the map's pass has the formats of its renderer; the layout of meshes has
+            // the set at 0.
+            |cmd, slot| unsafe {
+                let cast = casting.prepare(cmd, (frame, slot), &from_sun)?;
+                let prepared = seen.prepare(cmd, (frame, slot), &from_eye)?;
+                let casters = if case == Case::EmptyMap {
+                    &[]
+                } else {
+                    &*meshes
+                };
+                map.draw(cmd, casters, || match case {
+                    Case::EmptyMap => Ok(()),
+                    _ => Ok(casting.renderer.borrow().record(cmd, &cast)?),
+                })?;
+                set.bind(cmd, point, of_meshes, 0);
+                Ok(prepared)
+            },
+            // SAFETY: the frame was prepared, and the pass is of the output's formats; the
+            // renderer's layout has the set at 3.
+            |cmd, prepared| unsafe {
+                let renderer = seen.renderer.borrow();
+                set.bind(cmd, point, renderer.pipeline_layout()?, 3);
+                Ok(renderer.record(cmd, prepared)?)
+            },
+        )?;
+    }
+    let pixels = stage.read()?.0;
+    stage.wait()?;
+    Ok(pixels)
+}
