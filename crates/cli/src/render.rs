@@ -162,6 +162,7 @@ impl Render {
                 prepare_ms: times.iter().map(|t| t.prepare_ms).sum(),
                 gpu_ms: times.iter().map(|t| t.gpu_ms).sum(),
                 frame_ms: times.iter().map(|t| t.frame_ms).sum(),
+                submissions: times.iter().map(|t| t.submissions).sum(),
             },
             map_bytes: renderer.map_bytes(),
             notes: renderer.offscreen.notes().to_vec(),
@@ -187,9 +188,8 @@ impl Render {
             frame,
             device: None,
             times: Times {
-                prepare_ms: 0.0,
-                gpu_ms: None,
                 frame_ms: milliseconds(begin),
+                ..Times::default()
             },
             map_bytes: [0; 2],
             notes: Vec::new(),
