@@ -48,6 +48,7 @@ mod rounding;
 mod shadow_crowds;
 mod shadowed_host;
 mod shadows;
+mod small_device;
 mod smallest;
 mod spirv;
 mod submissions;

@@ -1,0 +1,128 @@
+//! A simulated device of 4 GiB: what does not fit is refused by kind, and everything else goes on.
+#![allow(unsafe_code)]
+
+use crate::calls::{Layer, planted_device, real};
+use crate::common::host::{lent, open};
+use crate::common::{next_frame, sized};
+use crate::embedding::three;
+use ash::vk;
+use glam::DVec3;
+use revmap::error::ErrorKind;
+use revmap::gpu::{Device, HostDevice, MemoryUse, Offscreen, OffscreenOptions};
+use revmap::scene::Placement;
+use revmap::settings::{DrawStage, Planes, Settings};
+use std::collections::HashMap;
+use std::ffi::c_void;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+
+/// Bytes of the device.
+const BYTES: u64 = 4 << 30;
+
+/// Bytes of each live allocation, by its handle.
+static LIVE: Mutex<Option<HashMap<vk::DeviceMemory, u64>>> = Mutex::new(None);
+/// Allocations that did not fit.
+static REFUSED: AtomicUsize = AtomicUsize::new(0);
+static REAL: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
+
+fn live() -> u64 {
+    let live = LIVE.lock().unwrap();
+    live.iter().flat_map(|all| all.values()).sum()
+}
+
+unsafe extern "system" fn allocate(
+    device: vk::Device,
+    info: *const vk::MemoryAllocateInfo<'_>,
+    callbacks: *const vk::AllocationCallbacks<'_>,
+    out: *mut vk::DeviceMemory,
+) -> vk::Result {
+    // SAFETY: the caller's pointers, and the driver's own function.
+    unsafe {
+        let bytes = (*info).allocation_size;
+        if live() + bytes > BYTES {
+            REFUSED.fetch_add(1, SeqCst);
+            return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
+        }
+        let code = real::<vk::PFN_vkAllocateMemory>(&REAL[0])(device, info, callbacks, out);
+        if code == vk::Result::SUCCESS {
+            let mut live = LIVE.lock().unwrap();
+            live.get_or_insert_default().insert(*out, bytes);
+        }
+        code
+    }
+}
+
+unsafe extern "system" fn free(
+    device: vk::Device,
+    memory: vk::DeviceMemory,
+    callbacks: *const vk::AllocationCallbacks<'_>,
+) {
+    LIVE.lock().unwrap().get_or_insert_default().remove(&memory);
+    // SAFETY: the driver's own function.
+    unsafe { real::<vk::PFN_vkFreeMemory>(&REAL[1])(device, memory, callbacks) };
+}
+
+#[test]
+fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
+    let _alone = Layer::take();
+    let host = open();
+    let raw = planted_device(&host.instance, &host.device, |name, real| {
+        let (n, planted) = match name.to_bytes() {
+            b"vkAllocateMemory" => (0, allocate as *const c_void),
+            b"vkFreeMemory" => (1, free as *const c_void),
+            _ => return None,
+        };
+        REAL[n].store(real, SeqCst);
+        Some(planted)
+    });
+    let planted = HostDevice {
+        device: &raw,
+        ..lent(&host)
+    };
+    // SAFETY: the host's own handles; the device is dropped before the host.
+    let device = unsafe { Device::borrow(&planted) }.unwrap();
+    let mut scene = three();
+    let place = |n: u32| Placement {
+        position: DVec3::new(f64::from(n / 300), f64::from(n % 300) - 150.0, 0.0) * -0.4,
+        scale: DVec3::splat(0.4),
+        ..Placement::default()
+    };
+    scene.objects[1].instances = (0..90_000).map(place).collect();
+    let settings = sized(160, 120);
+    let mut small = Offscreen::new(&device, &scene, &settings).unwrap();
+    let before = next_frame(&mut small);
+    let fits = live();
+    assert!(
+        fits > 0 && fits < 256 << 20,
+        "{fits} bytes for 90,000 copies"
+    );
+    assert_eq!(REFUSED.load(SeqCst), 0);
+
+    // Colours of one sample, depths and colours of four: 2.25 GiB. A second such picture has no room.
+    let large = Settings {
+        width: 8192,
+        height: 8192,
+        stage: DrawStage::Fragment,
+        planes: Planes::Color,
+        ..settings
+    };
+    let options = OffscreenOptions {
+        samples: 4,
+        ..OffscreenOptions::default()
+    };
+    let with = || Offscreen::with(&device, &scene, &large, options);
+    let first = with().unwrap();
+    let (used, full) = (device.memory_use(), live());
+    assert!(full > (9 << 30) / 4, "{full}");
+    let refused = with().err().unwrap();
+    assert_eq!(refused.kind, ErrorKind::OutOfDeviceMemory, "{refused}");
+    assert!(refused.to_string().contains("smaller"), "{refused}");
+    assert_eq!(REFUSED.load(SeqCst), 1);
+    assert_eq!((device.memory_use(), live()), (used, full));
+
+    assert!(next_frame(&mut small).first_difference(&before).is_none());
+    drop((small, first));
+    assert_eq!(device.memory_use(), MemoryUse::default());
+    drop(device);
+    assert_eq!(live(), 0);
+}
