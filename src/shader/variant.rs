@@ -76,8 +76,10 @@ pub struct HostLook {
     pub shading: bool,
     /// Its image has the colours.
     pub colors: bool,
-    /// Its image has the slopes.
-    pub slopes: bool,
+    /// Its image has the slopes or the heights.
+    pub relief: bool,
+    /// It has the heights.
+    pub heights: bool,
 }
 
 /// A module and the values of its specialisation constants. A variant and a [`Kind`] are the key of
@@ -169,10 +171,14 @@ impl Variant {
             Shadow::Soft => g::SHADOW_SOFT,
         };
         let color_map = u32::from(host.colors || texturing.color_map.is_some());
-        let bump = match texturing.bump_form {
-            _ if !host.slopes && texturing.displacement_map.is_none() => g::BUMP_OFF,
+        let form = match texturing.bump_form {
             BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
             BumpForm::Papers => g::BUMP_PAPERS,
+        };
+        let bump = match (host.relief, host.heights) {
+            (false, _) if texturing.displacement_map.is_none() => g::BUMP_OFF,
+            (_, true) => form | g::BUMP_HEIGHTS,
+            _ => form,
         };
         let textured = color_map != 0 || bump != g::BUMP_OFF;
         let features = if cells != 0 || shadow != g::SHADOW_OFF {

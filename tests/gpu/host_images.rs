@@ -11,7 +11,7 @@ use glam::DMat4;
 use revmap::error::ErrorKind;
 use revmap::gpu::{Device, HostImage, ObjectId, Renderer, View};
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
-use revmap::scene::{Object, Scene};
+use revmap::scene::{BumpForm, Object, Scene};
 use std::sync::Arc;
 
 const SIZE: u32 = 8;
@@ -170,6 +170,51 @@ fn images_with_the_texels_of_maps_give_their_pictures() {
     // Mips are read near silhouettes, where a texel is smaller than a pixel.
     assert!(texture < none / 50, "{texture}");
     assert!(back == wanted);
+}
+
+/// An image of heights gives the picture of the map of their central differences, in both forms of
+/// bumps. Read as slopes it gives another one.
+#[test]
+fn an_image_of_heights_gives_the_picture_of_its_slopes() {
+    let host = open();
+    let device = borrow(&host);
+    // Level at the upper and lower edge, where maps wrap round and the sampler does not.
+    let height = |n: u32| match n / SIZE {
+        0 | 1 | 6 | 7 => 0.0,
+        _ => (n * 29 % 64) as f32 / 64.0,
+    };
+    let heights: Vec<f32> = (0..SIZE * SIZE).map(height).collect();
+    let slopes = DisplacementMap::from_heights(SIZE, SIZE, &heights, SlopeFilter::Central).unwrap();
+    let texels: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&heights);
+    let image = Texture::new(&host, vk::Format::R32_SFLOAT, &texels);
+    for form in [BumpForm::SurfaceGradient, BumpForm::Papers] {
+        let mut plain = close().objects[0].clone();
+        plain.texturing.bump = 0.02;
+        plain.texturing.bump_form = form;
+        let mut mapped = plain.clone();
+        mapped.texturing.displacement_map = Some(Arc::new(slopes.clone()));
+        let wanted = drawn(&host, &device, &mapped, |_, _| {});
+        let without = drawn(&host, &device, &plain, |_, _| {});
+        let found = drawn(&host, &device, &plain, |renderer, id| {
+            renderer.set_height_image(id, Some(image.image())).unwrap();
+        });
+        let misread = drawn(&host, &device, &plain, |renderer, id| {
+            renderer.set_height_image(id, Some(image.image())).unwrap();
+            renderer.set_slope_image(id, Some(image.image())).unwrap();
+        });
+        let back = drawn(&host, &device, &mapped, |renderer, id| {
+            renderer.set_height_image(id, Some(image.image())).unwrap();
+            renderer.prewarm().unwrap();
+            renderer.set_height_image(id, None).unwrap();
+        });
+        let pictures = [&found, &misread, &without];
+        let [of_heights, of_slopes, none] = pictures.map(|p| differ(&wanted, p));
+        println!("{form:?}: {of_heights} bytes differ, {of_slopes} as slopes, {none} without");
+        assert!(none > 2000 && of_slopes > 2000, "{none}, {of_slopes}");
+        // Mips are read near silhouettes, where a texel is smaller than a pixel.
+        assert!(of_heights < none / 50, "{of_heights} of {none}");
+        assert!(back == wanted);
+    }
 }
 
 /// An image that is replaced between frames in flight is held until the slots are prepared again, and

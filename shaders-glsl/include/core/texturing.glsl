@@ -104,13 +104,29 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 }
 
 #if TEXTURED
+// Returns the slopes of the displacement map: changes of height over its whole width and, upwards, its height.
+vec2 slopes(Coordinates c, vec3 right, vec3 down)
+{
+    if ((BUMP & BUMP_HEIGHTS) == 0u) {
+        return sample_repeated(displacement_map, c, right, down).rg;
+    }
+    // Differences of the neighbouring texels, or across the pixel where that is wider.
+    vec2 at = map_position(c);
+    vec2 change_x = map_change(c, right), change_y = map_change(c, down);
+    vec2 half_way = max(1.0 / vec2(textureSize(displacement_map, 0)), 0.5 * max(abs(change_x), abs(change_y)));
+    vec4 ways = vec4(half_way.x, 0.0, 0.0, -half_way.y);
+    vec2 more = vec2(textureGrad(displacement_map, at + ways.xy, change_x, change_y).r, textureGrad(displacement_map, at + ways.zw, change_x, change_y).r);
+    vec2 less = vec2(textureGrad(displacement_map, at - ways.xy, change_x, change_y).r, textureGrad(displacement_map, at - ways.zw, change_x, change_y).r);
+    return 0.5 * (more - less) / half_way;
+}
+
 // Returns the normal tilted by the displacement map: the surface gradient of the height (Mikkelsen 2010), scaled by
 // `a`. BUMP_PAPERS is the papers' form, in which a turn around the axis has length 1 at any radius.
 vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
 {
-    vec2 slope = sample_repeated(displacement_map, c, right, down).rg * object.texturing.xy;
+    vec2 slope = slopes(c, right, down) * object.texturing.xy;
     vec3 g;
-    if (BUMP == BUMP_PAPERS) {
+    if ((BUMP & BUMP_PAPERS) != 0u) {
         float r = length(p.xy);
         vec3 around = r > 1e-7 ? vec3(-p.y, p.x, 0.0) / r : vec3(0.0, 1.0, 0.0);
         g = slope.x * around + slope.y * cross(n, around);

@@ -65,7 +65,7 @@ const uint SHADOW = 0u;
 #endif
 #if TEXTURED
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
-layout(constant_id = 3) const uint BUMP = 0u; // one of BUMP_*
+layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
 #endif
 #if TEXTURED || OUTPUT == OUTPUT_PLANES
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
@@ -104,6 +104,7 @@ const uint PROJECTION_ARC = 4u;
 const uint BUMP_OFF = 0u;
 const uint BUMP_SURFACE_GRADIENT = 1u;
 const uint BUMP_PAPERS = 2u;
+const uint BUMP_HEIGHTS = 4u; // in addition to one of both: the image holds heights, not slopes
 
 const uint SHADOW_OFF = 0u;
 const uint SHADOW_HARD = 1u;

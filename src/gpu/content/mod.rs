@@ -110,7 +110,8 @@ impl Content {
         let host = HostLook {
             shading: self.host_shades,
             colors: images.color.is_some(),
-            slopes: images.slopes.is_some(),
+            relief: images.relief.is_some(),
+            heights: images.relief.is_some() && images.heights,
         };
         let (settings, planes) = (&self.settings, self.output.planes());
         Variant::new(

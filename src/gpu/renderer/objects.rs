@@ -92,12 +92,25 @@ impl Renderer {
     /// [`displacement_map`](crate::scene::Texturing::displacement_map); `None` for that map again. The
     /// first two channels are the slopes of heights, as a
     /// [`DisplacementMap`](crate::maps::DisplacementMap) has them: `dH/du` and `dH/dv` per unit of
-    /// texture coordinate, `v` upwards. An image of heights is no image of slopes.
+    /// texture coordinate, `v` upwards. It replaces an image of heights.
     ///
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set_slope_image(&mut self, id: ObjectId, image: Option<HostImage>) -> Result<()> {
-        self.set_image(id, |images| images.slopes = image)
+        self.set_image(id, |images| {
+            (images.relief, images.heights) = (image, false)
+        })
+    }
+
+    /// Same as [`Renderer::set_slope_image`], for an image whose first channel is heights, 0 to 1. Each
+    /// pixel reads it four times: an image of slopes is faster. It replaces an image of slopes.
+    ///
+    /// # Errors
+    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
+    pub fn set_height_image(&mut self, id: ObjectId, image: Option<HostImage>) -> Result<()> {
+        self.set_image(id, |images| {
+            (images.relief, images.heights) = (image, true);
+        })
     }
 
     fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {

@@ -4,8 +4,9 @@ use crate::error::{Error, ErrorKind, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// An image of the host, for [`Renderer::set_color_image`](crate::gpu::Renderer::set_color_image) and
-/// [`Renderer::set_slope_image`](crate::gpu::Renderer::set_slope_image). Clones are the same image.
+/// An image of the host, for [`Renderer::set_color_image`](crate::gpu::Renderer::set_color_image),
+/// [`Renderer::set_slope_image`](crate::gpu::Renderer::set_slope_image) and
+/// [`Renderer::set_height_image`](crate::gpu::Renderer::set_height_image). Clones are the same image.
 /// Objects with the same image share draws.
 #[derive(Clone, Debug)]
 pub struct HostImage(Arc<Handles>);
@@ -63,5 +64,8 @@ impl HostImage {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ObjectImages {
     pub color: Option<HostImage>,
-    pub slopes: Option<HostImage>,
+    /// Slopes, or the heights that they are differences of.
+    pub relief: Option<HostImage>,
+    /// True if `relief` holds heights.
+    pub heights: bool,
 }

@@ -102,7 +102,7 @@ impl Textures {
         } = bound;
         let color_map = look.color_map.as_ref().filter(|_| images.color.is_none());
         let slope_map = look.displacement_map.as_ref();
-        let slope_map = slope_map.filter(|_| images.slopes.is_none());
+        let slope_map = slope_map.filter(|_| images.relief.is_none());
         let image = |of: &Option<HostImage>| of.as_ref().map(HostImage::address);
         let around =
             (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
@@ -111,7 +111,7 @@ impl Textures {
             [
                 address(shape.as_ref().map(|s| Arc::as_ptr(s) as usize)),
                 address(image(&images.color).or(color_map.map(|m| Arc::as_ptr(m) as usize))),
-                address(image(&images.slopes).or(slope_map.map(|m| Arc::as_ptr(m) as usize))),
+                address(image(&images.relief).or(slope_map.map(|m| Arc::as_ptr(m) as usize))),
                 address(arc.as_ref().map(|a| Arc::as_ptr(a) as usize)),
                 Arc::as_ptr(shadows) as usize,
             ],
@@ -202,7 +202,7 @@ impl Textures {
         let own = [
             made.shape.as_ref().map_or(blank, shape),
             covering(color, &made.images.color),
-            covering(slopes, &made.images.slopes),
+            covering(slopes, &made.images.relief),
             made.arc.as_ref().map_or(blank, |a| info(&a.texture, map)),
         ];
         let shadows: Vec<_> = made

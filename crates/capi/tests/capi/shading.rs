@@ -183,6 +183,7 @@ fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
         assert_eq!(held(), 0);
         ok! {
             revmap_renderer_set_slope_image(renderer, object, image);
+            revmap_renderer_set_height_image(renderer, object, image);
             revmap_host_image_destroy(image);
             revmap_renderer_destroy(renderer);
             revmap_device_destroy(device);
