@@ -8,6 +8,7 @@ import tomllib
 
 import numpy as np
 
+import embree
 import frames
 import kernels
 import rays
@@ -17,6 +18,8 @@ import views
 
 STAGES = ("fragment", "compute")
 DEFAULT = "exact"
+# Embree's ways to trace that are judged.
+KINDS = {"plain": 0, "robust": embree.ROBUST}
 # Ten solids, each with one class of rays beside the whole view.
 SMALL = {
     "lid": "ordinary",
@@ -89,6 +92,18 @@ def _kernels(name, polygons):
     return {kind.name: kernels.Several(kind, shapes) for kind in (one, two)}
 
 
+@functools.lru_cache(maxsize=8)
+def _embree(name, polygons, kind, sectors):
+    """Embree's mesh of a solid, remembered as the kernels are."""
+    return embree.Scene(eval(polygons, {"__builtins__": {}}), sectors, KINDS[kind])  # noqa: S307: as above
+
+
+def peer(solid, held, kind, sectors):
+    """Embree's answers to a picture's rays, on a mesh of so many sectors."""
+    scene = _embree(solid.name, repr(solid.kernel_polygons()), kind, sectors)
+    return verdict.Answers(*scene.shoot(held.origin, held.rays))
+
+
 def picture(solid, view, size, draw, base=verdict.BASE):
     """The picture of a view with its judges; `draw(stage, solver)` gives Z and N of a frame."""
     width, height = size
@@ -112,8 +127,8 @@ def picture(solid, view, size, draw, base=verdict.BASE):
 
 
 def hold(task):
-    """Judges one picture by all searches in both stages: a row for each voice."""
-    solid, view, program, size, solvers, base, kept = task
+    """Judges one picture by all searches in both stages, and Embree's: a row for each voice."""
+    solid, view, program, size, solvers, meshes, base, kept = task
     about = {"class": view.kind, "solid": solid.name, "family": solid.family, "view": view.name}
     with tempfile.TemporaryDirectory() as folder:
         scene = pathlib.Path(kept or folder, f"{solid.name}-{view.name}.toml")
@@ -133,6 +148,8 @@ def hold(task):
                     rows.append(row(about, held, voice, answers(stage, solver), None))
                 except frames.BadFrame as refusal:
                     rows.append({**about, "voice": voice, **empty(), "note": str(refusal)})
+        for kind, sectors in meshes:
+            rows.append(row(about, held, f"Embree, {kind}, {sectors}", peer(solid, held, kind, sectors), None))
     return rows
 
 

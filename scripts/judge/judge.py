@@ -1,4 +1,4 @@
-"""Holds pictures of revmap to Geant4, Open CASCADE and its own reference. See docs/robustness.md."""
+"""Holds pictures of revmap, and Embree's meshes, to Geant4, Open CASCADE and the reference. See docs/robustness.md."""
 
 import argparse
 import concurrent.futures
@@ -28,11 +28,24 @@ def arguments():
     parser.add_argument("--views", type=int, default=4, help="the most of a class and solid, full set")
     parser.add_argument("--size", default="161x121", help="pixels across and down")
     parser.add_argument("--solvers", default=court.DEFAULT, help="searches, with commas between")
+    parser.add_argument("--embree", type=meshes_of, default="robust:1024", help="meshes, as in plain:256,robust:1024")
     parser.add_argument("--base", type=float, default=verdict.BASE, help="of the tolerance, object units")
     parser.add_argument("--only", default="*", help="solids of this name alone; a pattern")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="pictures at a time")
     parser.add_argument("--out", help="a folder for raw.csv, table.md and the scenes")
     return parser.parse_args()
+
+
+def meshes_of(text):
+    """Kind and number of sectors of each mesh, as in `plain:256,robust:1024`."""
+    meshes = []
+    for mesh in filter(None, text.split(",")):
+        kind, _, sectors = mesh.partition(":")
+        if kind not in court.KINDS or not sectors.isdecimal() or int(sectors) < 3:
+            kinds = " or ".join(court.KINDS)
+            raise argparse.ArgumentTypeError(f"{mesh}: give {kinds}, and 3 sectors or more, as in robust:1024")
+        meshes.append((kind, int(sectors)))
+    return meshes
 
 
 def catalogued(row, known):
@@ -56,7 +69,7 @@ def failures(rows, known):
 def judged(chosen, given, size, scenes):
     """The rows of all pictures."""
     solvers = given.solvers.split(",")
-    tasks = [(*pair, given.program, size, solvers, given.base, scenes) for pair in chosen]
+    tasks = [(*pair, given.program, size, solvers, given.embree, given.base, scenes) for pair in chosen]
     rows, begun = [], time.monotonic()
     with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
         for done, found in enumerate(pool.map(court.hold, tasks), 1):
