@@ -38,12 +38,15 @@ impl Bands {
         // Half of the time, as other rows or frames may take longer.
         let in_time = |row_ms: f64| (0.5 * self.most_ms / row_ms.max(1e-9)) as u32;
         let rows = match self.last_frame {
-            _ if self.most_ms == f64::INFINITY => height,
+            _ if self.most_ms == f64::INFINITY => u32::MAX,
             Some(row_ms) => in_time(row_ms.max(self.this_frame)),
             None => in_time(self.this_frame).min(FIRST_PIXELS / width.max(1)),
         };
-        let whole_tiles = (rows / GROUP_PIXELS).max(1) * GROUP_PIXELS;
-        first..first.saturating_add(whole_tiles).min(height)
+        let end = match rows >= height - first {
+            true => height,
+            false => first + (rows / GROUP_PIXELS).max(1) * GROUP_PIXELS,
+        };
+        first..end.min(height)
     }
 
     /// Takes the time of a submission of so many rows. `ends`: it ends the frame.
@@ -88,13 +91,13 @@ mod tests {
         assert!(long <= 1, "{first:?}");
         // A frame that became fast is one submission after the next.
         frame(&mut bands, size, |_| 0.01);
-        assert_eq!(frame(&mut bands, size, |_| 0.01).len(), 1);
+        assert_eq!(frame(&mut bands, [4000, 3001], |_| 0.01).len(), 1);
     }
 
     #[test]
     fn frames_of_a_cpu_are_whole() {
         let mut bands = Bands::new(None, true);
-        assert_eq!(frame(&mut bands, [4000, 3000], |_| 7.0).len(), 1);
+        assert_eq!(frame(&mut bands, [4000, 3001], |_| 7.0).len(), 1);
         let mut bands = Bands::new(Some(100.0), true);
         assert!(frame(&mut bands, [4000, 3000], |_| 7.0).len() > 1);
     }
