@@ -10,7 +10,7 @@ use ash::vk;
 use glam::DVec3;
 use host::attachments::Attachments;
 use host::{Host, Options, borrow, dynamic, open_unchecked};
-use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
+use revmap::gpu::{Device, Output, PassFormats, Renderer, SlopeBias, View};
 use revmap::scene::Camera;
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
 use std::time::Instant;
@@ -46,23 +46,38 @@ struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    fn new(host: &'a Host, device: &Device, scene: &revmap::scene::Scene, planes: Planes) -> Self {
+    fn new(
+        host: &'a Host,
+        device: &Device,
+        scene: &revmap::scene::Scene,
+        planes: Planes,
+        slope_bias: SlopeBias,
+    ) -> Self {
         let list = match planes {
             Planes::List(list) => list.planes().to_vec(),
+            Planes::Depth { .. } => Vec::new(),
             _ => vec![Plane::Color],
         };
         let formats: Vec<_> = list.iter().map(|plane| format(*plane)).collect();
         let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
-        let output = Output::Pass(PassFormats::new(dynamic(&colors), planes));
+        let output = Output::Pass(PassFormats {
+            slope_bias,
+            ..PassFormats::new(dynamic(&colors), planes)
+        });
         let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
         renderer.set_lighting(&scene.lighting()).unwrap();
         for object in &scene.objects {
             renderer.add(object.clone()).unwrap();
         }
         let names: Vec<_> = list.iter().map(|plane| format!("{plane:?}")).collect();
-        let listed = matches!(planes, Planes::List(_));
+        let name = match planes {
+            Planes::List(_) => format!("list: {}", names.join(", ")),
+            Planes::Depth { .. } if !slope_bias.is_none() => "depth, bias for slopes".into(),
+            Planes::Depth { .. } => "depth".into(),
+            _ => names.join(", "),
+        };
         Self {
-            name: format!("{}{}", if listed { "list: " } else { "" }, names.join(", ")),
+            name,
             renderer,
             into: Attachments::new(host, OPTIONS, &formats).unwrap(),
             colors: colors.len(),
@@ -120,10 +135,14 @@ fn main() {
     let listed = lists
         .iter()
         .map(|list| Planes::List(PlaneList::new(list).unwrap()));
-    let planes = std::iter::once(Planes::Color).chain(listed);
+    let depth = Planes::Depth { parallel: false };
+    let planes = std::iter::once(Planes::Color).chain(listed).chain([depth]);
+    let none = SlopeBias::default();
     let mut cases: Vec<_> = planes
-        .map(|p| Case::new(&host, &device, &scene, p))
+        .map(|p| Case::new(&host, &device, &scene, p, none))
         .collect();
+    let bias = SlopeBias::new(1.5, 1e-3).unwrap();
+    cases.push(Case::new(&host, &device, &scene, depth, bias));
     for _ in 0..ROUNDS {
         cases.iter_mut().for_each(|case| case.frame(&host, &view));
     }

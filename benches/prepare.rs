@@ -1,5 +1,6 @@
 //! What preparing a frame costs the CPU: 1,000 objects that stand still, that move, whose offsets
-//! change, under one camera that stands or moves. `cargo bench --bench prepare`.
+//! change, under one camera that stands or moves; 10,000 and 100,000 copies of one object that all
+//! move, or of which some come and go. `cargo bench --bench prepare`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 use ash::vk;
@@ -142,6 +143,77 @@ fn all_move(bencher: Bencher) {
 #[divan::bench]
 fn the_camera_moves(bencher: Bencher) {
     frames(bencher, |crowd| crowd.camera.eye.x += 1e-3);
+}
+
+/// A field of copies, at a time.
+fn field(count: usize, frame: usize) -> Vec<Placement> {
+    let side = (count as f64).sqrt().ceil() as usize;
+    let of = |n: usize| {
+        let wave = 0.3 * (0.1 * frame as f64 + n as f64).sin();
+        Placement {
+            position: DVec3::new((n % side) as f64 + wave, (n / side) as f64, 0.1 * wave) * 0.3,
+            scale: DVec3::splat(0.5),
+            ..Placement::default()
+        }
+    };
+    (0..count).map(of).collect()
+}
+
+impl Crowd {
+    /// Copies of one object.
+    fn of_copies(copies: Vec<Placement>) -> Self {
+        let mut crowd = Self::new();
+        for id in crowd.ids.split_off(1) {
+            crowd.renderer.remove(id).unwrap();
+        }
+        crowd.place(copies);
+        for _ in 0..4 {
+            crowd.begin();
+            crowd.prepare();
+        }
+        crowd
+    }
+
+    fn place(&mut self, copies: Vec<Placement>) {
+        self.renderer.set_instances(self.ids[0], copies).unwrap();
+    }
+}
+
+/// Frames in which the copies are those that `of` gives, which is not timed.
+fn copies(bencher: Bencher, of: impl Fn(usize) -> Vec<Placement>) {
+    let crowd = std::cell::RefCell::new(Crowd::of_copies(of(0)));
+    bencher
+        .with_inputs(|| {
+            let mut crowd = crowd.borrow_mut();
+            crowd.begin();
+            of(crowd.frame)
+        })
+        .bench_local_values(|copies| {
+            let mut crowd = crowd.borrow_mut();
+            crowd.place(copies);
+            crowd.prepare();
+        });
+}
+
+#[divan::bench(args = [10_000, 100_000])]
+fn the_camera_moves_over_copies(bencher: Bencher, count: usize) {
+    let mut crowd = Crowd::of_copies(field(count, 0));
+    bencher.bench_local(|| {
+        crowd.begin();
+        crowd.camera.eye.x += 1e-3;
+        crowd.prepare();
+    });
+}
+
+#[divan::bench(args = [10_000, 100_000])]
+fn all_copies_move(bencher: Bencher, count: usize) {
+    copies(bencher, |frame| field(count, frame));
+}
+
+/// A thousand of the copies are gone in every other frame.
+#[divan::bench(args = [10_000, 100_000])]
+fn copies_come_and_go(bencher: Bencher, count: usize) {
+    copies(bencher, |frame| field(count - 1000 * (frame % 2), 0));
 }
 
 #[divan::bench(sample_count = 20)]
