@@ -69,7 +69,7 @@ mod tests {
         while row < size[1] {
             let rows = bands.next(row, size);
             assert!(rows.start == row && rows.end > row && rows.end <= size[1]);
-            assert!(rows.end % GROUP_PIXELS == 0 || rows.end == size[1]);
+            assert!(rows.end.is_multiple_of(GROUP_PIXELS) || rows.end == size[1]);
             let ms: f64 = rows.clone().map(&row_ms).sum();
             row = rows.end;
             bands.took(&rows, ms, row == size[1]);
