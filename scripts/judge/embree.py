@@ -83,7 +83,7 @@ class Scene:
     def _check(self):
         error = self._library.rtcDeviceGetError(self._device)
         if error:
-            raise RuntimeError(f"Embree says error {error}")
+            raise RuntimeError(f"Embree returned error {error}")
 
     def trace(self, packets):
         """The first hits of packets of rays, which are written into them."""
@@ -106,8 +106,9 @@ class Scene:
         return distance, normal
 
     def __del__(self):
-        self._library.rtcDeleteScene(self._scene)
-        self._library.rtcDeleteDevice(self._device)
+        if hasattr(self, "_scene"):
+            self._library.rtcDeleteScene(self._scene)
+            self._library.rtcDeleteDevice(self._device)
 
 
 def packed(origin, rays):

@@ -43,7 +43,7 @@ class Mesh:
 
     def bytes(self):
         """Of positions, vertex normals (12 bytes each) and indices."""
-        ends = sum(2 - on[0] - on[1] + max(on) for on in self._on_axis)
+        ends = 2 * len(self._on_axis)
         return self.positions.nbytes + self.triangles.nbytes + 12 * self.sectors * ends
 
     def normals(self, triangles, u, v):

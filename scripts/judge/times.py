@@ -135,7 +135,7 @@ def span(values, form):
 
 
 def main():
-    """Writes table.md and the times of Embree, times.csv."""
+    """Writes times.md and the times of Embree, times.csv."""
     parser = argparse.ArgumentParser(prog="times.py", description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True, help="the program revmap")
     parser.add_argument("--out", required=True, help="a folder for times.csv and times.md")

@@ -63,7 +63,8 @@ impl FramePlan {
         for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
             let patches = |&n: &u32| objects[n as usize].listed_patches();
             let patches = layer.objects.iter().map(patches).sum();
-            if !with.gains_by_lists(tiles.listed.len() as u64, patches) {
+            let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
+            if !with.gains_by_lists(tiles_of_all, patches) {
                 tiles.unlist();
             }
         }
@@ -71,7 +72,8 @@ impl FramePlan {
             let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
             dealt.layers.iter().map(counted).sum()
         };
-        if sum(bin_words) > with.room() || !with.pays_to_list(sum(|tiles| tiles)) {
+        let tiles_of_all = view.tiles_of_all_rows(sum(|tiles| tiles));
+        if sum(bin_words) > with.room() || !with.pays_to_list(tiles_of_all) {
             dealt.layers.iter_mut().for_each(LayerTiles::unlist);
         }
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {

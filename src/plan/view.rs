@@ -174,6 +174,19 @@ impl View {
         Self { rows, ..self }
     }
 
+    /// The number of tiles in all rows of the picture, from that in the rows that are drawn: an
+    /// estimate, so that bands of a frame choose as the whole frame does.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss
+    )]
+    pub(crate) fn tiles_of_all_rows(&self, tiles: u64) -> u64 {
+        let share = |[first, end]: [u32; 2]| self.viewport.height.abs() / f64::from(end - first);
+        self.rows
+            .map_or(tiles, |rows| (tiles as f64 * share(rows)) as u64)
+    }
+
     /// The rows of [`LastView`] for this view.
     pub(crate) fn pixel_rows(&self) -> [DVec4; 3] {
         let rows = self.clip_from_world.transpose();

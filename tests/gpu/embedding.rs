@@ -7,7 +7,7 @@ use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open,
 use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use revmap::gpu::{Device, Offscreen, Renderer, View};
-use revmap::scene::{Camera, CameraFrame, Lighting, Object, Scene};
+use revmap::scene::{Camera, CameraFrame, Lighting, Object, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
 
@@ -40,6 +40,18 @@ pub fn three() -> Scene {
     scene
 }
 
+/// The same scene with a hundred copies of the ball.
+pub fn hundred() -> Scene {
+    let mut scene = three();
+    let place = |n: u32| Placement {
+        position: DVec3::new(f64::from(n / 10) * -0.4, f64::from(n % 10) * 0.3 - 1.5, 0.0),
+        scale: DVec3::splat(0.4),
+        ..Placement::default()
+    };
+    scene.objects[1].instances = (0..100).map(place).collect();
+    scene
+}
+
 /// The host's picture of this scene only, from the off-screen camera.
 pub fn drawn(
     host: &Host,
@@ -48,8 +60,20 @@ pub fn drawn(
     scene: &Scene,
     view: &View,
 ) -> (Vec<u8>, Vec<f32>) {
+    drawn_by(host, device, options, scene, view, &SearchSettings::exact())
+}
+
+/// The same by other settings.
+pub fn drawn_by(
+    host: &Host,
+    device: &Device,
+    options: Options,
+    scene: &Scene,
+    view: &View,
+    settings: &SearchSettings,
+) -> (Vec<u8>, Vec<f32>) {
     let mut stage = Stage::new(host, options).unwrap();
-    let mut renderer = renderer(device, &stage);
+    let mut renderer = host::renderer(device, &stage, settings, host::FRAMES);
     renderer.set_lighting(&scene.lighting()).unwrap();
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();

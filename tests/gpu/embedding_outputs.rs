@@ -5,7 +5,7 @@
 use crate::common::host::memory::{HostBuffer, HostImage};
 use crate::common::host::{self, Host, borrow, dynamic, once, open, viewport};
 use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
-use crate::embedding::{BACKGROUND, options, three, upright};
+use crate::embedding::{BACKGROUND, drawn_by, hundred, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::error::ErrorKind;
@@ -13,10 +13,11 @@ use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer,
     SlopeBias, View,
 };
-use revmap::scene::{Clip, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Scene, Shadow};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
 use revmap_searches::CIRCLE;
+use std::collections::HashSet;
 
 pub fn barrier(host: &Host, cmd: vk::CommandBuffer) {
     let access = vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::MEMORY_READ;
@@ -47,6 +48,14 @@ fn depth_only(parallel: bool) -> PassFormats {
     depth_pass(Planes::Depth { parallel })
 }
 
+/// The exact search, by cells of at least so many pixels.
+fn by_proxies_of(proxy_min_pixels: u32) -> SearchSettings {
+    SearchSettings {
+        proxy_min_pixels,
+        ..SearchSettings::exact()
+    }
+}
+
 /// Depths of a scene, drawn into a host's shadow map.
 fn depths(
     host: &Host,
@@ -56,6 +65,18 @@ fn depths(
     settings: &SearchSettings,
     pass: &PassFormats,
 ) -> Vec<f32> {
+    depths_and_paths(host, device, scene, view, settings, pass).0
+}
+
+/// The same, and the draw paths of the objects.
+fn depths_and_paths(
+    host: &Host,
+    device: &Device,
+    scene: &Scene,
+    view: &View,
+    settings: &SearchSettings,
+    pass: &PassFormats,
+) -> (Vec<f32>, Vec<DrawPath>) {
     let (width, height) = (options().width, options().height);
     let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
     let bytes = 4 * (width * height) as usize;
@@ -66,6 +87,7 @@ fn depths(
     for object in &scene.objects {
         renderer.add(object.clone()).unwrap();
     }
+    let far = f32::from(pass.depth == DepthOrder::Normal);
     let raw = &host.device;
     let area = vk::Rect2D::default().extent(options().extent());
     let to_layout = |cmd, from, to| {
@@ -81,8 +103,6 @@ fn depths(
         // output's formats.
         unsafe {
             let frame = renderer.prepare(cmd, 0, view).unwrap();
-            let by_hulls = renderer.draw_paths().iter().all(|p| *p == DrawPath::Cells);
-            assert!(by_hulls || settings.proxy_min_pixels > 0, "not by hulls");
             to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
             let depth = vk::RenderingAttachmentInfo::default()
                 .image_view(image.view)
@@ -91,7 +111,7 @@ fn depths(
                 .store_op(vk::AttachmentStoreOp::STORE)
                 .clear_value(vk::ClearValue {
                     depth_stencil: vk::ClearDepthStencilValue {
-                        depth: 1.0,
+                        depth: far,
                         stencil: 0,
                     },
                 });
@@ -117,28 +137,18 @@ fn depths(
             barrier(host, cmd);
         }
     });
-    bytemuck::pod_collect_to_vec(&read.bytes())
+    let paths = renderer.draw_paths();
+    (bytemuck::pod_collect_to_vec(&read.bytes()), paths)
 }
 
-/// A light's view: a depth-only pass equals the depth of a colour picture bit for bit. Its depth
-/// along parallel rays is the analytic depth.
+/// The depth of a light's view along parallel rays is the analytic depth.
 #[test]
-fn depth_alone_is_a_pictures_depth() {
+fn depth_along_parallel_rays_is_analytic() {
     let host = open();
     let device = borrow(&host);
-    let scene = three();
-    let (eye, target) = (scene.camera.eye, scene.camera.target);
-    let [view, projection] = host::view_and_projection(eye, target, &options());
-    let light = seen(view, projection);
     let exact = SearchSettings::exact();
-    let alone = depths(&host, &device, &scene, &light, &exact, &depth_only(false));
-    let beside = crate::embedding::drawn(&host, &device, options(), &scene, &light).1;
-    let hits = alone.iter().filter(|d| **d < 1.0).count();
-    assert!(hits > 3000, "{hits}");
-    assert!(alone == beside, "depths differ");
-
     let wide = 0.3;
-    let one = scene_of(shapes::column_of(wide), eye);
+    let one = scene_of(shapes::column_of(wide), three().camera.eye);
     let from = DVec3::new(2.0, 1.0, 2.5);
     let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let projection = parallel();
@@ -175,14 +185,7 @@ fn depth_alone_has_equal_bits_by_every_path() {
     let mut shadows = three();
     shadows.shadow = Shadow::Hard;
     scenes.push(("boxes under shadows", shadows));
-    let mut crowd = three();
-    let place = |n: u32| Placement {
-        position: DVec3::new(f64::from(n / 10) * -0.4, f64::from(n % 10) * 0.3 - 1.5, 0.0),
-        scale: DVec3::splat(0.4),
-        ..Placement::default()
-    };
-    crowd.objects[1].instances = (0..100).map(place).collect();
-    scenes.push(("tiles of copies", crowd));
+    scenes.push(("tiles of copies", hundred()));
     let mut replicas = three();
     replicas.objects[0].repeat = [2, 3, 1];
     scenes.push(("replicas", replicas));
@@ -191,18 +194,28 @@ fn depth_alone_has_equal_bits_by_every_path() {
     cut.objects[0].axis = [0.45, 0.5];
     cut.objects[0].offset.extend = 0.3;
     scenes.push(("cut by the box", cut));
+    let mut paths = HashSet::new();
     for (name, scene) in &scenes {
         let (eye, target) = (scene.camera.eye, scene.camera.target);
         let [view, projection] = host::view_and_projection(eye, target, &options());
         let light = seen(view, projection);
-        let exact = SearchSettings::exact();
-        let alone = depths(&host, &device, scene, &light, &exact, &depth_only(false));
-        let beside = crate::embedding::drawn(&host, &device, options(), scene, &light).1;
-        let pairs = || alone.iter().zip(&beside);
-        let hits = pairs().filter(|(d, _)| **d < 1.0).count();
-        let apart = pairs().filter(|(a, b)| a.to_bits() != b.to_bits()).count();
-        assert!(hits > 3000 && apart == 0, "{name}: {apart} of {hits}");
+        for least in [0, u32::MAX] {
+            let settings = by_proxies_of(least);
+            let (alone, own) =
+                depths_and_paths(&host, &device, scene, &light, &settings, &depth_only(false));
+            let (_, beside) = drawn_by(&host, &device, options(), scene, &light, &settings);
+            let pairs = || alone.iter().zip(&beside);
+            let hits = pairs().filter(|(d, _)| **d < 1.0).count();
+            let apart = pairs().filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            println!("{name}, {least}: {apart} of {hits} by {own:?}");
+            assert!(hits > 3000 && apart == 0, "{name}: {apart} of {hits}");
+            paths.extend(own);
+        }
     }
+    assert!(
+        paths.contains(&DrawPath::Cells) && paths.contains(&DrawPath::Box),
+        "{paths:?}"
+    );
 }
 
 /// A bias shifts the depth of every hit, and nothing else.
@@ -250,8 +263,16 @@ fn compare_slopes(plain: &[f32], biased: &[f32], factor: f32, limit: f32) -> [us
     [compared, wrong, limited]
 }
 
-/// A bias for slopes moves depths by the slope of the tangent plane, by cells and by boxes, along
-/// rays from an eye and parallel ones.
+/// Turns depths round: `z` becomes `w - z`.
+const REVERSE: DMat4 = DMat4::from_cols(
+    DVec4::X,
+    DVec4::Y,
+    DVec4::new(0.0, 0.0, -1.0, 0.0),
+    DVec4::new(0.0, 0.0, 1.0, 1.0),
+);
+
+/// A bias for slopes moves depths away from the eye by the slope of the tangent plane: by cells and
+/// by boxes, along rays from an eye and parallel ones, in both orders of depth.
 #[test]
 fn a_bias_follows_slopes() {
     let host = open();
@@ -262,22 +283,34 @@ fn a_bias_follows_slopes() {
     let factor = 1.5;
     for (is_parallel, projection, limit) in [(false, perspective, 2e-4), (true, parallel(), 4e-3)] {
         for least in [0, u32::MAX] {
-            let light = seen(view, projection);
-            let settings = SearchSettings {
-                proxy_min_pixels: least,
-                ..SearchSettings::exact()
+            let order = match least {
+                0 => DepthOrder::Reversed,
+                _ => DepthOrder::Normal,
             };
-            let pass = depth_only(is_parallel);
+            let seen_by = match order {
+                DepthOrder::Normal => projection,
+                DepthOrder::Reversed => REVERSE * projection,
+            };
+            let light = View::from_matrices(view, seen_by, viewport(&options()), order).unwrap();
+            let settings = by_proxies_of(least);
+            let pass = PassFormats {
+                depth: order,
+                ..depth_only(is_parallel)
+            };
             let sloped = PassFormats {
                 slope_bias: SlopeBias::new(factor, limit).unwrap(),
                 ..pass.clone()
             };
             let [plain, biased] =
                 [pass, sloped].map(|pass| depths(&host, &device, &scene, &light, &settings, &pass));
+            let [plain, biased] = [plain, biased].map(|depths| match order {
+                DepthOrder::Normal => depths,
+                DepthOrder::Reversed => depths.iter().map(|depth| 1.0 - depth).collect(),
+            });
             let hits = |depths: &[f32]| depths.iter().filter(|d| **d < 1.0).count();
             assert_eq!(hits(&plain), hits(&biased));
             let [compared, wrong, limited] = compare_slopes(&plain, &biased, factor, limit);
-            println!("{is_parallel} {least}: {wrong} of {compared}, {limited} limited");
+            println!("parallel {is_parallel}, {order:?}: {wrong} of {compared}, {limited} limited");
             // Measured on lavapipe 22: 2 of 3,666 pixels, beside edges between patches.
             let few = wrong <= compared / 500 && limited > 10;
             assert!(
@@ -293,7 +326,12 @@ fn a_bias_follows_slopes() {
 /// A bias that is no number, or of planes that have none, is refused.
 #[test]
 fn wrong_slope_biases_are_refused() {
-    for (factor, limit) in [(-1.0, 1.0), (f32::NAN, 1.0), (1.0, f32::INFINITY)] {
+    for (factor, limit) in [
+        (-1.0, 1.0),
+        (f32::NAN, 1.0),
+        (1.0, f32::INFINITY),
+        (1.0, 0.0),
+    ] {
         let refused = SlopeBias::new(factor, limit).unwrap_err();
         assert_eq!(refused.kind, ErrorKind::Usage, "{refused}");
     }
@@ -324,10 +362,6 @@ fn parallel() -> DMat4 {
 fn depth_alone_of_what_the_box_cuts() {
     let host = open();
     let device = borrow(&host);
-    let by = |proxy_min_pixels| SearchSettings {
-        proxy_min_pixels,
-        ..SearchSettings::exact()
-    };
     for (name, profile) in shapes::all() {
         for (extend, from) in [
             (0.12, DVec3::new(2.0, 1.0, 2.5)),
@@ -344,8 +378,11 @@ fn depth_alone_of_what_the_box_cuts() {
             for (is_parallel, projection) in [(false, projection), (true, parallel())] {
                 let light = seen(view, projection);
                 let pass = depth_only(is_parallel);
-                let of = |least| depths(&host, &device, &scene, &light, &by(least), &pass);
-                let (hulls, boxes) = (of(0), of(u32::MAX));
+                let of = |least| {
+                    depths_and_paths(&host, &device, &scene, &light, &by_proxies_of(least), &pass)
+                };
+                let ((hulls, paths), (boxes, _)) = (of(0), of(u32::MAX));
+                assert_eq!(paths, [DrawPath::Cells], "{name}");
                 let hits = boxes.iter().filter(|d| **d < 1.0).count();
                 let pairs = || hulls.iter().zip(&boxes);
                 let alone = pairs().filter(|(a, b)| (**a < 1.0) != (**b < 1.0)).count();

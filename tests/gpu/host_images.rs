@@ -211,8 +211,8 @@ fn an_image_of_heights_gives_the_picture_of_its_slopes() {
         let [of_heights, of_slopes, none] = pictures.map(|p| differ(&wanted, p));
         println!("{form:?}: {of_heights} bytes differ, {of_slopes} as slopes, {none} without");
         assert!(none > 2000 && of_slopes > 2000, "{none}, {of_slopes}");
-        // Mips are read near silhouettes, where a texel is smaller than a pixel.
-        assert!(of_heights < none / 50, "{of_heights} of {none}");
+        // Measured on lavapipe 22: 1. The map's slopes are halves, and it has mips near silhouettes.
+        assert!(of_heights <= 20, "{of_heights} of {none}");
         assert!(back == wanted);
     }
 }

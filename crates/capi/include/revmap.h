@@ -1261,7 +1261,7 @@ typedef struct RevmapPass {
      */
     float slope_bias;
     /**
-     * The most that slope_bias moves a depth, units of the depth buffer.
+     * The most that slope_bias moves a depth, units of the depth buffer; above 0 with a slope_bias.
      */
     float slope_bias_limit;
 } RevmapPass;

@@ -87,7 +87,7 @@ pub struct RevmapPass {
     /// For REVMAP_PLANES_DEPTH and REVMAP_PLANES_DEPTH_PARALLEL: depths move away from the eye by
     /// this times the slope, the larger change of depth from a pixel to the next. 0 for no bias.
     pub slope_bias: f32,
-    /// The most that slope_bias moves a depth, units of the depth buffer.
+    /// The most that slope_bias moves a depth, units of the depth buffer; above 0 with a slope_bias.
     pub slope_bias_limit: f32,
 }
 

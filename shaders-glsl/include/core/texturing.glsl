@@ -104,6 +104,11 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
 }
 
 #if TEXTURED
+float height_at(vec2 position, vec2 change_x, vec2 change_y)
+{
+    return textureGrad(displacement_map, position, change_x, change_y).r;
+}
+
 // Returns the slopes of the displacement map: changes of height over its whole width and, upwards, its height.
 vec2 slopes(Coordinates c, vec3 right, vec3 down)
 {
@@ -114,10 +119,10 @@ vec2 slopes(Coordinates c, vec3 right, vec3 down)
     vec2 at = map_position(c);
     vec2 change_x = map_change(c, right), change_y = map_change(c, down);
     vec2 half_way = max(1.0 / vec2(textureSize(displacement_map, 0)), 0.5 * max(abs(change_x), abs(change_y)));
-    vec4 ways = vec4(half_way.x, 0.0, 0.0, -half_way.y);
-    vec2 more = vec2(textureGrad(displacement_map, at + ways.xy, change_x, change_y).r, textureGrad(displacement_map, at + ways.zw, change_x, change_y).r);
-    vec2 less = vec2(textureGrad(displacement_map, at - ways.xy, change_x, change_y).r, textureGrad(displacement_map, at - ways.zw, change_x, change_y).r);
-    return 0.5 * (more - less) / half_way;
+    vec2 right_way = vec2(half_way.x, 0.0), up = vec2(0.0, -half_way.y);
+    float from_left = height_at(at + right_way, change_x, change_y) - height_at(at - right_way, change_x, change_y);
+    float from_below = height_at(at + up, change_x, change_y) - height_at(at - up, change_x, change_y);
+    return 0.5 * vec2(from_left, from_below) / half_way;
 }
 
 // Returns the normal tilted by the displacement map: the surface gradient of the height (Mikkelsen 2010), scaled by

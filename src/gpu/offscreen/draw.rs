@@ -22,21 +22,23 @@ pub struct Times {
     pub submissions: u32,
 }
 
-/// Other content that is drawn in an off-screen frame's pass, into the same depth buffer.
+/// Other content that is drawn in an off-screen frame's passes, into the same depth buffer. A frame
+/// has one pass, or one for each of its submissions ([`Times::submissions`]).
 pub trait Guest {
-    /// Records work that the draws need beforehand, such as copies into buffers. The times leave it
-    /// out.
+    /// Records work that the draws need beforehand, such as copies into buffers: once for each frame.
+    /// The times leave it out.
     ///
     /// # Safety
     /// `cmd` is recording, outside of a pass. All recorded commands must stay valid until the frame
     /// was drawn.
     unsafe fn prepare(&self, _cmd: vk::CommandBuffer) {}
 
-    /// Records the guest's draws.
+    /// Records the guest's draws: once for each submission of a frame, which draws the rows of the
+    /// scissor.
     ///
     /// # Safety
-    /// `cmd` is recording, within the pass of [`Offscreen::render_pass`], with viewport and scissor
-    /// set. All recorded commands must stay valid until the frame was drawn.
+    /// `cmd` is recording, within a pass that is compatible with [`Offscreen::render_pass`], with
+    /// viewport and scissor set. The scissor is the render area and must stay. All recorded commands must stay valid until the frame was drawn.
     unsafe fn record(&self, cmd: vk::CommandBuffer);
 }
 
@@ -82,7 +84,7 @@ impl Offscreen {
         self.draw_with(None)
     }
 
-    /// Draws one frame with a guest in the same pass, after all objects, and waits for it. Compute
+    /// Draws one frame with a guest in the same passes, after all objects, and waits for it. Compute
     /// has no pass and does not call the guest.
     ///
     /// # Errors
@@ -95,7 +97,9 @@ impl Offscreen {
             let rows = self.bands.next(row, size);
             row = rows.end;
             let times = self.draw_rows(guest, &rows)?;
-            self.bands.took(&rows, times.frame_ms, row == size[1]);
+            // The clock of the device leaves out the work of others.
+            let ms = times.gpu_ms.unwrap_or(times.frame_ms);
+            self.bands.record(&rows, ms, row == size[1]);
             all.prepare_ms += times.prepare_ms;
             all.frame_ms += times.frame_ms;
             all.gpu_ms = match (rows.start, all.gpu_ms) {
@@ -103,6 +107,10 @@ impl Offscreen {
                 (_, sum) => sum.zip(times.gpu_ms).map(|(sum, ms)| sum + ms),
             };
             all.submissions += 1;
+        }
+        if all.submissions > 1 {
+            // Draw paths and costs are those of the whole frame.
+            self.renderer.plan(&self.view)?;
         }
         Ok(all)
     }

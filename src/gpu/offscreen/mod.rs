@@ -46,6 +46,8 @@ pub struct Offscreen {
     /// failed in between must not be drawn.
     stale: bool,
     bands: Bands,
+    /// Copies of all objects of the last update.
+    copies: usize,
     /// The pass of a frame's first rows, and the one of the rows after them; null in compute.
     passes: [vk::RenderPass; 2],
     device: Arc<Shared>,
@@ -62,8 +64,10 @@ pub struct OffscreenOptions {
     pub samples: u32,
     /// Most milliseconds of a submission, because systems reset a device whose submission takes
     /// seconds (2 s on Windows). A frame that takes longer is drawn in several bands of rows, by the
-    /// times of the rows before and of the frame before. A first frame of up to 2^20 pixels is one
-    /// submission. Default: none, which is 500 on GPUs and no limit on CPUs.
+    /// times of the rows before and of the frame before. Bands have the bits of a whole frame, in
+    /// compute but for roundings. The limit is an aim: the first frame after other
+    /// objects, copies or lights begins with 2^20 rays, whatever they take. Default: none, which is
+    /// 500 on GPUs and no limit on CPUs.
     pub submission_ms: Option<f64>,
 }
 
@@ -170,7 +174,8 @@ impl Offscreen {
             guests_only,
             solids: None,
             stale: true,
-            bands: Bands::new(submission_ms, shared.chosen.report.kind == "cpu"),
+            bands: Bands::new(submission_ms, shared.chosen.report.kind == "cpu", samples),
+            copies: 0,
             passes,
             device: shared,
         };
@@ -206,6 +211,10 @@ impl Offscreen {
     fn apply(&mut self, scene: &Scene, view: &View) -> Result<()> {
         let lighting = scene.lighting();
         let before = self.renderer.lighting().clone();
+        let count = scene.objects.iter().map(|o| o.instances.len().max(1)).sum();
+        if lighting != before || count != std::mem::replace(&mut self.copies, count) {
+            self.bands.forget();
+        }
         let objects: &[Object] = if self.guests_only {
             &[]
         } else {

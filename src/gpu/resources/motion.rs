@@ -10,7 +10,7 @@ use glam::{DVec3, DVec4};
 /// and the distance along the normal by which the surface was farther out.
 ///
 /// The map is exact. A point moves along its normal if the extension changes, which is exact where
-/// the surface keeps its distance to the profile; a change of bevel or chamfer moves no point.
+/// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn last_block(entry: &Entry, copy: usize, view: &View) -> InstanceBlock {
     let (object, growth) = (&entry.object, entry.growth());

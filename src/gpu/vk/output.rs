@@ -77,16 +77,21 @@ pub struct SlopeBias {
 
 impl SlopeBias {
     /// A bias of `factor` times the slope, and at most `limit` units of the depth buffer. At
-    /// silhouettes slopes have no limit. `factor`: in the least, half of the filter's width in texels.
+    /// silhouettes slopes have no limit. `factor`: at least half of the filter's width in texels.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] if a number is negative or not finite.
+    /// [`ErrorKind::Usage`] if a number is negative or not finite, and for a limit of 0 with a factor.
     pub fn new(factor: f32, limit: f32) -> Result<Self> {
+        let wrong = |key, message| Err(Error::new(ErrorKind::Usage, message).at_key(key));
         for (key, value) in [("factor", factor), ("limit", limit)] {
             if !(value.is_finite() && value >= 0.0) {
                 let message = format!("{value}; give a finite number that is not negative");
-                return Err(Error::new(ErrorKind::Usage, message).at_key(key));
+                return wrong(key, message);
             }
+        }
+        if factor > 0.0 && limit == 0.0 {
+            let message = "0 leaves no bias; give the most that a depth may move".into();
+            return wrong("limit", message);
         }
         // The sum turns -0 into 0, so that equal biases have equal bits.
         let [factor, limit] = [factor, limit].map(|value| (value + 0.0).to_bits());
@@ -96,7 +101,7 @@ impl SlopeBias {
     /// True if no depth is moved.
     #[must_use]
     pub fn is_none(self) -> bool {
-        self.factor == 0 || self.limit == 0
+        self.factor == 0
     }
 }
 
