@@ -51,6 +51,10 @@ pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
     block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
 }
 
+/// Least rows of pixels of half a disc that is added. All discs (0) take a third more of the CPU's time
+/// for a new view of 10,000 copies, and whole frames of them 1.05 to 1.07 of the time.
+const LEAST_DISC: f64 = 4.0;
+
 impl Cover {
     /// An empty cover of these columns of squares and `down` rows.
     pub fn new(columns: Range<u32>, down: u32, margin: f64) -> Self {
@@ -176,6 +180,12 @@ impl Cover {
         }
         let middle = axes.middle + axes.along[2] * z;
         let [x, y] = [0, 1].map(|k| axes.along[k] * piece.radius);
+        // A disc seen from the side covers few pixels that the section through the axis does not.
+        let place = middle.y / middle.z;
+        let [a, b] = [x, y].map(|way| way.y - way.z * place);
+        if a.hypot(b) < LEAST_DISC * middle.z {
+            return;
+        }
         let d = std::f64::consts::FRAC_1_SQRT_2;
         let corners = [
             (1.0, 0.0),
@@ -195,7 +205,7 @@ impl Cover {
         let mut flat = [DVec2::ZERO; N];
         let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, 0.0f64);
         for (at, corner) in flat.iter_mut().zip(corners) {
-            *at = corner.truncate() / corner.z;
+            *at = corner.truncate() * corner.z.recip();
             (low, high, depth) = (low.min(*at), high.max(*at), depth.max(corner.z));
         }
         let depth = (depth * (1.0 + SLACK)) as f32;
@@ -212,27 +222,32 @@ impl Cover {
         if area == 0.0 || !area.is_finite() {
             return;
         }
-        // Bounds on x from the edges: the value at the top of the picture, and the change per row.
-        let mut lows = [[f64::from(ends[0]), 0.0]; N];
-        let mut highs = [[f64::from(ends[1]), 0.0]; N];
+        // Lower and upper bounds on x from the edges: the value at the top of the picture, and the
+        // change per row.
+        let (mut bounds, mut counts) = ([[[0.0f64; 2]; N]; 2], [0; 2]);
         for k in 0..N {
             let (p, q) = (flat[k], flat[(k + 1) % N]);
             let n = (q - p).perp() * area.signum();
             let least = n.dot(p) + self.margin * (n.x.abs() + n.y.abs());
             if n.x.abs() > 1e-9 * n.y.abs() {
-                let bounds = if n.x > 0.0 { &mut lows } else { &mut highs };
-                bounds[k] = [least / n.x, -n.y / n.x];
+                let side = usize::from(n.x < 0.0);
+                bounds[side][counts[side]] = [least / n.x, -n.y / n.x];
+                counts[side] += 1;
             } else if n.y > 0.0 {
                 first = first.max(first_pixel(least / n.y));
             } else if n.y < 0.0 {
                 last = last.min(last_pixel(least / n.y));
             }
         }
+        let [lows, highs] = [0, 1].map(|side| &bounds[side][..counts[side]]);
         for y in first..=last {
             let row = f64::from(y) + 0.5;
             let at = |[begin, step]: &[f64; 2]| begin + step * row;
-            let low = lows.iter().map(at).fold(f64::NEG_INFINITY, f64::max);
-            let high = highs.iter().map(at).fold(f64::INFINITY, f64::min);
+            // Comparisons are one instruction; `f64::max` also looks for NaN, which none of these is.
+            let larger = |a: f64, b: f64| if a > b { a } else { b };
+            let smaller = |a: f64, b: f64| if a < b { a } else { b };
+            let low = lows.iter().map(at).fold(f64::NEG_INFINITY, larger);
+            let high = highs.iter().map(at).fold(f64::INFINITY, smaller);
             let (low, high) = (first_pixel(low).max(left), last_pixel(high).min(right));
             self.span(y as u32, low, high, depth);
         }
@@ -244,15 +259,15 @@ impl Cover {
             return;
         }
         let (low, high) = (low as u32, high as u32);
-        for x in low / SIDE..=high / SIDE {
+        let (first, last, k) = (low / SIDE, high / SIDE, y % SIDE);
+        let squares = self.at(first, y / SIDE)..=self.at(last, y / SIDE);
+        for (square, x) in self.squares[squares].iter_mut().zip(first..) {
             let left = low.max(x * SIDE) - x * SIDE;
             let right = high.min(x * SIDE + 7) - x * SIDE;
-            let bits = block([left, y % SIDE, right, y % SIDE]);
-            let at = self.at(x, y / SIDE);
-            let square = &mut self.squares[at];
+            let bits = block([left, k, right, k]);
             if bits & !square.covered != 0 {
                 square.covered |= bits;
-                let row = &mut square.depths[(y % SIDE) as usize];
+                let row = &mut square.depths[k as usize];
                 *row = row.max(depth);
             }
         }
