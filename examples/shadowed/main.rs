@@ -37,7 +37,7 @@ use std::sync::Arc;
 
 /// The bytes of `shade.glsl`, which belong to one version of the library.
 pub const SHADING: &[u8] = include_bytes!("shade.shading");
-/// Of the picture.
+/// Options of the picture.
 pub const OPTIONS: Options = Options {
     width: 640,
     height: 400,
@@ -119,7 +119,7 @@ impl Solids {
     /// Prepares a frame.
     ///
     /// # Safety
-    /// As for [`Renderer::prepare`].
+    /// Same as for [`Renderer::prepare`].
     unsafe fn prepare(
         &self,
         cmd: vk::CommandBuffer,

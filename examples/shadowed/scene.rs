@@ -1,4 +1,4 @@
-//! What the host draws: chessmen, a row of pawns that moves, a ball, and meshes among them.
+//! The scene: chessmen, a row of pawns that moves, a ball, and meshes among them.
 
 use super::host::{Fallible, Host, Mesh};
 use super::solids;

@@ -37,7 +37,7 @@ def pictures():
     return {(solid.name, v.name): (solid, v) for solid in named for v in views.views(solid) if v.name in VIEWS}
 
 
-def of_revmap(program, chosen):
+def measure_revmap(program, chosen):
     """Milliseconds of frames and of frames without search, by picture; bytes on the device, by solid."""
     frames, floors, held = {}, {}, {}
     size = "{}x{}".format(*SIZE)
@@ -45,8 +45,8 @@ def of_revmap(program, chosen):
         for (name, view), (solid, at) in chosen.items():
             scene = pathlib.Path(folder, f"{name}_{view}.toml")
             scene.write_text(at.camera.toml() + solid.toml(), encoding="utf-8")
-            said = run([program, "render", scene, "-o", scene.with_suffix(".exr"), "--json", "--size", size])
-            held[name] = sum(json.loads(said)["objects"][0][key] for key in ("table_bytes", "instance_bytes"))
+            printed = run([program, "render", scene, "-o", scene.with_suffix(".exr"), "--json", "--size", size])
+            held[name] = sum(json.loads(printed)["objects"][0][key] for key in ("table_bytes", "instance_bytes"))
         out = pathlib.Path(folder, "out")
         scenes = sorted(pathlib.Path(folder).glob("*.toml"))
         run([program, "bench", *scenes, "--solver", "exact,floor", "--size", size, "--passes", "4", "--out", out])
@@ -71,7 +71,7 @@ def tiled(rays):
     return rays.reshape(height // 8, 8, width // 8, 8, 3).swapaxes(1, 2).reshape(-1, 3)
 
 
-def of_embree(chosen):
+def measure_embree(chosen):
     """For each solid, kind and number of sectors: seconds to build, bytes, milliseconds of its pictures."""
     for name in SOLIDS:
         for sectors in SECTORS:
@@ -144,8 +144,8 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     chosen = pictures()
-    frames, floors, held = of_revmap(given.program, chosen)
-    meshes = list(of_embree(chosen))
+    frames, floors, held = measure_revmap(given.program, chosen)
+    meshes = list(measure_embree(chosen))
     with open(out / "times.csv", "w", newline="", encoding="utf-8") as file:
         rows = csv.DictWriter(file, meshes[0], lineterminator="\n")
         rows.writeheader()

@@ -16,16 +16,5 @@ fn solids_are_lit_like_meshes() {
 #[test]
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 fn kept_bytes_are_what_the_glsl_gives() {
-    let text = |name: &str| std::fs::read_to_string(format!("examples/forward/{name}")).unwrap();
-    let [shade, light] = ["shade.glsl", "light.glsl"].map(text);
-    let files = [
-        ("examples/forward/shade.glsl", &*shade),
-        ("light.glsl", &*light),
-    ];
-    let stage = revmap::settings::DrawStage::Fragment;
-    let made = revmap::shading::Shading::compile(stage, &files).unwrap();
-    assert!(
-        made.to_bytes().unwrap() == forward::SHADING,
-        "shaders changed; renew shade.shading by the command that examples/forward/main.rs names"
-    );
+    crate::common::assert_kept_shading("forward", "light.glsl", forward::SHADING);
 }

@@ -23,7 +23,7 @@ const SILHOUETTE: f64 = 0.25;
 /// The scene on the CPU: solids by their patches, spheres and floor by their equations.
 struct Truth(Vec<RayCaster>);
 
-/// What the sun does at a pixel.
+/// Light of the sun at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sun {
     /// All of it is visible, or none: how much of 255.
@@ -61,7 +61,7 @@ impl Truth {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// What the sun does at the first hit of a ray from the eye, the point and the normal.
+    /// Light of the sun at the first hit of a ray from the eye, the point and the normal.
     fn seen(&self, way: DVec3) -> (Sun, DVec3, DVec3) {
         let Some((t, normal)) = self.first(scene::EYE, way) else {
             return (Sun::Nothing, DVec3::ZERO, DVec3::ZERO);
@@ -171,16 +171,5 @@ fn solids_and_meshes_shadow_each_other() {
 #[test]
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 fn kept_bytes_are_what_the_glsl_gives() {
-    let text = |name: &str| std::fs::read_to_string(format!("examples/shadowed/{name}")).unwrap();
-    let [shade, sun] = ["shade.glsl", "sun.glsl"].map(text);
-    let files = [
-        ("examples/shadowed/shade.glsl", &*shade),
-        ("sun.glsl", &*sun),
-    ];
-    let stage = revmap::settings::DrawStage::Fragment;
-    let made = revmap::shading::Shading::compile(stage, &files).unwrap();
-    assert!(
-        made.to_bytes().unwrap() == shadowed::SHADING,
-        "shaders changed; renew shade.shading by the command that examples/shadowed/main.rs names"
-    );
+    crate::common::assert_kept_shading("shadowed", "sun.glsl", shadowed::SHADING);
 }

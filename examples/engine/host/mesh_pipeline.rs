@@ -21,7 +21,7 @@ pub struct MeshShaders<'s> {
 }
 
 impl Default for MeshShaders<'_> {
-    /// One light, from above.
+    /// One light.
     fn default() -> Self {
         Self {
             vertex: include_bytes!("mesh.vert.spv"),
@@ -107,7 +107,7 @@ impl Drop for MeshPipeline<'_> {
 /// A shader module of SPIR-V.
 ///
 /// # Safety
-/// The words are valid. Whoever calls destroys the module.
+/// The words are valid. The caller destroys the module.
 pub unsafe fn module(host: &Host, bytes: &[u8]) -> Fallible<vk::ShaderModule> {
     let words = ash::util::read_spv(&mut std::io::Cursor::new(bytes))?;
     let info = vk::ShaderModuleCreateInfo::default().code(&words);

@@ -7,7 +7,7 @@ use ash::vk;
 /// A render pass and its framebuffer; `multisampled` is drawn into and resolved into `color`.
 ///
 /// # Safety
-/// Whoever calls destroys both, before the images.
+/// The caller destroys both, before the images.
 pub(super) unsafe fn make_pass(
     host: &Host,
     options: &Options,
