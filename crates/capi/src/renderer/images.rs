@@ -6,7 +6,7 @@ use crate::fault::{RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
 use crate::pointers::put;
 use ash::vk;
-use revmap::gpu::HostImage;
+use revmap::gpu::{HostImage, ObjectId, Renderer};
 use std::sync::Arc;
 
 /// An image of the host for textures of objects. Objects with the same image share draws.
@@ -55,6 +55,19 @@ pub extern "C" fn revmap_host_image_destroy(image: *mut RevmapHostImage) -> Revm
     enter(|| RevmapHostImage::destroy(image))
 }
 
+/// Sets an image of an object by a function of the renderer; null for none.
+fn set(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    image: *const RevmapHostImage,
+    set: fn(&mut Renderer, ObjectId, Option<HostImage>) -> revmap::Result<()>,
+) -> RevmapResult {
+    enter(|| {
+        let image = RevmapHostImage::get_optional(image)?.map(|image| HostImage::clone(&image));
+        with_object(renderer, object, |r, id| set(r, id, image))
+    })
+}
+
 /// Sets an image as the colours of an object, in place of its color_map; null for that map again.
 /// Frames that were prepared earlier keep their image.
 ///
@@ -65,10 +78,7 @@ pub extern "C" fn revmap_renderer_set_color_image(
     object: RevmapObject,
     image: *const RevmapHostImage,
 ) -> RevmapResult {
-    enter(|| {
-        let image = RevmapHostImage::get_optional(image)?.map(|image| HostImage::clone(&image));
-        with_object(renderer, object, |r, id| r.set_color_image(id, image))
-    })
+    set(renderer, object, image, Renderer::set_color_image)
 }
 
 /// Sets an image as the slopes of an object, in place of its height_map; null for that map again. The
@@ -82,10 +92,7 @@ pub extern "C" fn revmap_renderer_set_slope_image(
     object: RevmapObject,
     image: *const RevmapHostImage,
 ) -> RevmapResult {
-    enter(|| {
-        let image = RevmapHostImage::get_optional(image)?.map(|image| HostImage::clone(&image));
-        with_object(renderer, object, |r, id| r.set_slope_image(id, image))
-    })
+    set(renderer, object, image, Renderer::set_slope_image)
 }
 
 /// Same as revmap_renderer_set_slope_image, for an image whose first channel is heights, 0 to 1. Each
@@ -98,8 +105,5 @@ pub extern "C" fn revmap_renderer_set_height_image(
     object: RevmapObject,
     image: *const RevmapHostImage,
 ) -> RevmapResult {
-    enter(|| {
-        let image = RevmapHostImage::get_optional(image)?.map(|image| HostImage::clone(&image));
-        with_object(renderer, object, |r, id| r.set_height_image(id, image))
-    })
+    set(renderer, object, image, Renderer::set_height_image)
 }
