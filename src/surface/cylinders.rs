@@ -18,8 +18,8 @@ pub(crate) struct Cylinders([Vec<CylinderPiece>; 3]);
 
 impl Cylinders {
     /// Cylinders for rows with these radii: see [`cylinders`].
-    pub fn new(radii: &[f64], bound: fn(f64, f64) -> f64) -> Self {
-        Self([3, 8, 16].map(|count| cylinders(radii, count, bound)))
+    pub fn new(radii: &[f64], outer: bool) -> Self {
+        Self(cylinders(radii, [3, 8, 16], outer))
     }
 
     /// The cylinders for a copy that covers `rows` rows of pixels; few cylinders below `few` rows.
@@ -45,7 +45,7 @@ const FEW_ROWS: u32 = 12;
 impl InnerCylinders {
     /// Inner cylinders of the solid that the patches enclose.
     pub fn new(patches: &[QuadricPatch]) -> Self {
-        Self(Cylinders::new(&solid_radii(patches), f64::min))
+        Self(Cylinders::new(&solid_radii(patches), false))
     }
 
     /// The cylinders for a copy that covers this many rows of pixels.
@@ -93,7 +93,7 @@ impl OuterCylinders {
 
     /// Outer cylinders of a solid with these largest radii in rows of equal height.
     pub fn of_radii(radii: &[f64]) -> Self {
-        Self(Cylinders::new(radii, f64::max))
+        Self(Cylinders::new(radii, true))
     }
 
     /// The cylinders for a copy that covers this many rows of pixels.
@@ -102,12 +102,26 @@ impl OuterCylinders {
     }
 }
 
-/// At most `count` runs of rows, each with its least or largest radius by `bound`. Together they
-/// are as close to the radii as possible. Runs of radius 0 are left out.
-fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<CylinderPiece> {
+/// For each count, at most that many runs of rows, each with its least (`outer`: largest) radius.
+/// Together they are as close to the radii as possible. Runs of radius 0 are left out.
+fn cylinders<const K: usize>(
+    radii: &[f64],
+    counts: [usize; K],
+    outer: bool,
+) -> [Vec<CylinderPiece>; K] {
     let n = radii.len();
-    let outer = bound(0.0, 1.0) > 0.0;
+    let bound = |a: f64, b: f64| if (a < b) == outer { b } else { a };
     let sense = if outer { -1.0 } else { 1.0 };
+    // The gain of the run of rows `i..j`, at `j (j - 1) / 2 + i`.
+    let mut gains = Vec::with_capacity(n * (n + 1) / 2);
+    for j in 1..=n {
+        let (first, mut radius) = (gains.len(), radii[j - 1]);
+        gains.resize(first + j, 0.0);
+        for i in (0..j).rev() {
+            radius = bound(radius, radii[i]);
+            gains[first + i] = sense * (j - i) as f64 * radius;
+        }
+    }
     // The best cover of the first j rows, and the start of the last run. Rows may be left out of
     // inner cylinders, but not of outer ones.
     let left_out = |j: usize| {
@@ -118,28 +132,37 @@ fn cylinders(radii: &[f64], count: usize, bound: fn(f64, f64) -> f64) -> Vec<Cyl
         }
     };
     let mut best: Vec<(f64, usize)> = (0..=n).map(|j| (left_out(j), 0)).collect();
-    let mut steps = Vec::with_capacity(count);
-    for _ in 0..count {
-        let mut next = vec![(0.0f64, 0usize); n + 1];
-        for j in 0..=n {
-            let mut radius = radii[j.saturating_sub(1)];
-            next[j] = (best[j].0, j);
-            for i in (0..j).rev() {
-                radius = bound(radius, radii[i]);
-                let covered = best[i].0 + sense * (j - i) as f64 * radius;
-                if covered > next[j].0 {
-                    next[j] = (covered, i);
+    let most = counts.into_iter().max().unwrap_or(0);
+    let mut steps = Vec::with_capacity(most);
+    for _ in 0..most {
+        let next = |j: usize| {
+            let mut found = (best[j].0, j);
+            let first = j * j.saturating_sub(1) / 2;
+            for (i, gain) in gains[first..first + j].iter().enumerate() {
+                let covered = best[i].0 + gain;
+                if covered > found.0 {
+                    found = (covered, i);
                 }
             }
-        }
-        steps.push(next.clone());
-        best = next;
+            found
+        };
+        best = (0..=n).map(next).collect();
+        steps.push(best.clone());
     }
-    let mut found = Vec::new();
-    let mut end = n;
+    counts.map(|count| runs(radii, &steps[..count], bound))
+}
+
+/// The runs that lead to the best cover of all rows.
+fn runs(
+    radii: &[f64],
+    steps: &[Vec<(f64, usize)>],
+    bound: impl Fn(f64, f64) -> f64,
+) -> Vec<CylinderPiece> {
+    let n = radii.len();
+    let (mut found, mut end) = (Vec::new(), n);
     for step in steps.iter().rev() {
         let begin = step[end].1;
-        if let Some(radius) = radii[begin..end].iter().copied().reduce(bound)
+        if let Some(radius) = radii[begin..end].iter().copied().reduce(&bound)
             && radius > 0.0
         {
             found.push(CylinderPiece {
@@ -169,7 +192,7 @@ mod tests {
                 }
             })
             .collect();
-        let found = cylinders(&radii, 8, f64::min);
+        let [found] = cylinders(&radii, [8], false);
         assert!(found.len() > 1 && found.len() <= 8);
         let mut covered = 0.0;
         for piece in &found {
@@ -179,8 +202,8 @@ mod tests {
         }
         assert!(covered > 0.9 * radii.iter().sum::<f64>());
         assert!(found.windows(2).all(|w| w[0].high <= w[1].low));
-        assert!(cylinders(&[0.0; 64], 8, f64::min).is_empty());
-        let found = cylinders(&radii, 8, f64::max);
+        assert!(cylinders(&[0.0; 64], [8], false)[0].is_empty());
+        let [found] = cylinders(&radii, [8], true);
         assert!(found.len() <= 8 && found[0].low == 0.0 && found[found.len() - 1].high == 1.0);
         let mut covered = 0.0;
         for piece in &found {
