@@ -1,6 +1,6 @@
-//! What preparing a frame costs the CPU: 1,000 objects that stand still, that move, whose offsets
-//! change, under one camera that stands or moves; 10,000 and 100,000 copies of one object that all
-//! move, or of which some come and go. `cargo bench --bench prepare`.
+//! The CPU's cost of preparing a frame. 1,000 objects stand still, move, or change their offsets,
+//! under a camera that stands or moves. 10,000 and 100,000 copies of one object move, or some of
+//! them come and go. `cargo bench --bench prepare`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 use ash::vk;

@@ -17,6 +17,7 @@ mod commands;
 mod crowds;
 mod deferred_host;
 mod embedding;
+mod embedding_bias;
 mod embedding_crowds;
 mod embedding_lists;
 mod embedding_outputs;

@@ -38,7 +38,8 @@ pub trait Guest {
     ///
     /// # Safety
     /// `cmd` is recording, within a pass that is compatible with [`Offscreen::render_pass`], with
-    /// viewport and scissor set. The scissor is the render area and must stay. All recorded commands must stay valid until the frame was drawn.
+    /// viewport and scissor set. The scissor is the render area and must stay. All recorded commands
+    /// must stay valid until the frame was drawn.
     unsafe fn record(&self, cmd: vk::CommandBuffer);
 }
 
