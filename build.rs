@@ -51,19 +51,24 @@ fn generate() -> Fallible<()> {
         for_tests: false,
     };
     let mut all: Vec<_> = catalogue::modules().into_iter().map(module).collect();
-    // Tests read the layouts of blocks from this module.
-    all.push(modules::Module {
-        name: "layouts".to_owned(),
-        entry: "tree.frag",
-        macros: vec![
-            ("SEARCH", "SEARCH_LIVE"),
-            ("SHADOWED", "1"),
-            ("OUTPUT", "OUTPUT_PLANES"),
-        ],
+    // Tests read the layouts of blocks from these modules.
+    let every_block = vec![
+        ("SEARCH", "SEARCH_LIVE"),
+        ("SHADOWED", "1"),
+        ("OUTPUT", "OUTPUT_PLANES"),
+    ];
+    let layouts = [
+        ("layouts", "tree.frag", every_block),
+        ("crowd_layouts", "crowd_copies.comp", vec![]),
+    ];
+    all.extend(layouts.map(|(name, entry, macros)| modules::Module {
+        name: name.to_owned(),
+        entry,
+        macros,
         hook: None,
         optimized: false,
         for_tests: true,
-    });
+    }));
     let includes = Path::new(SOURCES).join("include");
     let modules = Modules {
         entries: &[SOURCES],

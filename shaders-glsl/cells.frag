@@ -18,7 +18,7 @@ void main()
 #if OUTPUT == OUTPUT_DEPTH
     float depth = biased_depth(varying_rays(), pixel, hit);
 #else
-    store(shade(varying_look(), varying_rays(), pixel, hit), pixel, hit);
+    store(shade(varying_look(), varying_rays(), pixel, hit), varying_rays(), uint(look_ambient.w), pixel, hit);
     float depth = depth_of(ray_origin_base.w + hit.t);
 #endif
     // The triangle is never behind the surface that it wraps, except by rounding.

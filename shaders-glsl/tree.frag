@@ -25,7 +25,7 @@ void main()
 #if OUTPUT == OUTPUT_DEPTH
     gl_FragDepth = biased_depth(rays, pixel, hit);
 #else
-    store(shade(varying_look(), rays, pixel, hit), pixel, hit);
+    store(shade(varying_look(), rays, pixel, hit), rays, uint(look_ambient.w), pixel, hit);
     gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
 #endif
 }

@@ -46,6 +46,10 @@ impl PipelineChoice {
             Kind::Boxes => "boxes",
             Kind::Cells => "cells",
             Kind::Quads => "quads of tiles",
+            Kind::Crowd => "tiles of crowds",
+            Kind::CrowdCopies => "copies of crowds",
+            Kind::CrowdTiles => "copies in tiles",
+            Kind::CrowdOrder => "copies in order",
             Kind::TileLists => "lists of patches",
             Kind::TilePatches => return format!("tiles of {} patches", variant.list_length),
             Kind::TileTree => "tiles of one copy",
@@ -117,6 +121,7 @@ impl PipelineCompiler {
                 occlusion_culling: true,
                 ray_spread: 0.0,
                 casts: false,
+                lists_crowds: chosen.features.shader_float64 == vk::TRUE,
                 host_depths: false,
             },
             report: chosen.report,
@@ -190,6 +195,16 @@ impl PipelineCompiler {
                     all.push(choice);
                 }
             }
+        }
+        let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
+        if crowds && variant.cells == 0 && object.clip != Clip::Box {
+            let variant = Variant {
+                list_length: 1,
+                outside: 0,
+                ..variant
+            };
+            let of_kind = |kind| PipelineChoice(variant.of_kind(kind), kind);
+            all.extend(conditions.crowd_kinds().map(of_kind));
         }
         all
     }

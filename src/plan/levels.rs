@@ -36,8 +36,14 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
 
 /// The most pixels that one unit of an object covers, over the copies in front of the eye. Infinite
 /// if a copy may reach the eye. `height`: height of the box in units of the profile's. `all`:
-/// includes copies outside of the picture, whose shadows may be in it.
-pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
+/// includes copies outside of the picture, whose shadows may be in it. `at_once`: by the bounds of
+/// all copies, whose time does not grow with their number; the result may be larger.
+pub(crate) fn pixels_per_unit(
+    object: &Object,
+    height: f64,
+    view: &View,
+    [all, at_once]: [bool; 2],
+) -> f64 {
     // A length across the ray covers more pixels away from the middle of the picture.
     let stretch = if view.parallel {
         1.0
@@ -71,6 +77,9 @@ pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bo
         let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
         of(cluster.most_scale.max_element(), around.along(view.forward)) * (1.0 + 1e-9)
     };
+    if at_once && !object.instances.is_empty() {
+        return at_most(object.instances.whole()) / height;
+    }
     let least = object.least_of_copies(
         |cluster| {
             if visible.may_show_any(cluster) {
@@ -154,7 +163,7 @@ mod tests {
     fn pixels_of_a_unit_are_those_of_its_nearest_point() {
         for distance in [2.0, 20.0, 200.0] {
             let (object, view) = at(distance);
-            let found = pixels_per_unit(&object, 1.0, &view, false);
+            let found = pixels_per_unit(&object, 1.0, &view, [false; 2]);
             // Any two near points on the box, one unit apart, are seen nearer to each other.
             let p = |y: f64, z: f64| view.project(DVec3::new(0.5, y, z)).0;
             for (a, b) in [(p(0.5, 0.0), p(-0.5, 0.0)), (p(0.0, 0.5), p(0.0, -0.5))] {
@@ -162,22 +171,41 @@ mod tests {
             }
         }
         let (mut object, view) = at(20.0);
-        let one = pixels_per_unit(&object, 1.0, &view, false);
+        let one = pixels_per_unit(&object, 1.0, &view, [false; 2]);
         object.placement.scale = DVec3::new(1.0, 3.0, 1.0);
-        assert!((pixels_per_unit(&object, 1.0, &view, false) / one - 3.0).abs() < 1e-9);
-        assert!((pixels_per_unit(&object, 2.0, &view, false) / one - 1.5).abs() < 1e-9);
+        assert!((pixels_per_unit(&object, 1.0, &view, [false; 2]) / one - 3.0).abs() < 1e-9);
+        assert!((pixels_per_unit(&object, 2.0, &view, [false; 2]) / one - 1.5).abs() < 1e-9);
         object.placement.position.x = 100.0;
         assert_eq!(
-            pixels_per_unit(&object, 1.0, &view, true),
+            pixels_per_unit(&object, 1.0, &view, [true, false]),
             0.0,
             "behind the eye"
         );
         // Outside of the picture; then across the eye's plane, but below the picture.
         for beside in [DVec3::new(0.0, 40.0, 0.0), DVec3::new(20.0, 0.0, -9.0)] {
             object.placement.position = beside;
-            assert!(pixels_per_unit(&object, 1.0, &view, true) > 0.0);
-            assert_eq!(pixels_per_unit(&object, 1.0, &view, false), 0.0, "{beside}");
+            assert!(pixels_per_unit(&object, 1.0, &view, [true, false]) > 0.0);
+            assert_eq!(
+                pixels_per_unit(&object, 1.0, &view, [false; 2]),
+                0.0,
+                "{beside}"
+            );
         }
+    }
+
+    /// The bounds of all copies give no less than the copies one by one.
+    #[test]
+    fn copies_at_once_are_no_smaller() {
+        let (mut object, view) = at(20.0);
+        let place = |n: u32| Placement {
+            position: DVec3::new(0.1 * f64::from(n), 0.0, 0.0),
+            scale: DVec3::splat(1.0 + 0.01 * f64::from(n % 7)),
+            ..Placement::default()
+        };
+        object.instances = (0..100).map(place).collect();
+        let [each, at_once] =
+            [false, true].map(|way| pixels_per_unit(&object, 1.0, &view, [false, way]));
+        assert!(at_once >= each && at_once < 1.3 * each, "{each}, {at_once}");
     }
 
     #[test]

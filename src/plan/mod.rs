@@ -6,6 +6,7 @@
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod casters;
+pub(crate) mod crowd;
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;
@@ -14,7 +15,7 @@ pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS, STRIP_INDICES};
@@ -47,6 +48,8 @@ pub(crate) struct FramePlan {
     pub parts: Vec<Parts>,
     /// True if compute compares depths.
     pub compares_depths: bool,
+    /// Crowds, whose tiles the device lists.
+    pub crowds: Option<crowd::Crowds>,
 }
 
 /// Parts of a surface.
@@ -84,6 +87,10 @@ pub(crate) enum Call {
     Dispatch(u32, Pushed),
     /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
+    /// Work groups along three axes.
+    Groups([u32; 3], Pushed),
+    /// Tiles of crowds; the draw is at this word of the bins.
+    IndirectTiles(u32),
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
@@ -106,6 +113,7 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), with);
+    crowd::add(&mut plan, view, objects, (&paths, &variants), with);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         parts.tables |= with.casts;
         parts.tables &= object.surface.is_some();
@@ -118,7 +126,7 @@ impl Path {
         match self {
             Self::Box => DrawPath::Box,
             Self::Cells { .. } => DrawPath::Cells,
-            Self::Tiles => DrawPath::Tiles,
+            Self::Tiles | Self::Crowd => DrawPath::Tiles,
         }
     }
 }
@@ -201,7 +209,7 @@ impl FramePlan {
                     .extend(draws);
             };
             match path {
-                Path::Tiles => {}
+                Path::Tiles | Path::Crowd => {}
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     let outside = of.surface.is_some_and(|s| apart(s));

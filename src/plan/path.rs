@@ -43,6 +43,8 @@ pub(crate) enum Path {
         cut: bool,
     },
     Tiles,
+    /// Tiles that the device lists.
+    Crowd,
 }
 
 /// One object, as input of a plan.
@@ -91,13 +93,15 @@ pub(crate) struct Conditions {
     pub ray_spread: f64,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
+    /// True if the device lists the tiles of crowds.
+    pub lists_crowds: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
 }
 
 /// Most copies of an object that are drawn by cells. With more copies, many are small or hidden,
 /// and tiles skip those.
-const MOST_PROXIES: usize = 64;
+pub(crate) const MOST_PROXIES: usize = 64;
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
@@ -142,6 +146,23 @@ impl Conditions {
         self.compute || (of.variant.is_shaded() && pays)
     }
 
+    /// True if the device lists the tiles of an object's copies.
+    fn is_crowd(&self, of: &PlanObject) -> bool {
+        let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
+        let many = of.copies().len() > MOST_PROXIES && of.object.repeat == [1; 3];
+        self.lists_crowds && shows && many && of.is_whole()
+    }
+
+    /// The pipelines of crowds: those that list tiles, then the one that draws them.
+    pub fn crowd_kinds(&self) -> [Kind; 4] {
+        let draws = if self.compute {
+            Kind::TileCopies
+        } else {
+            Kind::Crowd
+        };
+        [Kind::CrowdCopies, Kind::CrowdTiles, Kind::CrowdOrder, draws]
+    }
+
     /// The path of an object in a view: cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
         let surface = of.surface.filter(|_| self.takes_cells(of));
@@ -151,6 +172,7 @@ impl Conditions {
         });
         match cells {
             Some((frusta, cut)) if !cut || self.clips_cells(of) => Path::Cells { frusta, cut },
+            _ if self.takes_tiles(of) && !view.parallel && self.is_crowd(of) => Path::Crowd,
             _ if self.takes_tiles(of) && !view.parallel => Path::Tiles,
             _ => Path::Box,
         }
@@ -223,7 +245,9 @@ impl Conditions {
                 kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
             }
         }
-        if self.takes_tiles(of) && !self.compute {
+        if self.is_crowd(of) {
+            kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
+        } else if self.takes_tiles(of) && !self.compute {
             kinds.push((Kind::Quads, &[0, 1]));
         } else if self.takes_tiles(of) {
             let may_cut = proxy::may_be_cut(of.object);
@@ -254,7 +278,9 @@ impl Conditions {
         } else {
             &[false, true]
         };
-        let lengths: Vec<u32> = if self.may_permit_lists(of) {
+        let lengths: Vec<u32> = if self.is_crowd(of) {
+            vec![1]
+        } else if self.may_permit_lists(of) {
             std::iter::once(0).chain(LIST_LENGTHS).collect()
         } else {
             vec![0]
@@ -284,7 +310,8 @@ impl Conditions {
                         ..*form
                     };
                     let key = (variant.of_kind(kind), kind);
-                    let empty = kind == Kind::TilePatches && list_length == 0;
+                    let empty = kind == Kind::TilePatches && list_length == 0
+                        || kind == Kind::TileCopies && (list_length != 0) != self.is_crowd(of);
                     if !empty && !all.contains(&key) {
                         all.push(key);
                     }

@@ -3,13 +3,10 @@
 use super::path::LIST_LENGTHS;
 use super::tiles::{Batch, Drawer, LayerTiles, Projector, Visible};
 use super::{Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View};
-use crate::shader::generated::{GROUP_PIXELS, TILE_BINS, TREE_BIN};
+use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Most work groups of one dispatch; every device supports this number.
-const MOST_GROUPS: u32 = 65_535;
 
 impl FramePlan {
     /// Tiles of all objects whose path is [`Path::Tiles`].

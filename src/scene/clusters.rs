@@ -45,18 +45,7 @@ impl Clusters {
             .map(|&copy| placements[copy as usize])
             .collect();
         let all = (placements.par_chunks(SIZE).enumerate())
-            .map(|(n, copies)| {
-                let (low, high) = ends(copies.iter().map(|p| p.position));
-                let (least_scale, most_scale) = ends(copies.iter().map(|p| p.scale));
-                let first = (n * SIZE) as u32;
-                Cluster {
-                    range: first..first + copies.len() as u32,
-                    low,
-                    high,
-                    least_scale,
-                    most_scale,
-                }
-            })
+            .map(|(n, copies)| Cluster::of((n * SIZE) as u32, copies))
             .collect();
         Self {
             order,
@@ -96,6 +85,19 @@ impl Clusters {
 }
 
 impl Cluster {
+    /// The bounds of these copies, whose first has this rank.
+    pub fn of(first: u32, copies: &[Placement]) -> Self {
+        let (low, high) = ends(copies.iter().map(|p| p.position));
+        let (least_scale, most_scale) = ends(copies.iter().map(|p| p.scale));
+        Self {
+            range: first..first + copies.len() as u32,
+            low,
+            high,
+            least_scale,
+            most_scale,
+        }
+    }
+
     /// Bounds for all points of the cluster's copies within `beside` of the axis of their box and
     /// within `along` of its lower face, both in object units.
     pub fn around(&self, eye: DVec3, [beside, along]: [f64; 2]) -> Around {

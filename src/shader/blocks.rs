@@ -1,6 +1,6 @@
 //! Data that the CPU passes to the GPU. A test compares the layouts with `blocks.glsl`.
 
-use super::generated::MAX_LIGHTS;
+use super::generated::{CROWD_PIECES, MAX_LIGHTS};
 use bytemuck::{Pod, Zeroable};
 
 /// `Light` of `blocks.glsl`.
@@ -113,6 +113,64 @@ pub struct CasterNode {
     pub half_size: [f32; 3],
     /// Index of the copy, or [`INNER_NODE`](super::generated::INNER_NODE).
     pub instance: u32,
+}
+
+/// `CrowdBlock` of `crowd.glsl`, before its objects.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct CrowdBlock {
+    /// Three doubles, and a fourth that is not used.
+    pub eye: [u32; 8],
+    /// Like `eye`.
+    pub forward: [u32; 8],
+    /// Like `eye`.
+    pub dir_00: [u32; 8],
+    /// Like `eye`.
+    pub clip_x: [u32; 8],
+    /// Like `eye`.
+    pub clip_y: [u32; 8],
+    /// A point over its depth gives its pixel; w: margin, pixels.
+    pub row_x: [f32; 4],
+    /// w: lowest pixel position on the x axis.
+    pub row_y: [f32; 4],
+    /// w: lowest pixel position on the y axis.
+    pub row_z: [f32; 4],
+    /// The highest pixel position on both axes.
+    pub limits: [f32; 4],
+    /// First and last pixel: left, top, right, bottom.
+    pub picture: [u32; 4],
+    /// Tiles across and down, layers, objects.
+    pub size: [u32; 4],
+    /// Copies, most entries, first words of the head and of the masks.
+    pub counts: [u32; 4],
+    /// First words of lists in the bins.
+    pub lists: [u32; 4],
+    /// First words of lists in the bins.
+    pub order: [u32; 4],
+    /// First words of lists in the tiles; 1 for compute.
+    pub tiles: [u32; 4],
+    /// The objects follow.
+    pub objects_of: [CrowdObject; 0],
+}
+
+/// `CrowdObject` of `crowd.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct CrowdObject {
+    /// Axis: two doubles.
+    pub axis: [u32; 4],
+    /// Axis, radius.
+    pub shape: [f32; 4],
+    /// Lowest and highest `z`.
+    pub heights: [f32; 4],
+    /// First copy and end, first instance, number of the object.
+    pub copies: [u32; 4],
+    /// Layer, outer and inner cylinders, first word of the layer's visible copies.
+    pub pieces: [u32; 4],
+    /// Radius, low, high.
+    pub outer: [[f32; 4]; CROWD_PIECES as usize],
+    /// Radius, low, high.
+    pub inner: [[f32; 4]; CROWD_PIECES as usize],
 }
 
 /// `Pushed` of `compute.glsl`.

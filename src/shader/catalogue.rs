@@ -13,8 +13,18 @@ pub enum Entry {
     ClippedCellVertex,
     /// Quads of tiles.
     QuadVertex,
+    /// Tiles of crowds.
+    CrowdVertex,
     /// Fragments of cells.
     Cells,
+    /// Fragments of tiles of crowds.
+    Crowd,
+    /// Records of the copies of crowds.
+    CrowdCopies,
+    /// Copies of crowds in tiles.
+    CrowdTiles,
+    /// Copies of crowds in order, and their records.
+    CrowdOrder,
     /// Fragments of boxes, strips and quads, which walk the tree.
     Tree,
     /// Lists of the patches that rays of tiles may meet.
@@ -35,13 +45,27 @@ impl Entry {
             Self::BoxVertex => "proxy_boxes.vert",
             Self::CellVertex | Self::ClippedCellVertex => "proxy_cells.vert",
             Self::QuadVertex => "tile_quads.vert",
+            Self::CrowdVertex => "crowd_quads.vert",
             Self::Cells => "cells.frag",
+            Self::Crowd => "crowd.frag",
+            Self::CrowdCopies => "crowd_copies.comp",
+            Self::CrowdTiles => "crowd_tiles.comp",
+            Self::CrowdOrder => "crowd_order.comp",
             Self::Tree => "tree.frag",
             Self::TileLists => "tile_lists.comp",
             Self::TilePatches => "tile_patches.comp",
             Self::TileTree => "tile_tree.comp",
             Self::TileCopies => "tile_copies.comp",
         }
+    }
+
+    /// True if it lists what other entries draw.
+    #[must_use]
+    pub const fn makes_lists(self) -> bool {
+        matches!(
+            self,
+            Self::TileLists | Self::CrowdCopies | Self::CrowdTiles | Self::CrowdOrder
+        )
     }
 
     /// True if its invocations shade hits. Build scripts do not call this.
@@ -56,7 +80,10 @@ impl Entry {
     #[must_use]
     #[allow(dead_code)]
     pub const fn searches(self) -> bool {
-        matches!(self, Self::Tree | Self::TileTree | Self::TileCopies)
+        matches!(
+            self,
+            Self::Tree | Self::Crowd | Self::TileTree | Self::TileCopies
+        )
     }
 }
 
@@ -143,7 +170,13 @@ impl Module {
     pub fn vertices(&self, entry: Entry) -> Self {
         use Search as S;
         let search = match self.search {
-            _ if matches!(entry, Entry::CellVertex | Entry::ClippedCellVertex) => S::None,
+            _ if matches!(
+                entry,
+                Entry::CellVertex | Entry::ClippedCellVertex | Entry::CrowdVertex
+            ) =>
+            {
+                S::None
+            }
             S::Quadric => S::Quadric,
             S::External => S::External,
             _ => S::Live,
@@ -208,7 +241,7 @@ impl Module {
         if self.search != Search::None {
             add(&mut name, &self.search);
         }
-        if self.entry != Entry::TileLists {
+        if !self.entry.makes_lists() {
             add(&mut name, &self.features);
             add(&mut name, &self.output);
         }
@@ -238,7 +271,7 @@ fn has(search: Search, features: Features, output: Output) -> bool {
 #[must_use]
 #[allow(dead_code)]
 pub fn shading_modules(compute: bool) -> Vec<Module> {
-    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells);
+    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells | Entry::Crowd);
     let mut all = modules();
     all.retain(|m| {
         m.entry.shades()
@@ -264,7 +297,13 @@ pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
 #[must_use]
 pub fn modules() -> Vec<Module> {
     use Output as O;
-    let mut all = vec![Module::plain(Entry::TileLists)];
+    let lists = [
+        Entry::TileLists,
+        Entry::CrowdCopies,
+        Entry::CrowdTiles,
+        Entry::CrowdOrder,
+    ];
+    let mut all = lists.map(Module::plain).to_vec();
     for output in [O::Color, O::Depth] {
         let mut vertex = |entry, search| {
             all.push(Module {
@@ -284,6 +323,7 @@ pub fn modules() -> Vec<Module> {
         if output == O::Color {
             vertex(Entry::BoxVertex, Search::External);
             vertex(Entry::QuadVertex, Search::External);
+            vertex(Entry::CrowdVertex, Search::None);
         }
     }
     for output in [O::Color, O::Planes, O::List, O::Depth, O::DepthOrtho] {
@@ -309,6 +349,12 @@ pub fn modules() -> Vec<Module> {
                 if compute && on_patches && search == Search::Quadric {
                     add(Entry::TilePatches, search);
                 }
+            }
+            // Crowds have neither shadows nor replicas.
+            let textured = features == Features::Textured;
+            let plain = features == Features::Plain && output != O::List;
+            if shaded && (plain || textured) {
+                add(Entry::Crowd, Search::Quadric);
             }
             let shown = (shaded && on_patches) || features == Features::Plain;
             if has(Search::Quadric, features, output) && shown {

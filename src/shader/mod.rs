@@ -10,7 +10,8 @@ mod variant;
 mod view_index;
 
 pub use blocks::{
-    CasterNode, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
+    CasterNode, CrowdBlock, CrowdObject, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE,
+    ObjectBlock, Pushed,
 };
 #[cfg(test)]
 pub(crate) use catalogue::Features;

@@ -147,7 +147,7 @@ mod tests {
             assert!(!all.iter().any(chained), "{}", module.name());
             found += 1;
         }
-        assert_eq!(found, 5);
+        assert_eq!(found, 6);
     }
 
     /// Vertices pass to depths only what depths read, and to colours what they read.

@@ -8,16 +8,16 @@ use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Features, Output, modules};
 use crate::shader::{
-    CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
-    ObjectBlock, ShadowCasters, Variant, depth_less, generated as g, words,
+    CasterNode, CrowdBlock, CrowdObject, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock,
+    Module, OBJECT_STRIDE, ObjectBlock, ShadowCasters, Variant, depth_less, generated as g, words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::{offset_of, size_of};
 use std::sync::Arc;
 
-/// The number of modules.
-const MODULES: usize = 75;
+/// The number of modules; nine of them list and draw crowds.
+const MODULES: usize = 84;
 
 /// Opcodes and decorations of the SPIR-V specification that these tests read.
 pub(crate) mod op {
@@ -72,8 +72,8 @@ fn offsets(words: &[u32], name: &str) -> BTreeMap<String, u32> {
 }
 
 /// Words of a module that keeps its names.
-fn layouts() -> Vec<u32> {
-    unpacked(&std::fs::read(kept_file("layouts.spv.z")).unwrap()).unwrap()
+fn layouts(file: &str) -> Vec<u32> {
+    unpacked(&std::fs::read(kept_file(file)).unwrap()).unwrap()
 }
 
 macro_rules! assert_layout {
@@ -88,7 +88,43 @@ macro_rules! assert_layout {
 
 #[test]
 fn blocks_have_the_same_layout_in_rust_and_glsl() {
-    let words = &layouts();
+    let crowds = &layouts("crowd_layouts.spv.z");
+    assert_layout!(
+        crowds,
+        "CrowdObject",
+        CrowdObject {
+            axis,
+            shape,
+            heights,
+            copies,
+            pieces,
+            outer,
+            inner
+        }
+    );
+    assert_layout!(
+        crowds,
+        "CrowdBlock",
+        CrowdBlock {
+            eye,
+            forward,
+            dir_00,
+            clip_x,
+            clip_y,
+            row_x,
+            row_y,
+            row_z,
+            limits,
+            picture,
+            size,
+            counts,
+            lists,
+            order,
+            tiles,
+            objects_of
+        }
+    );
+    let words = &layouts("layouts.spv.z");
     assert_layout!(
         words,
         "Frame",
@@ -161,7 +197,7 @@ fn a_moved_member_is_noticed() {
         color: [f32; 4],
         towards: [f32; 4],
     }
-    assert_layout!(&layouts(), "Light", Moved { color, towards });
+    assert_layout!(&layouts("layouts.spv.z"), "Light", Moved { color, towards });
 }
 
 fn any(solver: Solver, planes: Planes) -> Variant {
@@ -232,6 +268,8 @@ fn modules_are_few_and_small() {
             // Traces twice, from the eye and towards lights, walks the hierarchy of casters, and
             // SPIR-V's optimiser inlines every call.
             (_, Features::Full, _) => 75_500,
+            // Copies may also come from queues of the device.
+            (Entry::TileCopies, Features::Textured, _) => 43_000,
             // Tiles share an instance, and `live` has both forms of its steps.
             (_, Features::Textured, _) => 40_000,
             (Entry::Tree | Entry::Cells, Features::Plain, Output::Color) => 26_600,
@@ -273,6 +311,7 @@ fn vertices_pass_what_fragments_read() {
                 &[Entry::BoxVertex]
             }
             Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
+            Entry::Crowd => &[Entry::CrowdVertex],
             Entry::Cells => &[Entry::CellVertex, Entry::ClippedCellVertex],
             _ => &[],
         };
@@ -293,6 +332,7 @@ fn reachable_variants_have_modules() {
         Kind::Cells,
         Kind::Boxes,
         Kind::Quads,
+        Kind::Crowd,
         Kind::TileLists,
         Kind::TilePatches,
         Kind::TileTree,
@@ -301,7 +341,8 @@ fn reachable_variants_have_modules() {
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            for kind in kinds.into_iter().filter(|k| k.walks() || patches) {
+            let has = |k: &Kind| patches || (k.walks() && *k != Kind::Crowd);
+            for kind in kinds.into_iter().filter(has) {
                 for outside in [0, 1] {
                     let variant = Variant {
                         outside,
@@ -374,5 +415,6 @@ fn kept_spirv_is_what_the_sources_give() {
     }
     let files = std::fs::read_dir(format!("{}/shaders-spirv", env!("CARGO_MANIFEST_DIR")));
     let files = files.unwrap().count();
-    assert_eq!(files, modules().len() + 2, "files that nothing reads");
+    // Two layouts, and the hash of the sources.
+    assert_eq!(files, modules().len() + 3, "files that nothing reads");
 }

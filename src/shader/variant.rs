@@ -24,6 +24,8 @@ pub enum Kind {
     Boxes,
     /// Tiles of one copy each, rasterised; fragments walk the tree.
     Quads,
+    /// Tiles of crowds, rasterised.
+    Crowd,
     /// Compute: lists of the patches that rays of tiles may meet.
     TileLists,
     /// Compute: tiles whose patches are listed.
@@ -32,6 +34,12 @@ pub enum Kind {
     TileTree,
     /// Compute: tiles of several copies.
     TileCopies,
+    /// Compute, for both stages: records of the copies of crowds.
+    CrowdCopies,
+    /// Compute, for both stages: copies of crowds in tiles.
+    CrowdTiles,
+    /// Compute, for both stages: copies of crowds in order, and their records.
+    CrowdOrder,
 }
 
 impl Kind {
@@ -42,10 +50,36 @@ impl Kind {
             Self::Cells => c"revmap cells",
             Self::Boxes => c"revmap boxes",
             Self::Quads => c"revmap quads of tiles",
+            Self::Crowd => c"revmap tiles of crowds",
+            Self::CrowdCopies => c"revmap copies of crowds",
+            Self::CrowdTiles => c"revmap copies in tiles",
+            Self::CrowdOrder => c"revmap copies in order",
             Self::TileLists => c"revmap lists of patches",
             Self::TilePatches => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
             Self::TileCopies => c"revmap tiles of several copies",
+        }
+    }
+
+    /// True if it lists what other kinds draw.
+    #[must_use]
+    pub const fn makes_lists(self) -> bool {
+        self.entry().makes_lists()
+    }
+
+    /// The entry file of its fragments, or of its compute invocations.
+    const fn entry(self) -> Entry {
+        match self {
+            Self::Boxes | Self::Quads => Entry::Tree,
+            Self::Cells => Entry::Cells,
+            Self::Crowd => Entry::Crowd,
+            Self::TileLists => Entry::TileLists,
+            Self::TilePatches => Entry::TilePatches,
+            Self::TileTree => Entry::TileTree,
+            Self::TileCopies => Entry::TileCopies,
+            Self::CrowdCopies => Entry::CrowdCopies,
+            Self::CrowdTiles => Entry::CrowdTiles,
+            Self::CrowdOrder => Entry::CrowdOrder,
         }
     }
 
@@ -54,7 +88,7 @@ impl Kind {
     pub const fn walks(self) -> bool {
         matches!(
             self,
-            Self::Boxes | Self::Quads | Self::TileTree | Self::TileCopies
+            Self::Boxes | Self::Quads | Self::Crowd | Self::TileTree | Self::TileCopies
         )
     }
 }
@@ -286,8 +320,11 @@ impl Variant {
             one_instance: self.one_instance & self.one_object,
             ..Self::LISTS
         };
-        if kind == Kind::TileLists {
-            return lists;
+        if kind.makes_lists() {
+            return match kind {
+                Kind::TileLists => lists,
+                _ => Self::LISTS,
+            };
         }
         let tables = (walks && self.reads_tables()) || kind == Kind::TilePatches;
         let tested = self.search == Search::Quadric && self.cells == 0;
@@ -300,7 +337,7 @@ impl Variant {
             one_instance: of(of_copy, self.one_instance & one_object),
             list_length: match kind {
                 Kind::TilePatches => self.list_length,
-                Kind::TileTree => self.list_length.min(1),
+                Kind::TileTree | Kind::TileCopies | Kind::Crowd => self.list_length.min(1),
                 _ => 0,
             },
             depth_test: if compute { self.depth_test } else { 1 },
@@ -340,9 +377,8 @@ impl Variant {
             Kind::Cells if self.outside == 0 => Entry::ClippedCellVertex,
             Kind::Cells => Entry::CellVertex,
             Kind::Quads => Entry::QuadVertex,
-            Kind::TileLists | Kind::TilePatches | Kind::TileTree | Kind::TileCopies => {
-                return None;
-            }
+            Kind::Crowd => Entry::CrowdVertex,
+            _ => return None,
         };
         let module = self.module(kind);
         let search = self.external.map_or(module.search, External::vertices);
@@ -352,14 +388,10 @@ impl Variant {
     /// The module of its fragments, or of its compute invocations.
     #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
-        let entry = match kind {
-            Kind::TileLists => return Module::plain(Entry::TileLists),
-            Kind::Boxes | Kind::Quads => Entry::Tree,
-            Kind::Cells => Entry::Cells,
-            Kind::TilePatches => Entry::TilePatches,
-            Kind::TileTree => Entry::TileTree,
-            Kind::TileCopies => Entry::TileCopies,
-        };
+        let entry = kind.entry();
+        if entry.makes_lists() {
+            return Module::plain(entry);
+        }
         Module {
             entry,
             search: self.search,

@@ -94,6 +94,8 @@ counted! {
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, count: u32, stride: u32);
     dispatches(vk::PFN_vkCmdDispatch, "vkCmdDispatch",
         cmd: vk::CommandBuffer, x: u32, y: u32, z: u32);
+    indirect_draws(vk::PFN_vkCmdDrawIndirect, "vkCmdDrawIndirect",
+        cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, count: u32, stride: u32);
     indirect_dispatches(vk::PFN_vkCmdDispatchIndirect, "vkCmdDispatchIndirect",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64);
 }
@@ -134,8 +136,9 @@ fn field(objects: u32, copies: u32) -> Scene {
 }
 
 /// The commands of a frame whose camera has moved, and the number of pixels hit.
-fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
+fn counts(device: &Device, scene: &Scene, stage: DrawStage, device_lists: bool) -> (Counts, usize) {
     let settings = Settings {
+        device_lists,
         width: 160,
         height: 120,
         stage,
@@ -179,12 +182,12 @@ fn commands_follow_pipelines() {
     // SAFETY: the host's own handles; the device is dropped before the host.
     let device = unsafe { Device::borrow(&of_host) }.unwrap();
     let all = |c: &Counts| {
-        let draws = c.draws + c.indexed + c.indirect;
+        let draws = c.draws + c.indexed + c.indirect + c.indirect_draws;
         c.barriers + c.fills + c.pipelines + draws + c.dispatches + c.indirect_dispatches
     };
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let of = |objects, copies| {
-            let (counts, shown) = counts(&device, &field(objects, copies), stage);
+            let (counts, shown) = counts(&device, &field(objects, copies), stage, false);
             println!("{stage:?}, {objects} objects of {copies} copies: {counts:?}");
             assert!(shown > 1000, "{shown} pixels");
             assert!(counts.barriers <= MOST_BARRIERS, "{counts:?}");
@@ -207,6 +210,19 @@ fn commands_follow_pipelines() {
             all(&below).abs_diff(all(&above)) <= 4,
             "{below:?}, {above:?}"
         );
+        // Lists of the device take as many commands for any number of copies.
+        let listed = |objects, copies| {
+            let (counts, shown) = counts(&device, &field(objects, copies), stage, true);
+            println!("{stage:?}, device lists, {objects} objects of {copies} copies: {counts:?}");
+            assert!(shown > 1000, "{shown} pixels");
+            assert_eq!((counts.updates, counts.copies), (0, 0), "{counts:?}");
+            counts
+        };
+        let some = listed(1, 100);
+        assert_eq!(some.indirect_draws, u32::from(stage == DrawStage::Fragment));
+        assert!(some.indirect_dispatches > 32, "{some:?}");
+        assert_eq!(listed(1, 10_000), some);
+        assert_eq!(listed(3, 1000), some);
     }
     drop(device);
     assert_silent(&host);

@@ -24,7 +24,7 @@ fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
+pub fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
     let mut scene = Scene::new(Camera::new(
         DVec3::new(0.0, 0.0, 1.4),
         DVec3::new(6.0, 6.0, 0.4),
@@ -49,7 +49,7 @@ fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
     scene
 }
 
-fn army(count: u32) -> Scene {
+pub fn army(count: u32) -> Scene {
     crowd(
         vec![shapes::sphere(), shapes::vase(), shapes::cone()],
         count,
@@ -73,14 +73,14 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
 }
 
 /// The same settings without lists of patches.
-fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
+pub fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
     Settings {
         solver: Solver::Quadric,
         ..settings(stage, occlusion_culling)
     }
 }
 
-fn draw(scene: &Scene, settings: &Settings) -> Frame {
+pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
     let mut offscreen = Offscreen::new(device(), scene, settings).unwrap();
     offscreen.draw().unwrap();
     let paths = offscreen.draw_paths();
@@ -89,7 +89,7 @@ fn draw(scene: &Scene, settings: &Settings) -> Frame {
 }
 
 #[track_caller]
-fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
+pub fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
     let differs = (0..a.pixels()).filter(|&i| {
         let bits = |f: &Frame| f.pixel(i).map(f32::to_bits);
         // Look-ups include those of hidden copies.
@@ -116,7 +116,7 @@ fn assert_near(a: &Frame, b: &Frame, what: &str) {
 
 /// Views from within, from above, from straight above and from afar, where most copies are smaller
 /// than a pixel.
-const VIEWS: [(&str, DVec3, DVec3); 4] = [
+pub const VIEWS: [(&str, DVec3, DVec3); 4] = [
     (
         "within",
         DVec3::new(0.0, 0.0, 0.9),

@@ -75,10 +75,10 @@ struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    fn fragments(host: &'a host::Host, device: &Device) -> Self {
+    fn fragments(host: &'a host::Host, device: &Device, settings: &SearchSettings) -> Self {
         let stage = Stage::new(host, small()).unwrap();
         Self {
-            renderer: host::renderer(device, &stage, &SearchSettings::exact(), SLOTS),
+            renderer: host::renderer(device, &stage, settings, SLOTS),
             stage: Some(stage),
             words: Self::cleared(host),
             host,
@@ -86,10 +86,10 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    fn compute(host: &'a host::Host, device: &Device) -> Self {
+    fn compute(host: &'a host::Host, device: &Device, settings: &SearchSettings) -> Self {
         let output = Output::Compute(Planes::Color);
         Self {
-            renderer: Renderer::new(device, output, &SearchSettings::exact(), SLOTS).unwrap(),
+            renderer: Renderer::new(device, output, settings, SLOTS).unwrap(),
             stage: None,
             words: Self::cleared(host),
             host,
@@ -141,14 +141,20 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Runs a test in both stages, each renderer with the objects of [`scene`].
+/// Runs a test in both stages, with lists of the host and of the device, each renderer with the
+/// objects of [`scene`].
 fn in_both_stages(test: impl Fn(&mut Drawn, &[ObjectId], &str)) {
     let host = open();
     let device = borrow(&host);
-    for stage in ["fragment", "compute"] {
+    let ways = ["fragment", "compute"].map(|stage| [(stage, false), (stage, true)]);
+    for (stage, device_lists) in ways.into_iter().flatten() {
+        let settings = SearchSettings {
+            device_lists,
+            ..SearchSettings::exact()
+        };
         let mut drawn = match stage {
-            "compute" => Drawn::compute(&host, &device),
-            _ => Drawn::fragments(&host, &device),
+            "compute" => Drawn::compute(&host, &device, &settings),
+            _ => Drawn::fragments(&host, &device, &settings),
         };
         let ids = add(&mut drawn.renderer, &scene());
         test(&mut drawn, &ids, stage);
@@ -262,7 +268,7 @@ fn objects_by_the_ten_thousand() {
         object
     };
     let bytes = |count: u32| {
-        let mut compute = Drawn::compute(&host, &device);
+        let mut compute = Drawn::compute(&host, &device, &SearchSettings::exact());
         let ids: Vec<_> = (0..count)
             .map(|n| compute.renderer.add(object(n)).unwrap())
             .collect();

@@ -259,6 +259,8 @@ pub struct MethodSettings {
     pub planes: Planes,
     /// Allowed error of searches on patches.
     pub tolerance: Tolerance,
+    /// Same as [`Settings::device_lists`](revmap::settings::Settings::device_lists).
+    pub device_lists: bool,
     /// How edges are treated.
     pub edges: Edges,
 }
@@ -304,6 +306,7 @@ impl Default for MethodSettings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
+            device_lists: false,
             edges: Edges::OneRay,
         }
     }
@@ -322,6 +325,7 @@ impl From<&MethodSettings> for Settings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             planes: settings.planes,
+            device_lists: settings.device_lists,
             tolerance: settings.tolerance,
             antialias: settings.edges == Edges::Silhouettes,
             ..Self::default()

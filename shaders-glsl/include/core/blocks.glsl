@@ -43,7 +43,7 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
     vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
-    uvec4 object;     // x: index of its object
+    uvec4 object;     // x: index of its object; y, z: its layer, and its index among those of crowds
 };
 
 // An object: the data that its instances share.
@@ -77,7 +77,10 @@ layout(set = 0, binding = 6, std140) uniform OwnObject {
     Object own_object;
 };
 
-layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
+#ifndef INSTANCE_ACCESS
+#define INSTANCE_ACCESS readonly
+#endif
+layout(set = 0, binding = 2, std430) INSTANCE_ACCESS buffer InstanceBlock {
     Instance instances[];
 };
 

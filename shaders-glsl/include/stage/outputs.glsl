@@ -60,10 +60,9 @@ vec2 octahedral(vec3 n)
 
 // Returns the way in pixels from a hit to where it was in the last frame. The hit moves along its normal by the change
 // of the extension; src/gpu/resources/motion.rs makes the rows.
-vec2 motion_of(uint instance, vec2 pixel, Hit hit)
+vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 {
     Instance before = instances[frame.size.w + instance];
-    PixelRays rays = varying_rays();
     vec3 p = ray_origin(rays, pixel) + hit.t * ray_direction(rays, pixel);
     // A replica is a solid of this extension, divided by the number of replicas along each axis.
     vec3 count = vec3(object.cells.xyz);
@@ -76,7 +75,8 @@ vec2 motion_of(uint instance, vec2 pixel, Hit hit)
 #endif
 
 #if OUTPUT != OUTPUT_DEPTH
-void store(Shaded s, vec2 pixel, Hit hit)
+// `rays` and `instance`: those of the copy that was hit.
+void store(Shaded s, PixelRays rays, uint instance, vec2 pixel, Hit hit)
 {
     color = s.color;
 #if OUTPUT == OUTPUT_PLANES
@@ -85,12 +85,11 @@ void store(Shaded s, vec2 pixel, Hit hit)
     albedo_v = vec4(s.albedo, s.uv.y);
 #endif
 #if OUTPUT == OUTPUT_LIST
-    uint instance = uint(look_ambient.w);
     base_color = vec4(s.albedo, 1.0);
     world_normal = vec4(s.shading_normal, 1.0);
     octahedral_normal = vec4(octahedral(s.shading_normal), 0.0, 1.0);
     material = vec4(unpackUnorm2x16(object.parts.y), 0.0, 1.0);
-    motion = vec4(motion_of(instance, pixel, hit), 0.0, 1.0);
+    motion = vec4(motion_of(rays, instance, pixel, hit), 0.0, 1.0);
     identity = uvec4(instances[instance].object.x, instance - object.instances.x, 0u, 1u);
 #endif
 }

@@ -15,8 +15,17 @@
 #define TILE_WORDS_GLSL
 #include "core/variant.glsl"
 
-layout(set = 2, binding = 1, std430) readonly buffer TileWords {
+#ifndef TILE_ACCESS
+#define TILE_ACCESS readonly
+#endif
+layout(set = 2, binding = 1, std430) TILE_ACCESS buffer TileWords {
     uint tile_words[];
 };
+
+// Returns the number of a pixel in its tile.
+uint bit_of(uvec2 pixel)
+{
+    return (pixel.x & GROUP_PIXELS - 1u) | (pixel.y & GROUP_PIXELS - 1u) * GROUP_PIXELS;
+}
 
 #endif

@@ -4,7 +4,7 @@ use super::Content;
 use super::entry::{Derived, Entry};
 use crate::error::Result;
 use crate::plan::levels::{self, coarsest, pixels_per_unit};
-use crate::plan::{Conditions, FramePlan, PlanObject, View, plan, shape_of};
+use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
@@ -76,8 +76,17 @@ impl Content {
             occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
             casts: self.casts(),
+            lists_crowds: self.lists_crowds(),
             host_depths: self.is_compute() && self.target_has_depths,
         }
+    }
+
+    /// True if the device lists the tiles of crowds: it has doubles, and no plane needs where copies
+    /// were.
+    fn lists_crowds(&self) -> bool {
+        self.settings.device_lists
+            && self.device.chosen.features.shader_float64 == ash::vk::TRUE
+            && !self.output.planes().has_motion()
     }
 
     /// Returns all objects with surfaces of the levels that the view allows. Makes the surfaces that
@@ -111,10 +120,12 @@ impl Content {
     /// that a shadow may fall nearer to the eye than its caster.
     fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
         let casts = self.casts();
+        let lists_crowds = self.lists_crowds() && !casts;
         let tolerance = self.settings.tolerance;
         let level_of = |entry: &Entry, derived: &Derived| match view {
             Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
-                let pixels = entry.pixels_per_unit(view, casts);
+                let crowd = lists_crowds && entry.drawn().instances.len() > MOST_PROXIES;
+                let pixels = entry.pixels_per_unit(view, [casts, crowd]);
                 // An object that does not show takes a level that is already made.
                 let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
                 made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
@@ -160,13 +171,15 @@ impl Content {
 impl Entry {
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
-    pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
-        pixels_per_unit(self.drawn(), self.growth().height(), view, all)
+    /// `at_once`: see [`pixels_per_unit`].
+    pub fn pixels_per_unit(&self, view: &View, [all, at_once]: [bool; 2]) -> f64 {
+        let height = self.growth().height();
+        pixels_per_unit(self.drawn(), height, view, [all, at_once])
     }
 
     /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
     pub fn error_pixels(&self, level: u8, view: &View) -> f64 {
-        levels::bound(level) * self.pixels_per_unit(view, false)
+        levels::bound(level) * self.pixels_per_unit(view, [false; 2])
     }
 
     /// The object in the form that a plan reads; `None` before it is derived.

@@ -115,6 +115,7 @@ impl Candidate {
             shader_clip_distance: vk::Bool32::from(self.clips()),
             large_points: vk::Bool32::from(self.large_points()),
             sample_rate_shading: self.features.sample_rate_shading,
+            shader_float64: self.features.shader_float64,
             multi_draw_indirect: self.features.multi_draw_indirect,
             draw_indirect_first_instance: self.features.draw_indirect_first_instance,
             ..Default::default()

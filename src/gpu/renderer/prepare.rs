@@ -121,6 +121,9 @@ impl Renderer {
         }
         to.write_frame(&block)?;
         to.serial += 1;
+        // SAFETY: as the caller promised.
+        unsafe { self.record_lists(cmd, slot)? };
+        let to = &mut self.slots[slot];
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
             slot,
@@ -187,9 +190,14 @@ impl Renderer {
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
         }
+        let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
+        let crowd_pipelines = listed
+            .map(|step| pipelines.get(step.variant, step.kind, output, &self.owner))
+            .collect::<Result<_>>()?;
         Ok(BoundPlan {
             plan: plan.clone(),
             steps,
+            crowd_pipelines,
             buffers,
         })
     }
@@ -242,6 +250,13 @@ impl Renderer {
                 }
                 None => {}
             }
+        }
+        if let Some(crowds) = &plan.frame.crowds {
+            let numbers = || (crowds.members.iter()).map(|&n| plan.objects[n as usize].number);
+            let entries = || numbers().filter_map(|number| self.content.objects.at(number));
+            let versions = numbers().zip(entries().map(|entry| entry.version));
+            let placements = entries().flat_map(|entry| entry.drawn().placements());
+            to.write_crowds(crowds, versions.collect(), placements)?;
         }
         if let Some(hierarchy) = hierarchy {
             to.write_casters(&hierarchy)?;

@@ -101,6 +101,9 @@ impl Renderer {
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
         for (variant, kind, textures) in self.content.reachable() {
+            if !compute && kind.makes_lists() {
+                continue;
+            }
             let pipeline = pipelines.get(variant, kind, &self.content.output, &self.owner)?;
             let point = if compute {
                 vk::PipelineBindPoint::COMPUTE

@@ -52,7 +52,12 @@ impl Renderer {
                     // SAFETY: as the caller promised.
                     unsafe { raw.cmd_draw(cmd, count, 1, vertices * range.start, 0) };
                 }
-                Call::Dispatch(..) | Call::Indirect(..) => {}
+                Call::IndirectTiles(word) => {
+                    let at = 4 * u64::from(*word);
+                    // SAFETY: as the caller promised; the draw is within the buffer.
+                    unsafe { raw.cmd_draw_indirect(cmd, slot.bins.raw, at, 1, 0) };
+                }
+                Call::Dispatch(..) | Call::Indirect(..) | Call::Groups(..) => {}
             })?;
         }
         Ok(())
@@ -105,6 +110,60 @@ impl Renderer {
             })?;
         }
         Ok(())
+    }
+
+    /// Records the dispatches that list the crowds of a prepared slot.
+    ///
+    /// # Safety
+    /// As for [`Renderer::prepare`].
+    pub(super) unsafe fn record_lists(&self, cmd: vk::CommandBuffer, slot: usize) -> Result<()> {
+        let slot = &self.slots[slot];
+        let Some(bound) = &slot.bound else {
+            return Ok(());
+        };
+        let Some(crowds) = &bound.plan.frame.crowds else {
+            return Ok(());
+        };
+        let [first, words] = crowds.zeroed.map(|words| 4 * u64::from(words));
+        let raw = &self.device.raw;
+        // The slot may have been prepared in the same commands before.
+        self.wait_for_lists(cmd);
+        // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
+        unsafe { raw.cmd_fill_buffer(cmd, slot.bins.raw, first, words, 0) };
+        self.wait_for_lists(cmd);
+        let textures = bound.steps.last().map(|step| &step.textures);
+        let textures = textures.map_or(vk::DescriptorSet::null(), |t| t.set);
+        for (step, pipeline) in crowds.steps.iter().zip(&bound.crowd_pipelines) {
+            self.device.labelled(cmd, step.kind.label(), || {
+                let point = vk::PipelineBindPoint::COMPUTE;
+                self.bind_sets(cmd, point, slot, *pipeline, textures, &[0; 2])?;
+                // SAFETY: as the caller promised.
+                unsafe { self.dispatch(cmd, slot, step) };
+                self.wait_for_lists(cmd);
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Records a barrier between two steps that list crowds, or between the last one and what draws
+    /// them.
+    fn wait_for_lists(&self, cmd: vk::CommandBuffer) {
+        use vk::{AccessFlags as A, PipelineStageFlags as S};
+        let barrier = vk::MemoryBarrier::default()
+            .src_access_mask(A::SHADER_WRITE | A::TRANSFER_WRITE)
+            .dst_access_mask(
+                A::SHADER_READ | A::SHADER_WRITE | A::TRANSFER_WRITE | A::INDIRECT_COMMAND_READ,
+            );
+        let stages = S::COMPUTE_SHADER
+            | S::TRANSFER
+            | S::DRAW_INDIRECT
+            | S::VERTEX_SHADER
+            | S::FRAGMENT_SHADER;
+        let none = vk::DependencyFlags::empty();
+        let raw = &self.device.raw;
+        // SAFETY: `cmd` is recording, outside a render pass.
+        unsafe { raw.cmd_pipeline_barrier(cmd, stages, stages, none, &[barrier], &[], &[]) };
     }
 
     /// The slot of a frame, and its bindings.
@@ -165,7 +224,11 @@ impl Renderer {
                     self.push(cmd, pushed);
                     raw.cmd_dispatch_indirect(cmd, slot.bins.raw, 4 * u64::from(*head));
                 }
-                Call::Draws(_) | Call::Quads(_) => {}
+                Call::Groups([x, y, z], pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch(cmd, *x, *y, *z);
+                }
+                Call::Draws(_) | Call::Quads(_) | Call::IndirectTiles(_) => {}
             }
         }
     }

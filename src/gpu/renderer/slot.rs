@@ -13,8 +13,12 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::plan::casters::Hierarchy;
+use crate::plan::crowd::{Crowds, placement_words};
 use crate::plan::{Call, DrawPath, FramePlan, View};
-use crate::shader::{CasterNode, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock};
+use crate::scene::Placement;
+use crate::shader::{
+    CasterNode, CrowdBlock, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -29,6 +33,11 @@ pub(crate) struct FrameSlot {
     tiles: Buffer,
     pub bins: Buffer,
     pub draws: Buffer,
+    /// Placements of the copies of crowds.
+    placements: Buffer,
+    crowds: Buffer,
+    /// The objects in `placements`, each with the version of its values.
+    placed: Vec<(u32, u64)>,
     /// The plan and bindings to record; `None` before the slot is derived.
     pub bound: Option<BoundPlan>,
     /// Counts the slot's frames. A token of an earlier frame records nothing.
@@ -53,6 +62,8 @@ pub(crate) struct BoundPlan {
     pub plan: Arc<ViewPlan>,
     /// One per step.
     pub steps: Vec<BoundStep>,
+    /// Pipelines of the steps that list crowds.
+    pub crowd_pipelines: Vec<vk::Pipeline>,
     pub buffers: TableBuffers,
 }
 
@@ -87,6 +98,9 @@ impl FrameSlot {
             tiles: buffer(Use::Storage, "tiles", 0)?,
             bins: buffer(Use::Bins, "bins of tiles", 0)?,
             draws: buffer(Use::Draws, "draws", 0)?,
+            placements: buffer(Use::Storage, "placements of crowds", 0)?,
+            crowds: buffer(Use::Storage, "crowds", 0)?,
+            placed: Vec::new(),
             bound: None,
             serial: 0,
             written: None,
@@ -134,6 +148,8 @@ impl FrameSlot {
             &self.tiles,
             &self.bins,
             &self.draws,
+            &self.placements,
+            &self.crowds,
         ];
         all.iter().map(|buffer| buffer.bytes).sum()
     }
@@ -166,9 +182,11 @@ impl FrameSlot {
                     all.dispatches += 1;
                     all.tiles += groups;
                 }
-                Call::Indirect(..) => all.dispatches += 1,
+                Call::Indirect(..) | Call::Groups(..) => all.dispatches += 1,
+                Call::IndirectTiles(_) => all.draws += 1,
             }
         }
+        all.dispatches += frame.crowds.as_ref().map_or(0, |c| c.steps.len() as u32);
         all
     }
 
@@ -203,12 +221,14 @@ impl FrameSlot {
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
-        let words = 4 * plan.words.len() as u64;
+        let crowds = plan.crowds.as_ref();
+        let [tiles, bins] = crowds.map_or([0; 2], |c| [c.tile_words, c.bin_words]);
+        let words = 4 * u64::from(tiles.max(plan.words.len() as u32));
         if self.tiles.bytes < words {
             self.tiles = roomy(&self.device, "tiles", words)?;
             self.named = None;
         }
-        let bins_bytes = 4 * u64::from(plan.bin_words);
+        let bins_bytes = 4 * u64::from(bins.max(plan.bin_words));
         if self.bins.bytes < bins_bytes {
             let bytes = bins_bytes + bins_bytes / 2;
             self.bins = Buffer::for_use(&self.device, Use::Bins, "bins of tiles", bytes)?;
@@ -221,6 +241,42 @@ impl FrameSlot {
         }
         write_slice(&mut self.tiles, &plan.words)?;
         write_slice(&mut self.draws, &plan.draws)
+    }
+
+    /// Writes the blocks of a plan's crowds, and the placements of their copies unless they are
+    /// those of `placed`: an object and the version of its values each.
+    pub fn write_crowds<'a>(
+        &mut self,
+        crowds: &Crowds,
+        placed: Vec<(u32, u64)>,
+        placements: impl Iterator<Item = &'a Placement>,
+    ) -> Result<()> {
+        let objects = size_of_val(crowds.objects.as_slice()) as u64;
+        let bytes = size_of::<CrowdBlock>() as u64 + objects;
+        if self.crowds.bytes < bytes {
+            self.crowds = roomy(&self.device, "crowds", bytes)?;
+            self.named = None;
+        }
+        write(&mut self.crowds, 0, &crowds.block)?;
+        let (_, rest) = self.crowds.mapped()?.split_at_mut(size_of::<CrowdBlock>());
+        rest[..objects as usize].copy_from_slice(bytemuck::cast_slice(&crowds.objects));
+        if self.placed == placed {
+            return Ok(());
+        }
+        let bytes = u64::from(crowds.block.counts[0]) * size_of::<[[u32; 2]; 10]>() as u64;
+        if self.placements.bytes < bytes {
+            self.placements = roomy(&self.device, "placements of crowds", bytes)?;
+            self.named = None;
+        }
+        let to = self
+            .placements
+            .mapped()?
+            .chunks_exact_mut(size_of::<[[u32; 2]; 10]>());
+        for (to, placement) in to.zip(placements) {
+            to.copy_from_slice(bytemuck::cast_slice(&placement_words(placement)));
+        }
+        self.placed = placed;
+        Ok(())
     }
 
     /// Points the sets to their buffers, if those have changed.
@@ -241,7 +297,12 @@ impl FrameSlot {
             Resource::Buffer(self.objects.raw, size_of::<ObjectBlock>() as u64),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![(1, whole(&self.tiles)), (6, whole(&self.bins))];
+        let mut of_target = vec![
+            (1, whole(&self.tiles)),
+            (6, whole(&self.bins)),
+            (7, whole(&self.placements)),
+            (8, whole(&self.crowds)),
+        ];
         if let Some((target, _)) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));

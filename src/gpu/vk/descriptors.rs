@@ -76,6 +76,14 @@ pub(crate) const SETS: [&[Binding]; 3] = [
             vk::DescriptorType::STORAGE_BUFFER,
             vk::ShaderStageFlags::COMPUTE,
         ), // bins of tiles
+        one(
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::ShaderStageFlags::COMPUTE,
+        ), // placements of crowds
+        one(
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::ShaderStageFlags::COMPUTE,
+        ), // crowds
     ],
 ];
 

@@ -1,6 +1,7 @@
 //! The projection of one copy, or of a cluster of copies: the rectangle of pixels and the nearest
 //! depth.
 
+use super::cover::SIDE;
 use crate::plan::View;
 use crate::scene::{Cluster, Placement};
 use glam::{DMat3, DVec2, DVec3};
@@ -90,6 +91,22 @@ impl Projector {
     /// The pixels of the picture: left, top, right, bottom.
     pub fn picture(&self) -> [u32; 4] {
         self.ends.map(|pixel| pixel.max(0) as u32)
+    }
+
+    /// Number of tiles across and down.
+    pub fn tiles(&self) -> [u32; 2] {
+        let tiles = |pixels: f64| ((pixels + 0.5) / f64::from(SIDE)).ceil() as u32;
+        [tiles(self.high.x), tiles(self.high.y)]
+    }
+
+    /// The rows and limits of `CrowdBlock`.
+    pub fn for_crowds(&self) -> ([[f32; 4]; 3], [f32; 4]) {
+        let row = |n: usize, w: f64| self.rows.row(n).extend(w).as_vec4().to_array();
+        let (low, high) = (self.low - self.margin, self.high + self.margin);
+        (
+            [row(0, self.margin), row(1, low.x), row(2, low.y)],
+            [high.x as f32, high.y as f32, 0.0, 0.0],
+        )
     }
 
     pub fn axes(&self, copy: &Placement, axis: DVec2) -> ProjectedAxes {

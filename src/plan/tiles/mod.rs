@@ -33,7 +33,7 @@ use crate::scene::{Copies, Placement};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
 use candidates::{Candidates, CopyFacts};
-use cover::{SIDE, within};
+use cover::within;
 use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -145,8 +145,7 @@ impl<'a> Visible<'a> {
         fill: impl Fn(&mut Strip<'a>, &Candidates<'a>) + Sync,
     ) -> Self {
         let projector = candidates.projector;
-        let tiles = |pixels: f64| ((pixels + 0.5) / f64::from(SIDE)).ceil() as u32;
-        let size = [tiles(projector.high.x), tiles(projector.high.y)];
+        let size = projector.tiles();
         // Several strips per thread, as some take longer.
         let strip = size[0].div_ceil(4 * rayon::current_num_threads() as u32);
         let strip = strip.next_multiple_of(BLOCK);

@@ -27,6 +27,6 @@ void main()
     hit.exhausted = false;
     hit.at_border = false;
     count_steps(pixel, hit.steps, hit.exhausted);
-    store(shade(varying_look(), rays, pixel, hit), pixel, hit);
+    store(shade(varying_look(), rays, pixel, hit), varying_rays(), uint(look_ambient.w), pixel, hit);
     gl_FragDepth = gl_FragCoord.z; // written, as the search does
 }

@@ -155,8 +155,8 @@ impl Pipelines {
         ];
         // Proxies and quads have no vertex input: shaders make their corners from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let is_quads = kind == Kind::Quads;
-        let topology = match is_quads && self.constants.large_points {
+        let is_quads = matches!(kind, Kind::Quads | Kind::Crowd);
+        let topology = match kind == Kind::Quads && self.constants.large_points {
             true => vk::PrimitiveTopology::POINT_LIST,
             false => vk::PrimitiveTopology::TRIANGLE_LIST,
         };

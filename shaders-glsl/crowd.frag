@@ -1,0 +1,37 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Traces a fragment of a tile of a crowd.
+#include "stage/queue_varyings.glsl"
+#include "stage/queue.glsl"
+#include "stage/outputs.glsl"
+
+layout(depth_greater) out float gl_FragDepth;
+
+void main()
+{
+    vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
+    take_frame();
+    take_lights();
+    if (ONE_OBJECT != 0u) {
+        take_object(instances[tile_words[tile_queue.x]].object.x);
+    }
+    float depth = 2.0; // behind everything
+    uint index;
+    Hit hit;
+    bool found = nearest_copy(tile_queue.x, tile_queue.y, bit_of(uvec2(gl_FragCoord.xy)), pixel, depth, index, hit);
+    count_steps(pixel, hit.steps, hit.exhausted);
+    if (!found) {
+        discard;
+    }
+    Instance i = instances[index];
+    if (ONE_OBJECT == 0u) {
+        take_object(i.object.x);
+    }
+    PixelRays rays = pixel_rays(i);
+    Look look = look_of(i);
+#if HOST_SHADING
+    look.instance = index;
+#endif
+    store(shade(look, rays, pixel, hit), rays, index, pixel, hit);
+    gl_FragDepth = depth_of(rays.base + hit.t);
+}

@@ -1,0 +1,397 @@
+//! Crowds: objects with many copies, whose tiles the device lists. The host's part does not grow
+//! with the number of copies.
+//!
+//! The device projects all copies and sorts them into ranges of depth. Range by range, the nearest
+//! first, it lists the copies in the tiles of 8 x 8 pixels that may show them, and marks the pixels
+//! that they are sure to hide from later ranges (hierarchical occlusion maps, Zhang et al. 1997,
+//! with proven cover in place of drawn depths). Then it sorts each tile's copies by depth. Nothing
+//! comes from an earlier frame. `crowd.glsl` names the passes and the lists.
+
+use super::tiles::Projector;
+use super::{Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View};
+use crate::scene::Placement;
+use crate::shader::generated as g;
+use crate::shader::{CrowdBlock, CrowdObject, Kind, Pushed, Variant};
+use crate::surface::CylinderPiece;
+use glam::DVec3;
+
+/// The crowds of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Crowds {
+    /// Steps that make the lists, in order. Each waits for the one before.
+    pub steps: Vec<Step>,
+    pub block: CrowdBlock,
+    pub objects: Vec<CrowdObject>,
+    /// Their positions among the plan's objects, in the order of their copies.
+    pub members: Vec<u32>,
+    /// Words of the bins that begin as zero: the first one, and their number.
+    pub zeroed: [u32; 2],
+    /// Words that tiles and bins need in all.
+    pub tile_words: u32,
+    pub bin_words: u32,
+}
+
+/// Most work groups along one side of a dispatch over copies.
+const GROUPS_ACROSS: u32 = 32_768;
+/// Pixels of a tile, and invocations of a work group.
+const PIXELS: u32 = g::GROUP_PIXELS * g::GROUP_PIXELS;
+/// Entries that are reserved for each tile and layer, and for each copy. A frame that needs more
+/// searches all visible copies of a layer in each of its pixels.
+const ENTRIES: [u32; 2] = [16, 2];
+/// Most copies for which entries are reserved: more of them are small or hidden.
+const MOST_RESERVED: u32 = 1 << 19;
+
+/// Adds the crowds of a frame.
+pub(super) fn add(
+    plan: &mut FramePlan,
+    view: &View,
+    objects: &[PlanObject],
+    (paths, variants): (&[Path], &[Variant]),
+    with: &Conditions,
+) {
+    let members: Vec<u32> = (0u32..)
+        .zip(paths)
+        .filter(|(_, path)| **path == Path::Crowd)
+        .map(|(n, _)| n)
+        .collect();
+    if members.is_empty() {
+        return;
+    }
+    let kind = if with.compute {
+        Kind::TileCopies
+    } else {
+        Kind::Crowd
+    };
+    let mut layers = Vec::new();
+    let mut layer_of = Vec::with_capacity(members.len());
+    for &n in &members {
+        let variant = Variant {
+            outside: 0,
+            list_length: 1,
+            ..variants[n as usize]
+        };
+        let (layer, _) = Layer::of(&mut layers, objects, n as usize, (variant, kind));
+        layer_of.push(layer as u32);
+        plan.parts[n as usize].tables = true;
+        plan.copies[n as usize] = Some(Vec::new());
+    }
+
+    let projector = Projector::new(view, with.ray_spread);
+    let [across, down] = projector.tiles();
+    let counts: Vec<u32> = (members.iter())
+        .map(|&n| objects[n as usize].copies().len() as u32)
+        .collect();
+    let lists = layers.len() as u32 * across * down;
+    let copies: u32 = counts.iter().sum();
+    let places = Places::new(plan, with, lists, copies, layers.len() as u32);
+
+    let mut first = 0;
+    let mut records = Vec::with_capacity(members.len());
+    for ((&n, &count), &layer) in members.iter().zip(&counts).zip(&layer_of) {
+        let of = &objects[n as usize];
+        records.push(crowd_object(of, [first, first + count], layer, with));
+        first += count;
+    }
+    let call_of = |layer: u32| {
+        let command = places.head + g::CROWD_HEAD + g::LAYER_HEAD * layer;
+        if with.compute {
+            let of = &objects[layers[layer as usize].objects[0] as usize];
+            Call::Indirect(
+                command,
+                Pushed {
+                    first: places.records + 3 * PIXELS * layer * across * down,
+                    heads: command + LAYER_RECORDS,
+                    object: of.number,
+                    instance: of.first_instance,
+                    ..Pushed::default()
+                },
+            )
+        } else {
+            Call::IndirectTiles(command)
+        }
+    };
+    let first_phase = plan.steps.last().map_or(2, |step| step.phase.max(1) + 1);
+    for (n, layer) in (0u32..).zip(&layers) {
+        let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
+        plan.compares_depths |= several || (with.compute && with.host_depths);
+        let kept = u32::from(plan.compares_depths);
+        let variant = Variant {
+            depth_test: kept,
+            depth_keep: kept,
+            ..layer.variant
+        };
+        plan.steps.push(Step {
+            phase: if with.compute { first_phase + n } else { 0 },
+            variant: variant.of_kind(kind),
+            kind,
+            object: layer.objects[0],
+            call: call_of(n),
+        });
+    }
+    if with.compute && plan.compares_depths {
+        // Tiles that were drawn before keep their depths.
+        for step in &mut plan.steps {
+            let variant = Variant {
+                depth_test: 1,
+                depth_keep: 1,
+                ..step.variant
+            };
+            step.variant = variant.of_kind(step.kind);
+        }
+    }
+    plan.crowds = Some(Crowds {
+        steps: list_steps(
+            copies,
+            lists,
+            layers.len() as u32,
+            &places,
+            layers[0].objects[0],
+        ),
+        block: block(
+            view,
+            &projector,
+            with,
+            &places,
+            [layers.len(), members.len()].map(|n| n as u32),
+            copies,
+        ),
+        objects: records,
+        members,
+        zeroed: [places.head, places.firsts - places.head],
+        tile_words: places.tile_words,
+        bin_words: places.bin_words,
+    });
+}
+
+/// First words of the lists.
+struct Places {
+    entries_most: u32,
+    // Bins.
+    head: u32,
+    cover: u32,
+    counts: u32,
+    shown: u32,
+    firsts: u32,
+    visible: u32,
+    entries: u32,
+    by_range: u32,
+    by_tile: u32,
+    bin_words: u32,
+    // Tiles.
+    records: u32,
+    all_visible: u32,
+    queues: u32,
+    tile_words: u32,
+}
+
+impl Places {
+    fn new(plan: &FramePlan, with: &Conditions, lists: u32, copies: u32, layers: u32) -> Self {
+        let tiles = lists / layers;
+        let wanted = ENTRIES[0] * lists + ENTRIES[1] * copies.min(MOST_RESERVED);
+        let entries_most = wanted.min((with.room() / 8) as u32);
+        let mut next = plan.bin_words;
+        let mut bins = |words: u32| {
+            let at = next;
+            next += words;
+            at
+        };
+        let head = bins(g::CROWD_HEAD + g::LAYER_HEAD * layers);
+        let cover = bins(g::GROUP_PIXELS * tiles);
+        let counts = bins(lists);
+        let shown = bins(2 * lists);
+        let firsts = bins(lists);
+        let visible = bins(g::VISIBLE_WORDS * copies);
+        let by_range = bins(copies);
+        let entries = bins(g::ENTRY_WORDS * entries_most);
+        let by_tile = bins(2 * entries_most);
+        let bin_words = bins(0);
+        // Records have four words each, from the first word on.
+        let mut next = (plan.words.len() as u32).next_multiple_of(4);
+        let mut words = |words: u32| {
+            let at = next;
+            next += words;
+            at
+        };
+        let records = words(if with.compute { 3 * PIXELS } else { 4 } * lists);
+        let all_visible = words(4 * copies);
+        let queues = words(4 * entries_most);
+        let tile_words = words(0);
+        Self {
+            entries_most,
+            head,
+            cover,
+            counts,
+            shown,
+            firsts,
+            visible,
+            entries,
+            by_range,
+            by_tile,
+            bin_words,
+            records,
+            all_visible,
+            queues,
+            tile_words,
+        }
+    }
+}
+
+/// The passes that list the copies.
+fn list_steps(copies: u32, lists: u32, layers: u32, places: &Places, object: u32) -> Vec<Step> {
+    let step = |kind, call| Step {
+        phase: 0,
+        variant: Variant::LISTS,
+        kind,
+        object,
+        call,
+    };
+    let pass = |bin| Pushed {
+        bin,
+        ..Pushed::default()
+    };
+    let groups = copies.div_ceil(PIXELS);
+    let wide = [groups.min(GROUPS_ACROSS), groups.div_ceil(GROUPS_ACROSS), 1];
+    let mut steps = vec![step(Kind::CrowdCopies, Call::Groups(wide, pass(0)))];
+    let over = |head: u32, bin| {
+        step(
+            Kind::CrowdOrder,
+            Call::Indirect(places.head + head, pass(bin)),
+        )
+    };
+    let of = |count: u32, bin| {
+        let groups = [count.div_ceil(PIXELS), 1, 1];
+        step(Kind::CrowdOrder, Call::Groups(groups, pass(bin)))
+    };
+    steps.extend([
+        over(0, g::CROWD_COUNT),
+        of(1, g::CROWD_RANGES),
+        over(0, g::CROWD_SLICE),
+        over(0, g::CROWD_SPREAD),
+    ]);
+    steps.extend((0..g::CROWD_SLICES).map(|slice| {
+        let call = Call::Indirect(places.head + SLICE_GROUPS + 4 * slice, pass(slice));
+        step(Kind::CrowdTiles, call)
+    }));
+    steps.extend([
+        of(1, g::CROWD_SCAN),
+        over(4, g::CROWD_SCATTER),
+        over(4, g::CROWD_RANK),
+        of(lists, g::CROWD_RECORDS),
+        of(layers, g::CROWD_FINISH),
+    ]);
+    steps
+}
+
+fn crowd_object(
+    of: &PlanObject,
+    [first, end]: [u32; 2],
+    layer: u32,
+    with: &Conditions,
+) -> CrowdObject {
+    let shape = of.shape;
+    let surface = of.surface.filter(|_| with.occlusion_culling);
+    let whole = [CylinderPiece {
+        radius: shape.radius,
+        low: shape.low,
+        high: shape.high,
+    }];
+    let rows = MIDDLE_ROWS;
+    let outer = surface.and_then(|s| s.outer()).map(|outer| outer.of(rows));
+    let outer = outer.filter(|o| o.len() <= g::CROWD_PIECES as usize);
+    let outer = outer.unwrap_or(&whole);
+    let inner = surface.and_then(|s| s.inner()).map(|inner| inner.of(rows));
+    let inner = inner.unwrap_or_default();
+    let packed = |pieces: &[CylinderPiece]| {
+        let mut all = [[0.0f32; 4]; g::CROWD_PIECES as usize];
+        for (to, piece) in all.iter_mut().zip(pieces) {
+            *to = [piece.radius, piece.low, piece.high, 0.0].map(|v| v as f32);
+        }
+        all
+    };
+    let [x, y] = [shape.axis.x, shape.axis.y].map(words_of);
+    CrowdObject {
+        axis: [x[0], x[1], y[0], y[1]],
+        shape: [
+            shape.axis.x as f32,
+            shape.axis.y as f32,
+            shape.radius as f32,
+            0.0,
+        ],
+        heights: [shape.low as f32, shape.high as f32, 0.0, 0.0],
+        copies: [first, end, of.first_instance, of.number],
+        pieces: [
+            layer,
+            outer.len() as u32,
+            inner.len().min(g::CROWD_PIECES as usize) as u32,
+            0,
+        ],
+        outer: packed(outer),
+        inner: packed(inner),
+    }
+}
+
+/// The words of a double in GLSL.
+fn words_of(value: f64) -> [u32; 2] {
+    let bits = value.to_bits();
+    [bits as u32, (bits >> 32) as u32]
+}
+
+/// A placement in the layout of `crowd_copies.comp`.
+pub(crate) fn placement_words(placement: &Placement) -> [[u32; 2]; 10] {
+    let (p, q, s) = (
+        placement.position,
+        placement.rotation.normalize(),
+        placement.scale,
+    );
+    [p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z].map(words_of)
+}
+
+/// Word of a layer's number of records after its command: `crowd.glsl`.
+const LAYER_RECORDS: u32 = 4;
+/// First word of the commands of ranges of depth in the head: `crowd.glsl`.
+const SLICE_GROUPS: u32 = 12;
+
+/// Rows of pixels for which cylinders are chosen: the middle one of three numbers of cylinders.
+const MIDDLE_ROWS: u32 = 32;
+
+fn block(
+    view: &View,
+    projector: &Projector,
+    with: &Conditions,
+    places: &Places,
+    [layers, objects]: [u32; 2],
+    copies: u32,
+) -> CrowdBlock {
+    let doubles = |v: DVec3| {
+        let mut words = [0; 8];
+        let all = v.to_array().map(words_of);
+        words[..6].copy_from_slice(all.as_flattened());
+        words
+    };
+    let [clip_x, clip_y] = view.clip_rows();
+    let ([row_x, row_y, row_z], limits) = projector.for_crowds();
+    let [across, down] = projector.tiles();
+    CrowdBlock {
+        eye: doubles(view.eye),
+        forward: doubles(view.forward),
+        dir_00: doubles(view.dir_00),
+        clip_x: doubles(clip_x),
+        clip_y: doubles(clip_y),
+        row_x,
+        row_y,
+        row_z,
+        limits,
+        picture: projector.picture(),
+        size: [across, down, layers, objects],
+        counts: [copies, places.entries_most, places.head, places.cover],
+        lists: [places.counts, places.firsts, places.visible, places.entries],
+        order: [places.by_range, places.by_tile, places.shown, 0],
+        tiles: [
+            places.records,
+            places.all_visible,
+            places.queues,
+            u32::from(with.compute),
+        ],
+        objects_of: [],
+    }
+}

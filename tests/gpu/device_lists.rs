@@ -1,0 +1,150 @@
+//! Tiles of crowds that the device lists show what the host's lists show.
+
+use crate::common::ways::STAGES;
+use crate::common::{device, placement, scene_of, shapes};
+use crate::crowds::{VIEWS, army, assert_same_bits, by_tree, draw};
+use glam::DVec3;
+use revmap::frame::Frame;
+use revmap::gpu::Offscreen;
+use revmap::maps::ColorMap;
+use revmap::scene::{Object, Scene};
+use revmap::settings::Settings;
+use std::sync::Arc;
+
+fn map() -> Arc<ColorMap> {
+    let texel = |n: u32| [(n * 37 % 256) as u8, (n * 91 % 256) as u8, 120, 255];
+    Arc::new(ColorMap::from_texels(16, 8, (0..128).map(texel).collect()).unwrap())
+}
+
+fn listed(settings: Settings) -> Settings {
+    Settings {
+        device_lists: true,
+        ..settings
+    }
+}
+
+/// Pictures are equal bit for bit, in either stage, with and without culling.
+#[test]
+fn the_device_lists_what_the_host_lists() {
+    for (name, eye, target) in VIEWS {
+        let mut scene = army(700);
+        (scene.camera.eye, scene.camera.target) = (eye, target);
+        for stage in STAGES {
+            let wanted = draw(&scene, &by_tree(stage, true));
+            for cull in [true, false] {
+                let found = draw(&scene, &listed(by_tree(stage, cull)));
+                assert_same_bits(&found, &wanted, &format!("{name}: {stage:?}, {cull}"));
+            }
+        }
+    }
+    device().check().unwrap();
+}
+
+/// Copies beside other solids, turned and scaled, off their axis and with a bump: two layers of
+/// crowds, and objects that the host lists.
+#[test]
+fn crowds_stand_among_other_solids() {
+    let mut scene = army(200);
+    scene.objects[1].axis = [0.45, 0.52];
+    scene.objects[2].texturing.color_map = Some(map());
+    let mut large = Object::new("large", Arc::new(shapes::vase()));
+    large.placement = placement([3.0, 3.0, 0.0], [0.2, 0.1, 0.0], [2.0, 1.5, 2.0]);
+    scene.objects.push(large);
+    (scene.camera.eye, scene.camera.target) = (VIEWS[1].1, VIEWS[1].2);
+    for stage in STAGES {
+        let offscreen = |settings: &Settings| {
+            let mut all = Offscreen::new(device(), &scene, settings).unwrap();
+            all.draw().unwrap();
+            all.read().unwrap()
+        };
+        let settings = by_tree(stage, true);
+        let (found, wanted) = (offscreen(&listed(settings)), offscreen(&settings));
+        assert_same_bits(&found, &wanted, &format!("{stage:?}"));
+    }
+    device().check().unwrap();
+}
+
+/// The picture of a view does not depend on the frames before it.
+#[test]
+fn frames_before_change_nothing() {
+    let mut scene = army(400);
+    for stage in STAGES {
+        let settings = listed(by_tree(stage, true));
+        let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
+        let mut show = |scene: &Scene| {
+            offscreen.update(scene).unwrap();
+            offscreen.draw().unwrap();
+            offscreen.read().unwrap()
+        };
+        let mut first: Vec<Frame> = Vec::new();
+        for n in [0, 1, 2, 3, 1, 0, 3, 2] {
+            (scene.camera.eye, scene.camera.target) = (VIEWS[n].1, VIEWS[n].2);
+            let frame = show(&scene);
+            match first.get(n) {
+                Some(before) => assert_same_bits(&frame, before, VIEWS[n].0),
+                None => first.push(frame),
+            }
+        }
+    }
+    device().check().unwrap();
+}
+
+/// Copies that move, come and go are shown where they are.
+#[test]
+fn copies_move_come_and_go() {
+    let mut scene = army(100);
+    (scene.camera.eye, scene.camera.target) = (VIEWS[1].1, VIEWS[1].2);
+    for stage in STAGES {
+        let settings = listed(by_tree(stage, true));
+        let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
+        offscreen.draw().unwrap();
+        for count in [100, 300, 70] {
+            let mut moved = army(count);
+            moved.camera = scene.camera;
+            for (n, copy) in moved.objects[0].instances.iter_mut().enumerate() {
+                copy.position += DVec3::new(0.3, 0.1, 0.01 * n as f64);
+            }
+            offscreen.update(&moved).unwrap();
+            offscreen.draw().unwrap();
+            let wanted = draw(&moved, &by_tree(stage, true));
+            assert_same_bits(&offscreen.read().unwrap(), &wanted, &format!("{count}"));
+        }
+    }
+    device().check().unwrap();
+}
+
+/// More entries than there is room for: all copies are searched in every pixel.
+#[test]
+fn full_lists_lose_nothing() {
+    let mut scene = scene_of(shapes::vase(), DVec3::new(12.0, 0.0, 1.0));
+    scene.camera.target = DVec3::new(0.0, 0.0, 0.5);
+    // The farthest first: an unsorted queue is searched to its end.
+    let place = |n: u32| {
+        let part = f64::from(n) / 400.0;
+        let at = [7.0 * part, 0.5 * part - 0.25, 0.0];
+        placement(at, [0.0; 3], [0.02, 4.0, 4.0])
+    };
+    scene.objects[0].instances = (0..400).map(place).collect();
+    let mut other = Object::new("other", Arc::new(shapes::cone()));
+    other.texturing.color_map = Some(map());
+    other.instances = (0..80)
+        .map(|n| placement([7.5, 0.01 * f64::from(n) + 0.4, 0.4], [0.0; 3], [0.3; 3]))
+        .collect();
+    scene.objects.push(other);
+    for stage in STAGES {
+        let small = |settings: Settings| Settings {
+            width: 96,
+            height: 64,
+            ..settings
+        };
+        // Without culling, copies behind others are listed, too.
+        let wanted = draw(&scene, &small(by_tree(stage, true)));
+        let found = draw(&scene, &small(listed(by_tree(stage, false))));
+        let steps = |frame: &Frame| frame.steps.iter().map(|s| f64::from(*s)).sum::<f64>();
+        let few = draw(&scene, &small(listed(by_tree(stage, true))));
+        let times = steps(&found) / steps(&few);
+        assert!(times > 2.0, "{stage:?}: {times}: no list is full");
+        assert_same_bits(&found, &wanted, &format!("{stage:?}"));
+    }
+    device().check().unwrap();
+}
