@@ -59,7 +59,15 @@ fn crowds_stand_among_other_solids() {
         };
         let settings = by_tree(stage, true);
         let (found, wanted) = (offscreen(&listed(settings)), offscreen(&settings));
-        assert_same_bits(&found, &wanted, &format!("{stage:?}"));
+        let bits = |d: &[f32]| d.iter().map(|d| d.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&found.distance) == bits(&wanted.distance), "{stage:?}");
+        // Fragments with maps are compiled from other modules, which round in other places.
+        let pairs = || found.color.iter().zip(&wanted.color);
+        let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+            (0..4).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max)
+        };
+        let most = pairs().map(apart).fold(0.0, f32::max);
+        assert!(most < 1e-4, "{stage:?}: {most}");
     }
     device().check().unwrap();
 }
