@@ -197,7 +197,7 @@ impl PipelineCompiler {
             }
         }
         let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
-        if crowds && variant.cells == 0 && object.clip != Clip::Box {
+        if crowds && variant.is_shaded() && variant.cells == 0 && object.clip != Clip::Box {
             let variant = Variant {
                 list_length: 1,
                 outside: 0,
