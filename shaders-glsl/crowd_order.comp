@@ -144,15 +144,18 @@ void record(uint list)
     first = all ? crowd.tiles.y : first;
     count = all ? visible | layer << QUEUE_LAYER_SHIFT | QUEUE_UNSORTED : count;
     uint place = corner.x | corner.y << 16;
+    uvec2 bits = all ? uvec2(0xffffffffu) : uvec2(bin_words[crowd.order.z + 2u * list], bin_words[crowd.order.z + 2u * list + 1u]);
     if (crowd.tiles.w == 0u) {
         uint at = crowd.tiles.x + 4u * (layer * tile_count() + take_records(layer, 1u));
-        tile_words[at] = place;
+        uint both = bits.x | bits.y;
+        uvec4 halves = uvec4(notEqual(uvec4(both & 0x0f0f0f0fu, both & 0xf0f0f0f0u, bits), uvec4(0u)));
+        uint shown = halves.x | halves.y << 1 | halves.z << 2 | halves.w << 3;
+        tile_words[at] = tile % crowd.size.x | tile / crowd.size.x << TILE_BITS | shown << RECORD_HALVES_SHIFT;
         tile_words[at + 1u] = first;
         tile_words[at + 2u] = count;
         tile_words[at + 3u] = near;
         return;
     }
-    uvec2 bits = all ? uvec2(0xffffffffu) : uvec2(bin_words[crowd.order.z + 2u * list], bin_words[crowd.order.z + 2u * list + 1u]);
     uint number = take_records(layer, uint(bitCount(bits.x) + bitCount(bits.y)));
     uint at = crowd.tiles.x + 3u * (layer * 64u * tile_count() + number);
     for (uint k = 0u; k < 64u; ++k) {

@@ -7,26 +7,28 @@
 // Returns the pixel of this invocation, the first word of its queue and the number of copies in it.
 uvec2 this_pixel(out uint first, out uint count)
 {
-    if (OF_CROWD) {
-        uint group = gl_WorkGroupID.x + MOST_GROUPS * gl_WorkGroupID.y;
-        uint record = 64u * group + gl_LocalInvocationIndex;
-        uint word = pushed.first + 3u * record;
-        uint place = record < bin_words[pushed.heads] ? tile_words[word] : 0xffffffffu;
-        first = tile_words[word + 1u];
-        count = tile_words[word + 2u];
-        return uvec2(place & 0xffffu, place >> 16);
-    }
-    uint at = 4u * (pushed.first + gl_WorkGroupID.x);
-    uint position = tile_words[at] + (gl_LocalInvocationID.x | gl_LocalInvocationID.y << 16);
-    first = tile_words[at + 1u];
-    count = tile_words[at + 2u];
-    if (count == TILE_SPLIT) {
-        at = first + 3u * gl_LocalInvocationIndex;
-        position = tile_words[at];
-        first += tile_words[at + 1u];
+    uint word;
+    uint base = 0u;
+    if (MAY_BE_OF_DEVICE && pushed.heads != 0u) {
+        // Pixels that the device wrote; the word at `heads` holds their number.
+        uint number = 64u * (gl_WorkGroupID.x + MOST_GROUPS * gl_WorkGroupID.y) + gl_LocalInvocationIndex;
+        word = pushed.records + 3u * number;
+        if (number >= bin_words[pushed.heads]) {
+            return uvec2(0xffffu);
+        }
+    } else {
+        uint at = 4u * (pushed.first + gl_WorkGroupID.x);
+        first = tile_words[at + 1u];
         count = tile_words[at + 2u];
+        if (count != TILE_SPLIT) {
+            return tile_corner_of(tile_words[at]) + gl_LocalInvocationID.xy;
+        }
+        base = first;
+        word = first + 3u * gl_LocalInvocationIndex;
     }
-    return uvec2(position & 0xffffu, position >> 16);
+    first = base + tile_words[word + 1u];
+    count = tile_words[word + 2u];
+    return uvec2(tile_words[word] & 0xffffu, tile_words[word] >> 16);
 }
 
 void main()

@@ -71,6 +71,7 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     ];
     let entries = [
         "cells.frag",
+        "tiles.frag",
         "tree.frag",
         "tile_patches.comp",
         "tile_tree.comp",

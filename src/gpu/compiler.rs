@@ -46,7 +46,7 @@ impl PipelineChoice {
             Kind::Boxes => "boxes",
             Kind::Cells => "cells",
             Kind::Quads => "quads of tiles",
-            Kind::Crowd => "tiles of crowds",
+            Kind::Tiles => "tiles",
             Kind::CrowdCopies => "copies of crowds",
             Kind::CrowdTiles => "copies in tiles",
             Kind::CrowdOrder => "copies in order",
@@ -199,7 +199,6 @@ impl PipelineCompiler {
         let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
         if crowds && variant.is_shaded() && variant.cells == 0 && object.clip != Clip::Box {
             let variant = Variant {
-                list_length: 1,
                 outside: 0,
                 ..variant
             };

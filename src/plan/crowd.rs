@@ -60,14 +60,13 @@ pub(super) fn add(
     let kind = if with.compute {
         Kind::TileCopies
     } else {
-        Kind::Crowd
+        Kind::Tiles
     };
     let mut layers = Vec::new();
     let mut layer_of = Vec::with_capacity(members.len());
     for &n in &members {
         let variant = Variant {
             outside: 0,
-            list_length: 1,
             ..variants[n as usize]
         };
         let (layer, _) = Layer::of(&mut layers, objects, n as usize, (variant, kind));
@@ -99,7 +98,7 @@ pub(super) fn add(
             Call::Indirect(
                 command,
                 Pushed {
-                    first: places.records + 3 * PIXELS * layer * across * down,
+                    records: places.records + 3 * PIXELS * layer * across * down,
                     heads: command + LAYER_RECORDS,
                     object: of.number,
                     instance: of.first_instance,

@@ -83,13 +83,15 @@ pub(crate) enum Call {
     Draws(Range<u32>),
     /// Records of quads.
     Quads(Range<u32>),
+    /// Records of tiles, for fragments.
+    Tiles(Range<u32>),
     /// Work groups.
     Dispatch(u32, Pushed),
     /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
     /// Work groups along three axes.
     Groups([u32; 3], Pushed),
-    /// Tiles of crowds; the draw is at this word of the bins.
+    /// Tiles that the device recorded; the draw is at this word of the bins.
     IndirectTiles(u32),
 }
 

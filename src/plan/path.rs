@@ -4,11 +4,10 @@ use super::proxy;
 use super::tiles::{Cylinder, Placements};
 use super::view::View;
 use crate::scene::Object;
-use crate::shader::Search;
 use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
-use crate::shader::{Kind, Variant};
+use crate::shader::{Features, Kind, Search, Variant};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OutlineCache;
 use glam::DVec2;
@@ -146,6 +145,12 @@ impl Conditions {
         self.compute || (of.variant.is_shaded() && pays)
     }
 
+    /// True if fragments may search the queues of an object's tiles: it has the library's patches, no
+    /// replicas and no shadows.
+    pub fn takes_queues(of: &PlanObject) -> bool {
+        of.variant.search == Search::Quadric && of.variant.features != Features::Full
+    }
+
     /// True if the device lists the tiles of an object's copies.
     fn is_crowd(&self, of: &PlanObject) -> bool {
         let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
@@ -158,7 +163,7 @@ impl Conditions {
         let draws = if self.compute {
             Kind::TileCopies
         } else {
-            Kind::Crowd
+            Kind::Tiles
         };
         [Kind::CrowdCopies, Kind::CrowdTiles, Kind::CrowdOrder, draws]
     }
@@ -249,6 +254,9 @@ impl Conditions {
             kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
         } else if self.takes_tiles(of) && !self.compute {
             kinds.push((Kind::Quads, &[0, 1]));
+            if Self::takes_queues(of) {
+                kinds.push((Kind::Tiles, &[0, 1]));
+            }
         } else if self.takes_tiles(of) {
             let may_cut = proxy::may_be_cut(of.object);
             let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
@@ -278,9 +286,7 @@ impl Conditions {
         } else {
             &[false, true]
         };
-        let lengths: Vec<u32> = if self.is_crowd(of) {
-            vec![1]
-        } else if self.may_permit_lists(of) {
+        let lengths: Vec<u32> = if self.may_permit_lists(of) {
             std::iter::once(0).chain(LIST_LENGTHS).collect()
         } else {
             vec![0]
@@ -310,8 +316,7 @@ impl Conditions {
                         ..*form
                     };
                     let key = (variant.of_kind(kind), kind);
-                    let empty = kind == Kind::TilePatches && list_length == 0
-                        || kind == Kind::TileCopies && (list_length != 0) != self.is_crowd(of);
+                    let empty = kind == Kind::TilePatches && list_length == 0;
                     if !empty && !all.contains(&key) {
                         all.push(key);
                     }

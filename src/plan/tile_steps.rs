@@ -1,7 +1,7 @@
-//! Steps that draw tiles: quads of fragments, or dispatches.
+//! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::LIST_LENGTHS;
-use super::tiles::{Batch, Drawer, LayerTiles, Projector, Visible};
+use super::tiles::{Batch, Drawer, LEAST_QUEUE, LayerTiles, Projector, Visible};
 use super::{Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View};
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
@@ -55,7 +55,13 @@ impl FramePlan {
         } else {
             Drawer::Fragments
         };
-        let mut dealt = visible.deal(drawer, &layer_of, layers.len());
+        let queues = |layer: &Layer| {
+            let copies = |n: &u32| objects[*n as usize].copies().len();
+            let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
+            enough && Conditions::takes_queues(&objects[layer.objects[0] as usize])
+        };
+        let queues: Vec<bool> = layers.iter().map(queues).collect();
+        let mut dealt = visible.deal(drawer, &layer_of, &queues);
         let layers_of_lists = layers.iter().zip(&mut dealt.layers);
         for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
             let patches = |&n: &u32| objects[n as usize].listed_patches();
@@ -86,14 +92,21 @@ impl FramePlan {
         if with.compute {
             self.dispatch(&layers, &dealt.layers, objects, with);
         } else {
-            for (layer, tiles) in layers.iter().zip(&dealt.layers) {
-                self.steps.push(Step {
+            for ((layer, tiles), queues) in layers.iter().zip(&dealt.layers).zip(queues) {
+                let step = |kind, call| Step {
                     phase: 0,
                     variant: layer.variant.of_kind(kind),
                     kind,
                     object: layer.objects[0],
-                    call: Call::Quads(tiles.quads.clone()),
-                });
+                    call,
+                };
+                // Both are recorded, even if one is empty: the number of commands follows the content.
+                let quads = step(kind, Call::Quads(tiles.quads.clone()));
+                self.steps.push(quads);
+                if queues {
+                    let tiles = step(Kind::Tiles, Call::Tiles(tiles.queued.clone()));
+                    self.steps.push(tiles);
+                }
             }
         }
         self.words = dealt.words;
@@ -108,7 +121,7 @@ impl FramePlan {
         objects: &[PlanObject],
         with: &Conditions,
     ) {
-        let several = tiles.iter().any(|t| !t.several.is_empty());
+        let several = tiles.iter().any(|t| !t.queued.is_empty());
         self.compares_depths = several || with.host_depths;
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
         self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
@@ -164,7 +177,7 @@ impl FramePlan {
                 self.bin_words += 4 * TILE_BINS * count;
             }
             let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
-            let shared = chunks(&tiles.several).map(|records| (phase, Kind::TileCopies, records));
+            let shared = chunks(&tiles.queued).map(|records| (phase, Kind::TileCopies, records));
             for (phase, kind, records) in alone.chain(shared) {
                 let pushed = Pushed {
                     first: records.start,
@@ -175,7 +188,7 @@ impl FramePlan {
                 let call = Call::Dispatch(records.len() as u32, pushed);
                 later.push(step(phase, kind, base, call));
             }
-            phase += u32::from(!tiles.several.is_empty());
+            phase += u32::from(!tiles.queued.is_empty());
         }
         later.sort_by_key(|step| step.phase);
         self.steps.extend(later);

@@ -13,12 +13,12 @@ pub enum Entry {
     ClippedCellVertex,
     /// Quads of tiles.
     QuadVertex,
-    /// Tiles of crowds.
-    CrowdVertex,
+    /// Corners of tiles.
+    TileVertex,
     /// Fragments of cells.
     Cells,
-    /// Fragments of tiles of crowds.
-    Crowd,
+    /// Fragments of tiles.
+    Tiles,
     /// Records of the copies of crowds.
     CrowdCopies,
     /// Copies of crowds in tiles.
@@ -45,9 +45,9 @@ impl Entry {
             Self::BoxVertex => "proxy_boxes.vert",
             Self::CellVertex | Self::ClippedCellVertex => "proxy_cells.vert",
             Self::QuadVertex => "tile_quads.vert",
-            Self::CrowdVertex => "crowd_quads.vert",
+            Self::TileVertex => "tiles.vert",
             Self::Cells => "cells.frag",
-            Self::Crowd => "crowd.frag",
+            Self::Tiles => "tiles.frag",
             Self::CrowdCopies => "crowd_copies.comp",
             Self::CrowdTiles => "crowd_tiles.comp",
             Self::CrowdOrder => "crowd_order.comp",
@@ -82,7 +82,7 @@ impl Entry {
     pub const fn searches(self) -> bool {
         matches!(
             self,
-            Self::Tree | Self::Crowd | Self::TileTree | Self::TileCopies
+            Self::Tree | Self::Tiles | Self::TileTree | Self::TileCopies
         )
     }
 }
@@ -172,7 +172,7 @@ impl Module {
         let search = match self.search {
             _ if matches!(
                 entry,
-                Entry::CellVertex | Entry::ClippedCellVertex | Entry::CrowdVertex
+                Entry::CellVertex | Entry::ClippedCellVertex | Entry::TileVertex
             ) =>
             {
                 S::None
@@ -271,7 +271,7 @@ fn has(search: Search, features: Features, output: Output) -> bool {
 #[must_use]
 #[allow(dead_code)]
 pub fn shading_modules(compute: bool) -> Vec<Module> {
-    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells | Entry::Crowd);
+    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells | Entry::Tiles);
     let mut all = modules();
     all.retain(|m| {
         m.entry.shades()
@@ -323,7 +323,7 @@ pub fn modules() -> Vec<Module> {
         if output == O::Color {
             vertex(Entry::BoxVertex, Search::External);
             vertex(Entry::QuadVertex, Search::External);
-            vertex(Entry::CrowdVertex, Search::None);
+            vertex(Entry::TileVertex, Search::None);
         }
     }
     for output in [O::Color, O::Planes, O::List, O::Depth, O::DepthOrtho] {
@@ -350,11 +350,11 @@ pub fn modules() -> Vec<Module> {
                     add(Entry::TilePatches, search);
                 }
             }
-            // Crowds have neither shadows nor replicas.
+            // Queues of replicas, and under shadows, are left to quads.
             let textured = features == Features::Textured;
             let plain = features == Features::Plain && output != O::List;
             if shaded && (plain || textured) {
-                add(Entry::Crowd, Search::Quadric);
+                add(Entry::Tiles, Search::Quadric);
             }
             let shown = (shaded && on_patches) || features == Features::Plain;
             if has(Search::Quadric, features, output) && shown {

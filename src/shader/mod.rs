@@ -13,7 +13,6 @@ pub use blocks::{
     CasterNode, CrowdBlock, CrowdObject, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE,
     ObjectBlock, Pushed,
 };
-#[cfg(test)]
 pub(crate) use catalogue::Features;
 #[cfg(test)]
 pub(crate) use catalogue::modules;

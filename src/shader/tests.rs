@@ -269,12 +269,12 @@ fn modules_are_few_and_small() {
             // SPIR-V's optimiser inlines every call.
             (_, Features::Full, _) => 78_600,
             // Copies may also come from queues of the device.
-            (Entry::TileCopies | Entry::Crowd, Features::Textured, _) => 43_000,
+            (Entry::TileCopies | Entry::Tiles, Features::Textured, _) => 43_000,
             // Tiles share an instance, and `live` has both forms of its steps.
             (_, Features::Textured, _) => 40_000,
             (Entry::Tree | Entry::Cells, Features::Plain, Output::Color) => 26_600,
             // Tiles of several copies read a solid for each copy.
-            (Entry::TileCopies | Entry::Crowd, Features::Plain, _) => 37_700,
+            (Entry::TileCopies | Entry::Tiles, Features::Plain, _) => 37_700,
             _ => 33_200,
         };
         assert!(bytes <= most, "{}: {bytes} bytes", module.name());
@@ -311,7 +311,7 @@ fn vertices_pass_what_fragments_read() {
                 &[Entry::BoxVertex]
             }
             Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
-            Entry::Crowd => &[Entry::CrowdVertex],
+            Entry::Tiles => &[Entry::TileVertex],
             Entry::Cells => &[Entry::CellVertex, Entry::ClippedCellVertex],
             _ => &[],
         };
@@ -332,7 +332,7 @@ fn reachable_variants_have_modules() {
         Kind::Cells,
         Kind::Boxes,
         Kind::Quads,
-        Kind::Crowd,
+        Kind::Tiles,
         Kind::TileLists,
         Kind::TilePatches,
         Kind::TileTree,
@@ -341,7 +341,7 @@ fn reachable_variants_have_modules() {
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            let has = |k: &Kind| patches || (k.walks() && *k != Kind::Crowd);
+            let has = |k: &Kind| patches || (k.walks() && *k != Kind::Tiles);
             for kind in kinds.into_iter().filter(has) {
                 for outside in [0, 1] {
                     let variant = Variant {

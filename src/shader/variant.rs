@@ -22,17 +22,17 @@ pub enum Kind {
     Cells,
     /// Shape boxes and strips of their sides, rasterised; fragments walk the tree.
     Boxes,
-    /// Tiles of one copy each, rasterised; fragments walk the tree.
+    /// Quads of tiles, each of one copy, rasterised; fragments walk the tree.
     Quads,
-    /// Tiles of crowds, rasterised.
-    Crowd,
+    /// Tiles, rasterised; fragments search the copies in their queues.
+    Tiles,
     /// Compute: lists of the patches that rays of tiles may meet.
     TileLists,
     /// Compute: tiles whose patches are listed.
     TilePatches,
     /// Compute: tiles of one copy, which walk the tree.
     TileTree,
-    /// Compute: tiles of several copies.
+    /// Compute: tiles and pixels with queues of copies.
     TileCopies,
     /// Compute, for both stages: records of the copies of crowds.
     CrowdCopies,
@@ -50,7 +50,7 @@ impl Kind {
             Self::Cells => c"revmap cells",
             Self::Boxes => c"revmap boxes",
             Self::Quads => c"revmap quads of tiles",
-            Self::Crowd => c"revmap tiles of crowds",
+            Self::Tiles => c"revmap tiles",
             Self::CrowdCopies => c"revmap copies of crowds",
             Self::CrowdTiles => c"revmap copies in tiles",
             Self::CrowdOrder => c"revmap copies in order",
@@ -72,7 +72,7 @@ impl Kind {
         match self {
             Self::Boxes | Self::Quads => Entry::Tree,
             Self::Cells => Entry::Cells,
-            Self::Crowd => Entry::Crowd,
+            Self::Tiles => Entry::Tiles,
             Self::TileLists => Entry::TileLists,
             Self::TilePatches => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
@@ -88,7 +88,7 @@ impl Kind {
     pub const fn walks(self) -> bool {
         matches!(
             self,
-            Self::Boxes | Self::Quads | Self::Crowd | Self::TileTree | Self::TileCopies
+            Self::Boxes | Self::Quads | Self::Tiles | Self::TileTree | Self::TileCopies
         )
     }
 }
@@ -337,7 +337,7 @@ impl Variant {
             one_instance: of(of_copy, self.one_instance & one_object),
             list_length: match kind {
                 Kind::TilePatches => self.list_length,
-                Kind::TileTree | Kind::TileCopies | Kind::Crowd => self.list_length.min(1),
+                Kind::TileTree => self.list_length.min(1),
                 _ => 0,
             },
             depth_test: if compute { self.depth_test } else { 1 },
@@ -377,7 +377,7 @@ impl Variant {
             Kind::Cells if self.outside == 0 => Entry::ClippedCellVertex,
             Kind::Cells => Entry::CellVertex,
             Kind::Quads => Entry::QuadVertex,
-            Kind::Crowd => Entry::CrowdVertex,
+            Kind::Tiles => Entry::TileVertex,
             _ => return None,
         };
         let module = self.module(kind);

@@ -1423,7 +1423,7 @@ typedef struct RevmapFrameStatistics {
      */
     uint32_t hidden;
     /**
-     * Quads, and work groups of dispatches whose number the host knows.
+     * Tiles of fragments, and work groups of dispatches whose number the host knows.
      */
     uint32_t tiles;
     /**

@@ -4,15 +4,7 @@
 #include "stage/tile_words.glsl"
 #include "core/replicas.glsl"
 
-// 1: the device made the queue (crowd_order.comp). It has four words per copy: the two of every queue, then the pixels of
-// the tile that may show the copy, one bit each.
-#if SEARCH == SEARCH_QUADRIC
-#define OF_CROWD (LIST_LENGTH != 0u)
-#else
-#define OF_CROWD false
-#endif
-
-const uint COPY_WORDS = OF_CROWD ? 4u : 2u;
+const bool MAY_BE_OF_DEVICE = SEARCH == SEARCH_QUADRIC; // the device lists tiles of patches alone
 
 // Returns true if pixel `bit` of the tile may show the copy at `word`.
 bool is_marked(uint word, uint bit)
@@ -30,30 +22,28 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
     uint steps = 0u;
     bool exhausted = false;
     // An unsorted queue holds all visible copies, of all layers.
-    bool sorted = !OF_CROWD || (count & QUEUE_UNSORTED) == 0u;
+    bool sorted = !MAY_BE_OF_DEVICE || (count & QUEUE_UNSORTED) == 0u;
     uint layer = count >> QUEUE_LAYER_SHIFT & 127u;
-    uint end = OF_CROWD ? count & QUEUE_COUNT : count;
-    float sense = OF_CROWD ? frame.forward.w : 1.0;
-    for (uint n = 0u; n < end; ++n) {
-        if (OF_CROWD) {
-            // Invocations meet behind this loop, each with the next copy of its own pixel.
-            while (n < end && !is_marked(first + COPY_WORDS * n, bit)) {
-                ++n;
-            }
-            if (n >= end) {
-                break;
-            }
+    uint end = first + QUEUE_WORDS * (MAY_BE_OF_DEVICE ? count & QUEUE_COUNT : count);
+    float sense = frame.forward.w;
+    for (uint word = first; word < end; word += QUEUE_WORDS) {
+        // Invocations meet behind this loop, each with the next copy of its own pixel.
+        while (word < end && !is_marked(word, bit)) {
+            word += QUEUE_WORDS;
         }
-        float begins = uintBitsToFloat(tile_words[first + COPY_WORDS * n + 1u]);
+        if (word >= end) {
+            break;
+        }
+        float begins = uintBitsToFloat(tile_words[word + 1u]);
         if (sense * depth_of(max(begins, 1e-30)) >= depth) {
             if (sorted) {
                 break;
             }
             continue;
         }
-        uint number = tile_words[first + COPY_WORDS * n];
+        uint number = tile_words[word];
         Instance i = instances[number];
-        if (OF_CROWD && !sorted && i.object.y != layer) {
+        if (!sorted && i.object.y != layer) {
             continue;
         }
         if (ONE_OBJECT == 0u) {

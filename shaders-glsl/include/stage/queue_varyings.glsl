@@ -1,4 +1,4 @@
-// Flat varyings of a tile of a crowd.
+// Flat varyings of a tile.
 #ifndef QUEUE_VARYINGS_GLSL
 #define QUEUE_VARYINGS_GLSL
 #ifndef VARYING

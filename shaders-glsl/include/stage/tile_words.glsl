@@ -1,16 +1,19 @@
-// A **tile** is a square of pixels with the copies that may be visible there. Records of four words come first, then
-// queues of copies.
+// A **tile** is a square of GROUP_PIXELS^2 pixels with the copies that may be visible there. Records of four words come
+// first, then queues of copies.
 //
-// Fragment shaders draw quads of 1, 2, 4 or 8 pixels a side, each with a single copy. A record holds corner and log2 of
-// the side (x | y << QUAD_BITS | log2 << 2 QUAD_BITS, pixels), the instance's index, 0, the nearest depth (float bits).
+// Record: the tile (column | row << TILE_BITS | halves << RECORD_HALVES_SHIFT), the first word of its queue, the number
+// of copies, the nearest depth (float bits). A queue is sorted by depth and has QUEUE_WORDS words per copy: the
+// instance's index, the copy's nearest depth (float bits), and the pixels of the tile that may show it, one bit each.
 //
-// Compute shaders use tiles of GROUP_PIXELS^2. Record of a single copy: the corner (x | y << 16, pixels), the
-// instance's index, 0, the nearest depth (float bits). Record of several copies: the corner, the first word of the
-// tile's queue, the number of copies, the nearest depth (float bits). A queue is sorted by depth and has two words per
-// copy: the instance's index, the copy's nearest depth (float bits). If the number of copies is TILE_SPLIT, the record
-// is GROUP_PIXELS^2 pixels from anywhere, so that no invocation is spent on empty pixels. Each of these has three
-// words: its position (x | y << 16), the start of its queue relative to the record's first such word, and its number of
-// copies. Unused positions at the end are 0xffffffff, outside of any picture.
+// Fragment shaders also draw quads of 1, 2, 4 or 8 pixels a side, each with a single copy. A record holds corner and
+// log2 of the side (x | y << QUAD_BITS | log2 << 2 QUAD_BITS, pixels), the instance's index, 0, the nearest depth.
+//
+// Compute shaders have two more kinds of records:
+// - A single copy: the corner (x | y << 16, pixels), the instance's index, 0, the nearest depth.
+// - GROUP_PIXELS^2 pixels from anywhere, so that no invocation is spent on empty pixels. The number of copies is
+//   TILE_SPLIT. Each pixel has three words, from the record's second word on: its position (x | y << 16), the start of
+//   its tile's queue relative to the record's first such word, and the queue's number of copies. Unused positions are
+//   0xffffffff, outside of any picture. The device writes such pixels in a row, without records (crowd_order.comp).
 #ifndef TILE_WORDS_GLSL
 #define TILE_WORDS_GLSL
 #include "core/variant.glsl"
@@ -21,6 +24,12 @@
 layout(set = 2, binding = 1, std430) TILE_ACCESS buffer TileWords {
     uint tile_words[];
 };
+
+// Returns the upper left pixel of a record's tile.
+uvec2 tile_corner_of(uint packed)
+{
+    return GROUP_PIXELS * (uvec2(packed, packed >> TILE_BITS) & ((1u << TILE_BITS) - 1u));
+}
 
 // Returns the number of a pixel in its tile.
 uint bit_of(uvec2 pixel)

@@ -40,7 +40,7 @@ pub struct FrameStatistics {
     /// Groups of draws, or dispatches, that are left out because their pipeline is not compiled
     /// ([`Renderer::hide_until_compiled`]).
     pub hidden: u32,
-    /// Quads, and work groups of dispatches whose number the host knows.
+    /// Tiles of fragments, and work groups of dispatches whose number the host knows.
     pub tiles: u32,
     /// Bytes of the slot's buffers.
     pub slot_bytes: u64,

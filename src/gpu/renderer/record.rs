@@ -52,6 +52,11 @@ impl Renderer {
                     // SAFETY: as the caller promised.
                     unsafe { raw.cmd_draw(cmd, count, 1, vertices * range.start, 0) };
                 }
+                Call::Tiles(range) => {
+                    let count = 6 * (range.end - range.start);
+                    // SAFETY: as the caller promised.
+                    unsafe { raw.cmd_draw(cmd, count, 1, 6 * range.start, 0) };
+                }
                 Call::IndirectTiles(word) => {
                     let at = 4 * u64::from(*word);
                     // SAFETY: as the caller promised; the draw is within the buffer.
@@ -228,7 +233,7 @@ impl Renderer {
                     self.push(cmd, pushed);
                     raw.cmd_dispatch(cmd, *x, *y, *z);
                 }
-                Call::Draws(_) | Call::Quads(_) | Call::IndirectTiles(_) => {}
+                Call::Draws(_) | Call::Quads(_) | Call::Tiles(_) | Call::IndirectTiles(_) => {}
             }
         }
     }

@@ -174,7 +174,7 @@ impl FrameSlot {
         for (step, _) in steps.filter(|(_, bound)| bound.pipeline.is_some()) {
             match &step.call {
                 Call::Draws(range) => all.draws += range.end - range.start,
-                Call::Quads(range) => {
+                Call::Quads(range) | Call::Tiles(range) => {
                     all.draws += 1;
                     all.tiles += range.end - range.start;
                 }

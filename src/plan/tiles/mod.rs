@@ -9,7 +9,7 @@
 //! 3. In this order, copies are listed in the tiles that may show them ([`outer`]). The pixels that
 //!    a copy is sure to hide are marked there ([`cover`]). Later copies are not listed for pixels
 //!    where they are wholly behind that copy.
-//! 4. The listed copies are distributed to records ([`deal`], [`quads`]).
+//! 4. The listed copies are distributed to records and queues ([`deal`]).
 //!
 //! A copy is dropped only where its solid is proven absent, or where solids in front of it are
 //! proven present. Pictures are identical to unculled ones to the last bit, except for roundings
@@ -27,13 +27,13 @@ mod quads;
 mod strip;
 
 pub(crate) use bounds::{Cylinder, Projector};
+pub(crate) use deal::LEAST_QUEUE;
 
 use super::view::View;
 use crate::scene::{Copies, Placement};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::{InnerCylinders, OuterCylinders};
 use candidates::{Candidates, CopyFacts};
-use cover::within;
 use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -93,7 +93,7 @@ pub(crate) struct Visible<'a> {
 /// The shader stage that draws tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Drawer {
-    /// Fragments, drawn for quads of a few pixels.
+    /// Fragments of tiles.
     Fragments,
     /// Work groups.
     Groups,
@@ -118,8 +118,8 @@ pub(crate) struct LayerTiles {
     pub listed: Range<u32>,
     /// Compute: tiles of one copy each, without lists of patches.
     pub single: Range<u32>,
-    /// Compute: tiles of several copies.
-    pub several: Range<u32>,
+    /// Tiles with queues of copies, and in compute records of pixels.
+    pub queued: Range<u32>,
 }
 
 impl LayerTiles {
@@ -189,9 +189,10 @@ impl<'a> Visible<'a> {
         copies
     }
 
-    /// Distributes the visible copies to records. `layer_of`: the layer of each batch, below
-    /// `layers`.
-    pub fn deal(&self, drawer: Drawer, layer_of: &[u32], layers: usize) -> TileWords {
+    /// Distributes the visible copies to records. `layer_of`: the layer of each batch. `queues`: for
+    /// each layer, true if fragments may search queues.
+    pub fn deal(&self, drawer: Drawer, layer_of: &[u32], queues: &[bool]) -> TileWords {
+        let layers = queues.len();
         let [across, down] = self.size;
         let lists: Vec<bool> = (0..self.batches.len())
             .map(|b| drawer == Drawer::Groups && self.lists_patches(b))
@@ -212,6 +213,7 @@ impl<'a> Visible<'a> {
                 layer_of,
                 lists: &lists,
                 single: &single,
+                queues,
                 picture: self.picture,
             };
             let tiles = across.next_multiple_of(BLOCK) * BLOCK;
@@ -244,20 +246,20 @@ fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
             let of = |[corner, list, count, near]: &[u32; 4]| {
                 [*corner, list + lists as u32, *count, *near]
             };
-            records.extend(band[layer].several.iter().map(of));
+            records.extend(band[layer].queued.iter().map(of));
             lists += band[layer].words.len();
         }
         all.push(LayerTiles {
             quads,
             listed,
             single,
-            several: first..records.len() as u32,
+            queued: first..records.len() as u32,
         });
     }
     // Queues follow all records.
     let behind = 4 * records.len() as u32;
     for layer in &all {
-        for record in &mut records[layer.several.start as usize..layer.several.end as usize] {
+        for record in &mut records[layer.queued.start as usize..layer.queued.end as usize] {
             record[1] += behind;
         }
     }
@@ -269,9 +271,4 @@ fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
         }
     }
     TileWords { words, layers: all }
-}
-
-/// The bits of a tile's pixels that are in the picture.
-fn in_picture(tile: [u32; 2], picture: [u32; 4]) -> u64 {
-    within(tile, picture)
 }

@@ -219,7 +219,8 @@ mod tests {
             let plain = Visible::of(&Candidates::new(&projector, &batches), fill_plainly);
             assert_eq!(found.copies(), plain.copies(), "{eye:?}");
             for drawer in [Drawer::Fragments, Drawer::Groups] {
-                let [found, plain] = [&found, &plain].map(|v| v.deal(drawer, &[0, 1, 0], 2));
+                let [found, plain] =
+                    [&found, &plain].map(|v| v.deal(drawer, &[0, 1, 0], &[true, false]));
                 assert!(!plain.words.is_empty());
                 assert!(found == plain, "{eye:?}");
             }

@@ -49,7 +49,7 @@ pub struct RevmapFrameStatistics {
     /// Draws and dispatches that are left out, because their pipelines are not compiled; see
     /// revmap_renderer_hide_until_compiled().
     pub hidden: u32,
-    /// Quads, and work groups of dispatches whose number the host knows.
+    /// Tiles of fragments, and work groups of dispatches whose number the host knows.
     pub tiles: u32,
     /// Bytes of the slot's buffers.
     pub slot_bytes: u64,

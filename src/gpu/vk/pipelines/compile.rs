@@ -153,9 +153,8 @@ impl Pipelines {
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
         ];
-        // Proxies and quads have no vertex input: shaders make their corners from numbers.
+        // Proxies, quads and tiles have no vertex input: shaders make their corners from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let is_quads = matches!(kind, Kind::Quads | Kind::Crowd);
         let topology = match kind == Kind::Quads && self.constants.large_points {
             true => vk::PrimitiveTopology::POINT_LIST,
             false => vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -164,7 +163,7 @@ impl Pipelines {
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = rasterization(is_quads);
+        let raster = rasterization(matches!(kind, Kind::Quads | Kind::Tiles));
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples))
             .sample_shading_enable(pass.sample_rays)

@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Corners of two triangles over a tile of a crowd (crowd_queues.comp). Points would vanish where their middle is outside
-// of the picture.
+// Corners of two triangles over a tile (tile_words.glsl). Points would vanish where their middle is outside of the
+// picture.
 #define VARYING out
 #include "stage/queue_varyings.glsl"
 #include "stage/tile_words.glsl"
@@ -12,9 +12,10 @@ void main()
     take_frame();
     uint at = 4u * (uint(gl_VertexIndex) / 6u);
     uint bit = 1u << (uint(gl_VertexIndex) % 6u);
-    uint corner_word = tile_words[at];
-    vec2 corner = vec2(corner_word & 0xffffu, corner_word >> 16);
-    corner += float(GROUP_PIXELS) * vec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
+    // Halves of the tile in which no pixel shows a copy are left out.
+    uvec4 halves = uvec4(tile_words[at]) >> RECORD_HALVES_SHIFT + uvec4(0u, 1u, 2u, 3u) & 1u;
+    uvec2 far = uvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
+    vec2 corner = vec2(tile_corner_of(tile_words[at]) + GROUP_PIXELS / 2u * (far * (1u + halves.yw) + (1u - far) * (1u - halves.xz)));
     float near = depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner * frame.pixels.xz + frame.pixels.yw, near, 1.0);
     if (VIEWS > 1u && VIEW_INDEX != frame_block.view.x) {

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces a fragment of a tile of a crowd.
+// Traces a fragment of a tile: the nearest of the copies in its queue.
 #include "stage/queue_varyings.glsl"
 #include "stage/queue.glsl"
 #include "stage/outputs.glsl"
