@@ -78,7 +78,7 @@ impl Dealer<'_> {
             rest.clear();
             rest.extend_from_slice(here);
             let in_groups = self.drawer == Drawer::Groups;
-            if let Some(n) = self.single_of(here).filter(|_| in_groups) {
+            if in_groups && let Some(n) = self.single_of(here) {
                 let one = rest.remove(n);
                 let to = &mut lists[self.layer_of[one.batch as usize] as usize];
                 to.add_single(&one, place, self.lists[one.batch as usize]);
@@ -150,8 +150,8 @@ impl BandRecords {
         to.push([corner, one.copy, 0, one.near]);
     }
 
-    /// Adds the queue of a tile, and its record. If `gathers`, the pixels of a tile
-    /// that do not all show copies share records with those of other tiles.
+    /// Adds the queue of a tile, and its record. If `gathers`, and some pixels of the tile show no copy,
+    /// its pixels share records with those of other tiles.
     fn add<'a>(
         &mut self,
         here: impl DoubleEndedIterator<Item = &'a TileCopy> + Clone,
