@@ -1,22 +1,10 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Computes the record of every copy of a crowd relative to the eye, in double precision like instance_block() of
-// src/gpu/resources/block.rs, and lists the copies that some pixel may show. One invocation per copy.
+// COPY_BOUNDS finds the copies that some pixel may show, one invocation per copy of a crowd. COPY_RECORDS makes the records
+// of those that are listed in tiles: relative to the eye, in double precision, like instance_block() of
+// src/gpu/resources/block.rs.
 #define INSTANCE_ACCESS
 #include "stage/crowd.glsl"
-
-const uint PLACEMENT_WORDS = 20u;
-layout(set = 2, binding = 7, std430) readonly buffer Placements {
-    uint placement_words[]; // position, unit quaternion, scale: ten doubles each
-};
-
-double placed(uint copy, uint n)
-{
-    uint at = PLACEMENT_WORDS * copy + 2u * n;
-    return packDouble2x32(uvec2(placement_words[at], placement_words[at + 1u]));
-}
-
-#define TRIPLE(of) dvec3(packDouble2x32(of[0].xy), packDouble2x32(of[0].zw), packDouble2x32(of[1].xy))
 
 dvec3 turned(dvec4 q, dvec3 v)
 {
@@ -45,12 +33,9 @@ bool is_beyond(Axes axes, vec3 cylinder)
     return any(lessThan(before, vec2(0.0))) || any(lessThan(behind, vec2(0.0)));
 }
 
-void main()
+// Returns the object of a copy.
+uint object_of(uint copy)
 {
-    uint copy = 64u * (gl_WorkGroupID.x + 32768u * gl_WorkGroupID.y) + gl_LocalInvocationIndex;
-    if (copy >= crowd.counts.x) {
-        return;
-    }
     uint n = 0u;
     for (uint high = crowd.size.w; n + 1u < high;) {
         uint middle = (n + high) >> 1;
@@ -58,27 +43,15 @@ void main()
         n = later ? middle : n;
         high = later ? high : middle;
     }
-    uvec4 axis = crowd.objects_of[n].axis;
+    return n;
+}
+
+void find_bounds(uint copy)
+{
+    uint n = object_of(copy);
     vec4 shape = crowd.objects_of[n].shape;
     vec3 cylinder = vec3(shape.z, crowd.objects_of[n].heights.xy);
-    uvec4 numbers = crowd.objects_of[n].copies;
-    uvec4 pieces = crowd.objects_of[n].pieces;
-
-    dvec3 p = dvec3(placed(copy, 0u), placed(copy, 1u), placed(copy, 2u)) - TRIPLE(crowd.eye);
-    dvec4 q = dvec4(placed(copy, 3u), placed(copy, 4u), placed(copy, 5u), placed(copy, 6u));
-    dvec3 s = dvec3(placed(copy, 7u), placed(copy, 8u), placed(copy, 9u));
-    dvec3 middle = p + turned(q, s * dvec3(0.0lf, 0.0lf, 0.5lf));
-    double depth = dot(middle, TRIPLE(crowd.forward));
-    dvec3 to_plane = TRIPLE(crowd.dir_00) * max(depth, 0.0lf);
-    dvec3 origin = turned(dvec4(-q.xyz, q.w), to_plane - p) / s - dvec3(packDouble2x32(axis.xy), packDouble2x32(axis.zw), 0.0lf);
-    Instance i;
-    i.position_sx = vec4(vec3(p), float(s.x));
-    i.rotation = vec4(q);
-    i.scale_depth = vec4(float(s.y), float(s.z), float(depth), float(dot(TRIPLE(crowd.clip_x), middle)));
-    i.origin = vec4(vec3(origin), float(dot(TRIPLE(crowd.clip_y), middle)));
-    i.object = uvec4(numbers.w, pieces.x, n, 0u);
-
-    Axes axes = axes_of(i, shape.xy);
+    Axes axes = axes_of(copy, shape.xy);
     vec2 depths = depths_of(axes, cylinder);
     ivec4 pixels = crowd.picture;
     bool shows = depths.y > 0.0;
@@ -90,21 +63,50 @@ void main()
     if (!shows || pixels.x > pixels.z || pixels.y > pixels.w) {
         return;
     }
-    uint number = numbers.z + copy - numbers.x;
-    instances[number] = i;
-    uint near = floatBitsToUint(max(depths.x * (1.0 - 1e-5), 0.0));
-    atomicMax(bin_words[head_word(LEAST_NEAR)], ~near);
-    atomicMax(bin_words[head_word(MOST_NEAR)], near);
-    uint place = count_up(head_word(VISIBLE_GROUPS), 0xffffffffu);
-    uint at = crowd.lists.z + VISIBLE_WORDS * place;
-    bin_words[at] = number;
+    uint near = floatBitsToUint(max(depths.x * crowd.limits.z, 0.0));
+    atomicAdd(bin_words[head_word(STEPS + step_of(near))], 1u);
+    uint at = crowd.copies.x + VISIBLE_WORDS * add_to(VISIBLE, 0xffffffffu);
+    bin_words[at] = copy;
     bin_words[at + 1u] = near;
     bin_words[at + 2u] = uint(pixels.x) | uint(pixels.y) << 16;
     bin_words[at + 3u] = uint(pixels.z) | uint(pixels.w) << 16;
-    // The queue of all copies, for an overflow.
-    at = crowd.tiles.y + 4u * place;
-    tile_words[at] = number;
-    tile_words[at + 1u] = near;
-    tile_words[at + 2u] = 0xffffffffu;
-    tile_words[at + 3u] = 0xffffffffu;
+    bin_words[at + 4u] = n;
+}
+
+void make_record(uint visible)
+{
+    uint copy = bin_words[crowd.copies.x + VISIBLE_WORDS * visible];
+    uint n = bin_words[crowd.copies.x + VISIBLE_WORDS * visible + 4u];
+    uvec4 axis = crowd.objects_of[n].axis;
+    uvec4 numbers = crowd.objects_of[n].copies;
+    dvec3 p = from_eye(copy);
+    dvec4 q = dvec4(placed(copy, 3u), placed(copy, 4u), placed(copy, 5u), placed(copy, 6u));
+    dvec3 s = dvec3(placed(copy, 7u), placed(copy, 8u), placed(copy, 9u));
+    dvec3 middle = p + turned(q, s * dvec3(0.0lf, 0.0lf, 0.5lf));
+    double depth = dot(middle, TRIPLE(crowd.forward));
+    dvec3 to_plane = TRIPLE(crowd.dir_00) * max(depth, 0.0lf);
+    dvec3 origin = turned(dvec4(-q.xyz, q.w), to_plane - p) / s - dvec3(packDouble2x32(axis.xy), packDouble2x32(axis.zw), 0.0lf);
+    Instance i;
+    i.position_sx = vec4(vec3(p), float(s.x));
+    i.rotation = vec4(q);
+    i.scale_depth = vec4(float(s.y), float(s.z), float(depth), float(dot(TRIPLE(crowd.clip_x), middle)));
+    i.origin = vec4(vec3(origin), float(dot(TRIPLE(crowd.clip_y), middle)));
+    // The level of this copy, as by CopyLevels of src/plan/levels.rs.
+    float largest = max(max(i.position_sx.w, i.scale_depth.x), i.scale_depth.y);
+    precise vec4 limits = largest * crowd.objects_of[n].limits;
+    uvec4 passes = uvec4(greaterThanEqual(i.scale_depth.zzzz, limits));
+    uvec4 levels = crowd.objects_of[n].levels;
+    uint coarser = max(passes.x + passes.y + passes.z + passes.w, levels.x) - levels.x;
+    i.object = uvec4(coarser == 0u ? numbers.w : levels.y + coarser - 1u, crowd.objects_of[n].pieces.x, 0u, 0u);
+    instances[numbers.z + copy - numbers.x] = i;
+}
+
+void main()
+{
+    uint n = invocation();
+    if (pushed.bin == COPY_BOUNDS && n < crowd.counts.x) {
+        find_bounds(n);
+    } else if (pushed.bin == COPY_RECORDS && n < count_of(LISTED)) {
+        make_record(bin_words[crowd.copies.z + n]);
+    }
 }

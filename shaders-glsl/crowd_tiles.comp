@@ -116,22 +116,23 @@ void hide(Axes axes, vec2 across, vec3 piece)
 
 void main()
 {
-    uint n = 64u * gl_WorkGroupID.x + gl_LocalInvocationIndex;
-    uint slice = pushed.bin;
-    if (n >= bin_words[head_word(SLICE_GROUPS + 4u * slice + 3u)]) {
+    uint n = invocation();
+    if (n >= count_of(RANGES + 4u * pushed.bin)) {
         return;
     }
-    uint at = crowd.lists.z + VISIBLE_WORDS * bin_words[crowd.order.x + before_slice(slice) + n];
+    uint visible = bin_words[crowd.copies.y + bin_words[head_word(RANGE_FIRSTS + pushed.bin)] + n];
+    uint at = crowd.copies.x + VISIBLE_WORDS * visible;
+    uint copy = bin_words[at];
     uint near_word = bin_words[at + 1u];
     float near = uintBitsToFloat(near_word);
-    uint number = bin_words[at];
     uvec2 corners = uvec2(bin_words[at + 2u], bin_words[at + 3u]);
     ivec4 pixels = ivec4(corners.x & 0xffffu, corners.x >> 16, corners.y & 0xffffu, corners.y >> 16);
-    Instance i = instances[number];
-    uint of = i.object.z;
+    uint of = bin_words[at + 4u];
     vec4 shape = crowd.objects_of[of].shape;
     uvec4 pieces = crowd.objects_of[of].pieces;
-    Axes axes = axes_of(i, shape.xy);
+    uvec4 numbers = crowd.objects_of[of].copies;
+    uint number = numbers.z + copy - numbers.x;
+    Axes axes = axes_of(copy, shape.xy);
     bool whole = near > 0.0;
 
     // The rectangles of the cylinders around the solid; one for a copy of few rows.
@@ -158,24 +159,34 @@ void main()
                 continue;
             }
             shows = true;
-            uint entry = count_up(head_word(ENTRY_GROUPS), crowd.counts.y);
+            uint entry = add_to(ENTRIES, crowd.counts.y);
             if (entry < crowd.counts.y) {
                 uint list = pieces.x * tile_count() + uint(y) * crowd.size.x + uint(x);
-                uint to = crowd.lists.w + ENTRY_WORDS * entry;
+                uint to = crowd.copies.w + ENTRY_WORDS * entry;
                 bin_words[to] = list;
                 bin_words[to + 1u] = number;
                 bin_words[to + 2u] = near_word;
                 bin_words[to + 3u] = bits.x;
                 bin_words[to + 4u] = bits.y;
-                atomicOr(bin_words[crowd.order.z + 2u * list], bits.x);
-                atomicOr(bin_words[crowd.order.z + 2u * list + 1u], bits.y);
                 bin_words[to + 5u] = atomicAdd(bin_words[crowd.lists.x + list], 1u);
+                atomicMax(bin_words[crowd.lists.y + list], ~near_word);
+                atomicOr(bin_words[crowd.lists.z + 2u * list], bits.x);
+                atomicOr(bin_words[crowd.lists.z + 2u * list + 1u], bits.y);
             }
         }
     }
-    if (shows && whole) {
+    if (!shows) {
+        return;
+    }
+    uint place = add_to(LISTED, 0xffffffffu);
+    bin_words[crowd.copies.z + place] = visible;
+    // The queue of all copies, for an overflow.
+    uint to = queue_word(crowd.tiles.y, place);
+    tile_words[to] = number;
+    tile_words[to + 1u] = near_word;
+    if (whole) {
         // The eye's direction about the axis, in object space.
-        vec3 eye = -rotate(conjugate(i.rotation), i.position_sx.xyz) / scale_of(i);
+        vec3 eye = -rotate(conjugate(rotation_of(copy)), vec3(from_eye(copy))) / scale_of(copy);
         vec2 towards = eye.xy - shape.xy;
         float away = length(towards);
         vec2 across = away > 0.0 ? vec2(-towards.y, towards.x) / away : vec2(1.0, 0.0);

@@ -122,6 +122,7 @@ impl PipelineCompiler {
                 ray_spread: 0.0,
                 casts: false,
                 lists_crowds: chosen.features.shader_float64 == vk::TRUE,
+                level_pixels: 0.0,
                 host_depths: false,
             },
             report: chosen.report,
@@ -181,6 +182,8 @@ impl PipelineCompiler {
                 textures: 0,
                 surface: None,
                 takes_patches: solver == Solver::Exact,
+                levelled: false,
+                levels: None,
                 shape: shape_of(object, [0.0; 4]),
                 outline: None,
             };

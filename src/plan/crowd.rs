@@ -1,14 +1,14 @@
 //! Crowds: objects with many copies, whose tiles the device lists. The host's part does not grow
 //! with the number of copies.
 //!
-//! The device projects all copies and sorts them into ranges of depth. Range by range, the nearest
+//! The device projects all copies and puts them in ranges of depth. Range by range, the nearest
 //! first, it lists the copies in the tiles of 8 x 8 pixels that may show them, and marks the pixels
 //! that they are sure to hide from later ranges (hierarchical occlusion maps, Zhang et al. 1997,
-//! with proven cover in place of drawn depths). Then it sorts each tile's copies by depth. Nothing
+//! with proven cover in place of drawn depths). A tile's queue has the order of ranges. Nothing
 //! comes from an earlier frame. `crowd.glsl` names the passes and the lists.
 
 use super::tiles::Projector;
-use super::{Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View};
+use super::{Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View, projector};
 use crate::scene::Placement;
 use crate::shader::generated as g;
 use crate::shader::{CrowdBlock, CrowdObject, Kind, Pushed, Variant};
@@ -31,8 +31,6 @@ pub(crate) struct Crowds {
     pub bin_words: u32,
 }
 
-/// Most work groups along one side of a dispatch over copies.
-const GROUPS_ACROSS: u32 = 32_768;
 /// Pixels of a tile, and invocations of a work group.
 const PIXELS: u32 = g::GROUP_PIXELS * g::GROUP_PIXELS;
 /// Entries that are reserved for each tile and layer, and for each copy. A frame that needs more
@@ -75,7 +73,7 @@ pub(super) fn add(
         plan.copies[n as usize] = Some(Vec::new());
     }
 
-    let projector = Projector::new(view, with.ray_spread);
+    let projector = projector(view, objects, with);
     let [across, down] = projector.tiles();
     let counts: Vec<u32> = (members.iter())
         .map(|&n| objects[n as usize].copies().len() as u32)
@@ -139,13 +137,7 @@ pub(super) fn add(
         }
     }
     plan.crowds = Some(Crowds {
-        steps: list_steps(
-            copies,
-            lists,
-            layers.len() as u32,
-            &places,
-            layers[0].objects[0],
-        ),
+        steps: list_steps(copies, lists, &places, layers[0].objects[0]),
         block: block(
             view,
             &projector,
@@ -156,7 +148,7 @@ pub(super) fn add(
         ),
         objects: records,
         members,
-        zeroed: [places.head, places.firsts - places.head],
+        zeroed: [places.head, places.of_tiles[3] - places.head],
         tile_words: places.tile_words,
         bin_words: places.bin_words,
     });
@@ -168,17 +160,15 @@ struct Places {
     // Bins.
     head: u32,
     cover: u32,
-    counts: u32,
-    shown: u32,
-    firsts: u32,
-    visible: u32,
+    /// Of each tile of each layer: number of entries, nearest depth, marked pixels, first place.
+    of_tiles: [u32; 4],
+    /// Copies in the picture, their order, listed copies.
+    copies: [u32; 3],
     entries: u32,
-    by_range: u32,
-    by_tile: u32,
     bin_words: u32,
     // Tiles.
     records: u32,
-    all_visible: u32,
+    listed: u32,
     queues: u32,
     tile_words: u32,
 }
@@ -188,55 +178,44 @@ impl Places {
         let tiles = lists / layers;
         let wanted = ENTRIES[0] * lists + ENTRIES[1] * copies.min(MOST_RESERVED);
         let entries_most = wanted.min((with.room() / 8) as u32);
-        let mut next = plan.bin_words;
-        let mut bins = |words: u32| {
-            let at = next;
-            next += words;
+        let after = |next: &mut u32, words: u32| {
+            let at = *next;
+            *next += words;
             at
         };
+        let mut next = plan.bin_words;
+        let mut bins = |words: u32| after(&mut next, words);
         let head = bins(g::CROWD_HEAD + g::LAYER_HEAD * layers);
         let cover = bins(g::GROUP_PIXELS * tiles);
-        let counts = bins(lists);
-        let shown = bins(2 * lists);
-        let firsts = bins(lists);
-        let visible = bins(g::VISIBLE_WORDS * copies);
-        let by_range = bins(copies);
+        let of_tiles = [lists, lists, 2 * lists, lists].map(&mut bins);
+        let copies_at = [g::VISIBLE_WORDS * copies, copies, copies].map(&mut bins);
         let entries = bins(g::ENTRY_WORDS * entries_most);
-        let by_tile = bins(2 * entries_most);
-        let bin_words = bins(0);
+        let bin_words = next;
         // Records have four words each, from the first word on.
         let mut next = (plan.words.len() as u32).next_multiple_of(4);
-        let mut words = |words: u32| {
-            let at = next;
-            next += words;
-            at
-        };
+        let mut words = |words: u32| after(&mut next, words);
         let records = words(if with.compute { 3 * PIXELS } else { 4 } * lists);
-        let all_visible = words(4 * copies);
-        let queues = words(4 * entries_most);
-        let tile_words = words(0);
+        let listed = words(g::QUEUE_WORDS * copies.next_multiple_of(g::QUEUE_BLOCK));
+        // The queue of each tile begins with a new block.
+        let queues = words(g::QUEUE_WORDS * (entries_most + (g::QUEUE_BLOCK - 1) * lists));
         Self {
             entries_most,
             head,
             cover,
-            counts,
-            shown,
-            firsts,
-            visible,
+            of_tiles,
+            copies: copies_at,
             entries,
-            by_range,
-            by_tile,
             bin_words,
             records,
-            all_visible,
+            listed,
             queues,
-            tile_words,
+            tile_words: next,
         }
     }
 }
 
 /// The passes that list the copies.
-fn list_steps(copies: u32, lists: u32, layers: u32, places: &Places, object: u32) -> Vec<Step> {
+fn list_steps(copies: u32, lists: u32, places: &Places, object: u32) -> Vec<Step> {
     let step = |kind, call| Step {
         phase: 0,
         variant: Variant::LISTS,
@@ -248,35 +227,25 @@ fn list_steps(copies: u32, lists: u32, layers: u32, places: &Places, object: u32
         bin,
         ..Pushed::default()
     };
-    let groups = copies.div_ceil(PIXELS);
-    let wide = [groups.min(GROUPS_ACROSS), groups.div_ceil(GROUPS_ACROSS), 1];
-    let mut steps = vec![step(Kind::CrowdCopies, Call::Groups(wide, pass(0)))];
-    let over = |head: u32, bin| {
-        step(
-            Kind::CrowdOrder,
-            Call::Indirect(places.head + head, pass(bin)),
-        )
+    let of = |kind, count: u32, bin| {
+        let groups = count.div_ceil(PIXELS);
+        let across = g::GROUPS_ACROSS;
+        let wide = [groups.min(across), groups.div_ceil(across), 1];
+        step(kind, Call::Groups(wide, pass(bin)))
     };
-    let of = |count: u32, bin| {
-        let groups = [count.div_ceil(PIXELS), 1, 1];
-        step(Kind::CrowdOrder, Call::Groups(groups, pass(bin)))
-    };
+    let over = |kind, list: u32, bin| step(kind, Call::Indirect(places.head + list, pass(bin)));
+    let mut steps = vec![
+        of(Kind::CrowdCopies, copies, g::COPY_BOUNDS),
+        of(Kind::CrowdOrder, 1, g::ORDER_RANGES),
+        over(Kind::CrowdOrder, VISIBLE, g::ORDER_COPIES),
+    ];
+    let range = |n| over(Kind::CrowdTiles, RANGES + 4 * n, n);
+    steps.extend((0..g::CROWD_RANGES).map(range));
     steps.extend([
-        over(0, g::CROWD_COUNT),
-        of(1, g::CROWD_RANGES),
-        over(0, g::CROWD_SLICE),
-        over(0, g::CROWD_SPREAD),
-    ]);
-    steps.extend((0..g::CROWD_SLICES).map(|slice| {
-        let call = Call::Indirect(places.head + SLICE_GROUPS + 4 * slice, pass(slice));
-        step(Kind::CrowdTiles, call)
-    }));
-    steps.extend([
-        of(1, g::CROWD_SCAN),
-        over(4, g::CROWD_SCATTER),
-        over(4, g::CROWD_RANK),
-        of(lists, g::CROWD_RECORDS),
-        of(layers, g::CROWD_FINISH),
+        over(Kind::CrowdCopies, LISTED, g::COPY_RECORDS),
+        of(Kind::CrowdOrder, 1, g::ORDER_TILES),
+        of(Kind::CrowdOrder, lists, g::ORDER_RECORDS),
+        over(Kind::CrowdOrder, ENTRIES_LIST, g::ORDER_ENTRIES),
     ]);
     steps
 }
@@ -308,6 +277,12 @@ fn crowd_object(
         all
     };
     let [x, y] = [shape.axis.x, shape.axis.y].map(words_of);
+    // Without levels every copy has the object's block.
+    let levels = of
+        .levels
+        .map_or(([f32::INFINITY; 4], [0; 2]), |(l, first)| {
+            (l.limits, [l.first as u32, first])
+        });
     CrowdObject {
         axis: [x[0], x[1], y[0], y[1]],
         shape: [
@@ -324,6 +299,8 @@ fn crowd_object(
             inner.len().min(g::CROWD_PIECES as usize) as u32,
             0,
         ],
+        limits: levels.0,
+        levels: [levels.1[0], levels.1[1], 0, 0],
         outer: packed(outer),
         inner: packed(inner),
     }
@@ -347,8 +324,11 @@ pub(crate) fn placement_words(placement: &Placement) -> [[u32; 2]; 10] {
 
 /// Word of a layer's number of records after its command: `crowd.glsl`.
 const LAYER_RECORDS: u32 = 4;
-/// First word of the commands of ranges of depth in the head: `crowd.glsl`.
-const SLICE_GROUPS: u32 = 12;
+/// First words of the lists in the head: `crowd.glsl`.
+const VISIBLE: u32 = 0;
+const LISTED: u32 = 4;
+const ENTRIES_LIST: u32 = 8;
+const RANGES: u32 = 12;
 
 /// Rows of pixels for which cylinders are chosen: the middle one of three numbers of cylinders.
 const MIDDLE_ROWS: u32 = 32;
@@ -370,6 +350,7 @@ fn block(
     let [clip_x, clip_y] = view.clip_rows();
     let ([row_x, row_y, row_z], limits) = projector.for_crowds();
     let [across, down] = projector.tiles();
+    let [by_list, by_depth, listed] = places.copies;
     CrowdBlock {
         eye: doubles(view.eye),
         forward: doubles(view.forward),
@@ -383,13 +364,19 @@ fn block(
         picture: projector.picture(),
         size: [across, down, layers, objects],
         counts: [copies, places.entries_most, places.head, places.cover],
-        lists: [places.counts, places.firsts, places.visible, places.entries],
-        order: [places.by_range, places.by_tile, places.shown, 0],
+        lists: places.of_tiles,
+        copies: [by_list, by_depth, listed, places.entries],
         tiles: [
             places.records,
-            places.all_visible,
+            places.listed,
             places.queues,
             u32::from(with.compute),
+        ],
+        steps: [
+            (view.near as f32).to_bits() >> g::CROWD_STEP_SHIFT,
+            (across * down).div_ceil(g::MOST_GROUPS),
+            0,
+            0,
         ],
         objects_of: [],
     }

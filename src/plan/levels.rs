@@ -18,6 +18,51 @@ pub(crate) const COARSEST: u8 = 12;
 /// percentile of this factor is 7 to 15.
 pub(crate) const GRAZING: f64 = 16.0;
 
+/// Levels among which each copy of an object with many copies has its own. A step of three levels
+/// about halves the number of patches.
+pub(crate) const COPY_LEVELS: [u8; 5] = [0, 3, 6, 9, COARSEST];
+
+/// The choice of a level for each copy of an object in a view.
+#[derive(Clone, Debug)]
+pub(crate) struct CopyLevels {
+    /// Index of the finest level that a copy may need.
+    pub first: usize,
+    /// A copy may take level `n + 1` if the depth of its box's middle is at least `limits[n]` times
+    /// its largest scale.
+    pub limits: [f32; COPY_LEVELS.len() - 1],
+    /// Upper bound on the shift of a silhouette by levels after the first, pixels.
+    pub error: f64,
+}
+
+impl CopyLevels {
+    /// `height`: height of the box in units of the profile's.
+    pub fn new(object: &Object, height: f64, view: &View, tolerance: Tolerance) -> Self {
+        let finest = coarsest(
+            tolerance,
+            pixels_per_unit(object, height, view, [false, true]),
+        );
+        let reach = (object.profile.radius * SQRT_2).hypot(0.5);
+        let pixels = stretch(view) / (pixel_of(view) * height);
+        #[allow(clippy::cast_possible_truncation)]
+        let limit = |level: u8| {
+            let depth = bound(level) * pixels * GRAZING / tolerance.pixels();
+            ((reach + depth) * (1.0 + 1e-6)) as f32
+        };
+        Self {
+            first: COPY_LEVELS.iter().rposition(|l| *l <= finest).unwrap_or(0),
+            limits: std::array::from_fn(|n| limit(COPY_LEVELS[n + 1])),
+            error: tolerance.pixels() / GRAZING,
+        }
+    }
+
+    /// Index of a copy's level. `depth`: depth of its box's middle; `scale`: its largest scale.
+    /// `crowd_copies.comp` has the same rule.
+    pub fn of(&self, depth: f32, scale: f32) -> usize {
+        let passes = |limit: &&f32| depth >= scale * **limit;
+        self.limits.iter().filter(passes).count().max(self.first)
+    }
+}
+
 /// Largest distance between the patches of a level and the exact contour, in units of the profile's
 /// height.
 pub(crate) fn bound(level: u8) -> f64 {
@@ -44,23 +89,7 @@ pub(crate) fn pixels_per_unit(
     view: &View,
     [all, at_once]: [bool; 2],
 ) -> f64 {
-    // A length across the ray covers more pixels away from the middle of the picture.
-    let stretch = if view.parallel {
-        1.0
-    } else {
-        let [low, high] = view.corners();
-        [
-            (low.x, low.y),
-            (high.x, low.y),
-            (low.x, high.y),
-            (high.x, high.y),
-        ]
-        .map(|(x, y)| view.dir_00 + (x - 0.5) * view.dir_x + (y - 0.5) * view.dir_y)
-        .map(|ray| ray.length() / ray.dot(view.forward))
-        .into_iter()
-        .fold(1.0, f64::max)
-    };
-    let pixel = view.dir_x.length().min(view.dir_y.length());
+    let (stretch, pixel) = (stretch(view), pixel_of(view));
     let of = |scale: f64, [nearest, farthest]: [f64; 2]| {
         if farthest <= 0.0 {
             0.0
@@ -100,6 +129,30 @@ pub(crate) fn pixels_per_unit(
     -least / height
 }
 
+/// The pixels that a length across the ray covers, over those that it covers in the middle of the
+/// picture: the largest ratio.
+fn stretch(view: &View) -> f64 {
+    if view.parallel {
+        return 1.0;
+    }
+    let [low, high] = view.corners();
+    [
+        (low.x, low.y),
+        (high.x, low.y),
+        (low.x, high.y),
+        (high.x, high.y),
+    ]
+    .map(|(x, y)| view.dir_00 + (x - 0.5) * view.dir_x + (y - 0.5) * view.dir_y)
+    .map(|ray| ray.length() / ray.dot(view.forward))
+    .into_iter()
+    .fold(1.0, f64::max)
+}
+
+/// A pixel's shorter side at unit depth.
+fn pixel_of(view: &View) -> f64 {
+    view.dir_x.length().min(view.dir_y.length())
+}
+
 /// Selects the copies that may be in the picture.
 struct InPicture {
     /// None if all copies count as visible.
@@ -110,7 +163,7 @@ struct InPicture {
 impl InPicture {
     fn new(object: &Object, view: &View, all: bool) -> Self {
         Self {
-            projector: (!all && !view.parallel).then(|| Projector::new(view, 0.0)),
+            projector: (!all && !view.parallel).then(|| Projector::new(view, 0.0, 0.0)),
             shape: Cylinder {
                 axis: DVec2::ZERO,
                 radius: object.profile.radius * SQRT_2,
@@ -191,6 +244,43 @@ mod tests {
                 "{beside}"
             );
         }
+    }
+
+    /// A copy's level keeps its bound, and a level that is three steps coarser would not, but for
+    /// the reach of its box.
+    #[test]
+    fn levels_of_copies_keep_the_bound() {
+        let (mut object, view) = at(20.0);
+        let tolerance = Tolerance::DEFAULT;
+        let allowed = tolerance.pixels() / GRAZING;
+        let mut used = [0; COPY_LEVELS.len()];
+        for n in 0..400 {
+            let part = f64::from(n) / 400.0;
+            let scale = DVec3::new(1.0, 1.0 + part, 0.3 + f64::from(n % 5));
+            object.placement.scale = scale;
+            object.placement.position = -DVec3::X * 1e4 * part.powi(4);
+            object.instances = vec![object.placement; 2].into();
+            let levels = CopyLevels::new(&object, 1.0, &view, tolerance);
+            let middle = object.placement.position + DVec3::new(0.0, 0.0, 0.5 * scale.z);
+            let depth = (middle - view.eye).dot(view.forward);
+            let found = levels.of(depth as f32, scale.max_element() as f32);
+            let pixels = pixels_per_unit(&object, 1.0, &view, [true, false]);
+            assert!(found >= levels.first);
+            let error = |level: u8| bound(level) * pixels;
+            assert!(
+                found == 0 || error(COPY_LEVELS[found]) <= allowed,
+                "{n}: {found}"
+            );
+            let next = COPY_LEVELS.get(found + 1);
+            let nearest = depth - scale.max_element() * 0.9;
+            let coarser = next.map(|next| error(*next) * depth / nearest);
+            assert!(
+                coarser.is_none_or(|error| error > allowed),
+                "{n}: {found} {coarser:?}"
+            );
+            used[found] += 1;
+        }
+        assert!(used.iter().filter(|n| **n > 0).count() >= 4, "{used:?}");
     }
 
     /// The bounds of all copies give no less than the copies one by one.

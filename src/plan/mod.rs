@@ -18,6 +18,8 @@ pub use path::DrawPath;
 pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
+use tiles::Projector;
+
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS, STRIP_INDICES};
 use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
@@ -123,6 +125,13 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     plan
 }
 
+/// The projector of a view, with a margin for the levels of copies.
+fn projector(view: &View, objects: &[PlanObject], with: &Conditions) -> Projector {
+    let levelled = objects.iter().any(|of| of.levelled);
+    let slack = if levelled { with.level_pixels } else { 0.0 };
+    Projector::new(view, with.ray_spread, slack)
+}
+
 impl Path {
     fn public(&self) -> DrawPath {
         match self {
@@ -143,9 +152,9 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
-            one_object: u32::from(alone),
+            one_object: u32::from(alone && !of.levelled),
             one_instance: u32::from(alone && of.copies().len() == 1),
-            own_tables: u32::from(alone && with.holds_tables(of)),
+            own_tables: u32::from(alone && !of.levelled && with.holds_tables(of)),
             ..of.variant
         }
     };

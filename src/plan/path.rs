@@ -1,5 +1,6 @@
 //! The choice of each object's draw path from the view, the placements and the surface.
 
+use super::levels::CopyLevels;
 use super::proxy;
 use super::tiles::{Cylinder, Placements};
 use super::view::View;
@@ -60,6 +61,10 @@ pub(crate) struct PlanObject<'a> {
     pub surface: Option<&'a Arc<OffsetSurface>>,
     /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
+    /// True if its copies have levels of their own.
+    pub levelled: bool,
+    /// Those of this view, and the number of the first coarser block.
+    pub levels: Option<(&'a CopyLevels, u32)>,
     pub shape: Cylinder,
     /// The outline, and the largest distance of the surface from it in object units.
     pub outline: Option<(&'a OutlineCache, f64)>,
@@ -90,6 +95,8 @@ pub(crate) struct Conditions {
     pub occlusion_culling: bool,
     /// Largest distance of a ray from its pixel's centre, pixels: 0 without rays through samples.
     pub ray_spread: f64,
+    /// Largest distance of a copy's surface on the screen from the finest level, pixels.
+    pub level_pixels: f64,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
     /// True if the device lists the tiles of crowds.

@@ -1,8 +1,10 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::LIST_LENGTHS;
-use super::tiles::{Batch, Drawer, LEAST_QUEUE, LayerTiles, Projector, Visible};
-use super::{Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View};
+use super::tiles::{Batch, Drawer, LEAST_QUEUE, LayerTiles, Visible};
+use super::{
+    Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
+};
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
 use std::ops::Range;
@@ -26,7 +28,7 @@ impl FramePlan {
         let batches: Vec<Batch> = (numbers.iter())
             .map(|&n| batch(&objects[n], with))
             .collect();
-        let projector = Projector::new(view, with.ray_spread);
+        let projector = projector(view, objects, with);
         let visible = Visible::new(view, &projector, &batches);
         let mut layers = Vec::new();
         let mut layer_of = Vec::with_capacity(numbers.len());

@@ -141,14 +141,16 @@ pub struct CrowdBlock {
     pub picture: [u32; 4],
     /// Tiles across and down, layers, objects.
     pub size: [u32; 4],
-    /// Copies, most entries, first words of the head and of the masks.
+    /// Copies, most entries, first words of the head and of the cover.
     pub counts: [u32; 4],
-    /// First words of lists in the bins.
+    /// First words of lists of tiles in the bins.
     pub lists: [u32; 4],
-    /// First words of lists in the bins.
-    pub order: [u32; 4],
+    /// First words of lists of copies and of entries in the bins.
+    pub copies: [u32; 4],
     /// First words of lists in the tiles; 1 for compute.
     pub tiles: [u32; 4],
+    /// First step of depth; rows of groups of a dispatch over pixels.
+    pub steps: [u32; 4],
     /// The objects follow.
     pub objects_of: [CrowdObject; 0],
 }
@@ -165,8 +167,12 @@ pub struct CrowdObject {
     pub heights: [f32; 4],
     /// First copy and end, first instance, number of the object.
     pub copies: [u32; 4],
-    /// Layer, outer and inner cylinders, first word of the layer's visible copies.
+    /// Layer, number of outer and of inner cylinders.
     pub pieces: [u32; 4],
+    /// Limits of the levels of copies.
+    pub limits: [f32; 4],
+    /// The finest level, number of the block of the next one.
+    pub levels: [u32; 4],
     /// Radius, low, high.
     pub outer: [[f32; 4]; CROWD_PIECES as usize],
     /// Radius, low, high.

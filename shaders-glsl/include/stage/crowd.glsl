@@ -1,8 +1,9 @@
 // Buffers of crowds: objects with many copies, whose tiles the device lists.
 //
-// The passes, in order: crowd_copies.comp projects every copy; crowd_order.comp sorts them into ranges of depth;
-// crowd_tiles.comp lists copies in tiles, one range after the other, and marks the pixels that they hide;
-// crowd_order.comp sorts the entries of each tile to queues, and makes records and commands.
+// The passes, in order: crowd_copies.comp finds the copies in the picture and their rectangles; crowd_order.comp puts
+// them in order of depth and makes ranges of about as many copies each; crowd_tiles.comp lists copies in tiles, one range
+// after the other, and marks the pixels that they hide; crowd_copies.comp makes the records of the listed copies;
+// crowd_order.comp makes the queues of tiles, their records and the commands that draw them.
 //
 // All counts and lists are in the bins of tiles, from crowd.head on: CROWD_HEAD words, LAYER_HEAD words per layer, then
 // the lists at the words that the block names.
@@ -13,13 +14,13 @@
 #include "stage/compute.glsl"
 #include "core/pixel_ray.glsl"
 
-// Words of the head.
-const uint VISIBLE_GROUPS = 0u; // indirect dispatch over copies that may show; the fourth word is their number
-const uint ENTRY_GROUPS = 4u;   // indirect dispatch over entries of tiles; the fourth word is their number
-const uint LEAST_NEAR = 8u;     // ~ of the least nearest depth (float bits)
-const uint MOST_NEAR = 9u;      // the largest nearest depth (float bits)
-const uint STEPS = 140u;         // for each step of depth: number of its copies, then its range
-const uint SLICE_GROUPS = 12u;  // for each range of depth, an indirect dispatch over its copies, and their number
+// Words of the head. A list is an indirect dispatch over it, in groups of 64, and its number of copies or entries.
+const uint VISIBLE = 0u; // copies in the picture
+const uint LISTED = 4u;  // copies that are listed in a tile
+const uint ENTRIES = 8u; // entries of tiles
+const uint RANGES = 12u; // for each range of depth, its copies
+const uint RANGE_FIRSTS = RANGES + 4u * CROWD_RANGES; // for each range, the number of copies in nearer ranges
+const uint STEPS = RANGE_FIRSTS + CROWD_RANGES;       // for each step of depth, the number of its copies; then its next place
 // Words of a layer's head.
 const uint LAYER_COMMAND = 0u; // indirect draw or dispatch
 const uint LAYER_RECORDS = 4u; // number of its records
@@ -30,6 +31,8 @@ struct CrowdObject {
     vec4 heights;  // lowest and highest z of that cylinder; unused
     uvec4 copies;  // first and end among all copies of crowds; first instance; index of the object
     uvec4 pieces;  // layer; number of outer and of inner pieces; unused
+    vec4 limits;   // limits of the levels of copies
+    uvec4 levels;  // the finest level; number of the block of the next one; unused
     vec4 outer[CROWD_PIECES]; // cylinders around the solid: radius, low, high
     vec4 inner[CROWD_PIECES]; // cylinders within the solid
 };
@@ -43,13 +46,15 @@ layout(set = 2, binding = 8, std430) readonly buffer CrowdBlock {
     vec4 row_x;    // a point over its depth gives its pixel; w: margin, pixels
     vec4 row_y;    // w: lowest pixel position on the x axis, with the margin
     vec4 row_z;    // w: lowest pixel position on the y axis
-    vec4 limits;   // highest pixel position on both axes
+    vec4 limits;   // highest pixel position on both axes; factor on nearest depths, below 1
     ivec4 picture; // first and last pixel: left, top, right, bottom
     uvec4 size;    // tiles across and down; layers; objects
     uvec4 counts;  // copies; most entries; first words of the head and of the cover
-    uvec4 lists;   // first word of: counts of tiles; first entries of tiles; visible copies; entries
-    uvec4 order;   // first word of: numbers of visible copies by range; depths and numbers of entries by tile; pixels of tiles
-    uvec4 tiles;   // in tile_words: first words of records, visible copies and queues; 1: records of pixels, 0: of tiles
+    uvec4 lists;   // for each tile of each layer, first words of: number of entries; ~ of the nearest depth; marked pixels, two
+                   // words; first place in the queues
+    uvec4 copies;  // first words of: copies in the picture; their numbers by depth; those of listed copies; entries
+    uvec4 tiles;   // in tile_words: first words of records, listed copies and queues; 1: records of pixels, 0: of tiles
+    uvec4 steps;   // step of the nearest copies; rows of groups of a dispatch over pixels; unused
     CrowdObject objects_of[];
 } crowd;
 
@@ -63,16 +68,29 @@ uint layer_word(uint layer, uint n)
     return crowd.counts.z + CROWD_HEAD + LAYER_HEAD * layer + n;
 }
 
-// Adds one to a counter of an indirect dispatch of groups of 64, and returns its number. `most`: upper limit.
-uint count_up(uint head, uint most)
+// Returns the number of this invocation in a dispatch of groups of 64.
+uint invocation()
 {
+    return 64u * (gl_WorkGroupID.x + GROUPS_ACROSS * gl_WorkGroupID.y) + gl_LocalInvocationIndex;
+}
+
+// Adds one to a list of the head, and returns its number. `most`: upper limit.
+uint add_to(uint list, uint most)
+{
+    uint head = head_word(list);
     uint number = atomicAdd(bin_words[head + 3u], 1u);
     if (number < most && (number & 63u) == 0u) {
-        atomicAdd(bin_words[head], 1u);
-        bin_words[head + 1u] = 1u;
+        uint group = number / 64u;
+        atomicMax(bin_words[head], min(group + 1u, GROUPS_ACROSS));
+        atomicMax(bin_words[head + 1u], group / GROUPS_ACROSS + 1u);
         bin_words[head + 2u] = 1u;
     }
     return number;
+}
+
+uint count_of(uint list)
+{
+    return bin_words[head_word(list + 3u)];
 }
 
 uint tile_count()
@@ -82,7 +100,32 @@ uint tile_count()
 
 bool overflows()
 {
-    return bin_words[head_word(ENTRY_GROUPS + 3u)] > crowd.counts.y;
+    return count_of(ENTRIES) > crowd.counts.y;
+}
+
+layout(set = 2, binding = 7, std430) readonly buffer Placements {
+    uint placement_words[]; // position, unit quaternion, scale: ten doubles each
+};
+const uint PLACEMENT_WORDS = 20u;
+
+double placed(uint copy, uint n)
+{
+    uint at = PLACEMENT_WORDS * copy + 2u * n;
+    return packDouble2x32(uvec2(placement_words[at], placement_words[at + 1u]));
+}
+
+#define TRIPLE(of) dvec3(packDouble2x32(of[0].xy), packDouble2x32(of[0].zw), packDouble2x32(of[1].xy))
+
+// Returns a copy's position relative to the eye.
+dvec3 from_eye(uint copy)
+{
+    return dvec3(placed(copy, 0u), placed(copy, 1u), placed(copy, 2u)) - TRIPLE(crowd.eye);
+}
+
+// Returns the first word of a copy in a queue of tile_words.
+uint queue_word(uint first, uint place)
+{
+    return first + QUEUE_WORDS * (place - place % QUEUE_BLOCK) + 2u * (place % QUEUE_BLOCK);
 }
 
 // A copy's axes under the three rows: pixel positions times depth, and depth.
@@ -96,13 +139,24 @@ vec3 project(vec3 p)
     return vec3(dot(crowd.row_x.xyz, p), dot(crowd.row_y.xyz, p), dot(crowd.row_z.xyz, p));
 }
 
-Axes axes_of(Instance i, vec2 axis)
+vec4 rotation_of(uint copy)
 {
-    vec3 scale = scale_of(i);
-    vec3 x = rotate(i.rotation, vec3(scale.x, 0.0, 0.0));
-    vec3 y = rotate(i.rotation, vec3(0.0, scale.y, 0.0));
-    vec3 z = rotate(i.rotation, vec3(0.0, 0.0, scale.z));
-    vec3 at = i.position_sx.xyz + x * axis.x + y * axis.y;
+    return vec4(placed(copy, 3u), placed(copy, 4u), placed(copy, 5u), placed(copy, 6u));
+}
+
+vec3 scale_of(uint copy)
+{
+    return vec3(placed(copy, 7u), placed(copy, 8u), placed(copy, 9u));
+}
+
+Axes axes_of(uint copy, vec2 axis)
+{
+    vec4 rotation = rotation_of(copy);
+    vec3 scale = scale_of(copy);
+    vec3 x = rotate(rotation, vec3(scale.x, 0.0, 0.0));
+    vec3 y = rotate(rotation, vec3(0.0, scale.y, 0.0));
+    vec3 z = rotate(rotation, vec3(0.0, 0.0, scale.z));
+    vec3 at = vec3(from_eye(copy)) + x * axis.x + y * axis.y;
     return Axes(project(at), project(x), project(y), project(z));
 }
 
@@ -149,29 +203,11 @@ ivec4 pixels_of(Axes axes, vec3 cylinder)
     return ivec4(max(pixels.xy, crowd.picture.xy), min(pixels.zw, crowd.picture.zw));
 }
 
-// Returns the word of the step of depth that holds a nearest depth. Steps are equal parts of the range of logarithms.
-uint step_word(float near)
+// Returns the step of a nearest depth (float bits).
+uint step_of(uint near)
 {
-    float least = max(uintBitsToFloat(~bin_words[head_word(LEAST_NEAR)]), 1e-30);
-    float most = max(uintBitsToFloat(bin_words[head_word(MOST_NEAR)]), 1.0001 * least);
-    float part = log(max(near, least) / least) / log(most / least);
-    return head_word(STEPS + uint(clamp(part * float(CROWD_STEPS), 0.0, float(CROWD_STEPS) - 1.0)));
-}
-
-// Returns the range of depth of a nearest depth. Ranges are runs of steps with about as many copies each.
-uint slice_of(float near)
-{
-    return bin_words[step_word(near)];
-}
-
-// Returns the number of copies in nearer ranges.
-uint before_slice(uint slice)
-{
-    uint sum = 0u;
-    for (uint k = 0u; k < slice; ++k) {
-        sum += bin_words[head_word(SLICE_GROUPS + 4u * k + 3u)];
-    }
-    return sum;
+    uint step = near >> CROWD_STEP_SHIFT;
+    return min(step - min(step, crowd.steps.x), CROWD_STEPS - 1u);
 }
 
 #endif

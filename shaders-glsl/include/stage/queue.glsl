@@ -6,44 +6,52 @@
 
 const bool MAY_BE_OF_DEVICE = SEARCH == SEARCH_QUADRIC; // the device lists tiles of patches alone
 
-// Returns true if pixel `bit` of the tile may show the copy at `word`.
-bool is_marked(uint word, uint bit)
+// Returns the copies of a block of a queue that pixel `bit` of the tile may show, one bit each.
+uint marks_of(uint block, uint bit)
 {
-    return (tile_words[word + 2u + (bit >> 5)] >> (bit & 31u) & 1u) != 0u;
+    uint at = bit * QUEUE_BLOCK;
+    return bitfieldExtract(tile_words[block + 2u * QUEUE_BLOCK + (at >> 5)], int(at & 31u), int(QUEUE_BLOCK));
 }
 
-// Finds the nearest hit. The first of equal depths wins, as under the depth test. The loop ends when the next copy
-// begins behind the hit, or behind the initial `depth`, which grows away from the eye. `bit`: number of the pixel in its
-// tile; `at`: position of the ray (pixel_ray.glsl); `index`: instance that was hit. `nearest.steps` and
-// `nearest.exhausted` are those of all searches, with or without a hit.
+// Finds the nearest hit. Of equal depths, the copy that begins nearer wins, then the first one, as under a depth test of
+// sorted copies. Copies that begin behind the hit, or behind the initial `depth`, which grows away from the eye, are
+// left out. `bit`: number of the pixel in its tile; `at`: position of the ray (pixel_ray.glsl); `index`: instance that
+// was hit. `nearest.steps` and `nearest.exhausted` are those of all searches, with or without a hit.
 bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, out uint index, out Hit nearest)
 {
     bool found = false;
     uint steps = 0u;
     bool exhausted = false;
-    // An unsorted queue holds all visible copies, of all layers.
-    bool sorted = !MAY_BE_OF_DEVICE || (count & QUEUE_UNSORTED) == 0u;
+    bool marked = !MAY_BE_OF_DEVICE || (count & QUEUE_ALL) == 0u;
+    bool loose = MAY_BE_OF_DEVICE && (count & QUEUE_LOOSE) != 0u;
     uint layer = count >> QUEUE_LAYER_SHIFT & 127u;
     uint end = first + QUEUE_WORDS * (MAY_BE_OF_DEVICE ? count & QUEUE_COUNT : count);
     float sense = frame.forward.w;
-    for (uint word = first; word < end; word += QUEUE_WORDS) {
+    uint nearest_begin = 0u; // of the hit, float bits
+    uint block = first;      // the next one
+    uint marks = 0u;
+    for (;;) {
         // Invocations meet behind this loop, each with the next copy of its own pixel.
-        while (word < end && !is_marked(word, bit)) {
-            word += QUEUE_WORDS;
+        while (marks == 0u && block < end) {
+            uint all = (1u << min((end - block) / QUEUE_WORDS, QUEUE_BLOCK)) - 1u;
+            marks = marked ? marks_of(block, bit) : all;
+            block += QUEUE_WORDS * QUEUE_BLOCK;
         }
-        if (word >= end) {
+        if (marks == 0u) {
             break;
         }
-        float begins = uintBitsToFloat(tile_words[word + 1u]);
-        if (sense * depth_of(max(begins, 1e-30)) >= depth) {
-            if (sorted) {
+        uint word = block - QUEUE_WORDS * QUEUE_BLOCK + 2u * uint(findLSB(marks));
+        marks &= marks - 1u;
+        uint near = tile_words[word + 1u];
+        if (sense * depth_of(max(uintBitsToFloat(near), 1e-30)) >= depth) {
+            if (!loose) {
                 break;
             }
             continue;
         }
         uint number = tile_words[word];
         Instance i = instances[number];
-        if (!sorted && i.object.y != layer) {
+        if (!marked && i.object.y != layer) {
             continue;
         }
         if (ONE_OBJECT == 0u) {
@@ -55,8 +63,10 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
         float met_at = sense * depth_of(rays.base + hit.t);
-        if (met && met_at < depth) {
+        bool is_tie = found && met_at == depth && (near < nearest_begin || near == nearest_begin && number < index);
+        if (met && (met_at < depth || is_tie)) {
             found = true;
+            nearest_begin = near;
             depth = met_at;
             nearest = hit;
             index = number;

@@ -2,8 +2,9 @@
 // first, then queues of copies.
 //
 // Record: the tile (column | row << TILE_BITS | halves << RECORD_HALVES_SHIFT), the first word of its queue, the number
-// of copies, the nearest depth (float bits). A queue is sorted by depth and has QUEUE_WORDS words per copy: the
-// instance's index, the copy's nearest depth (float bits), and the pixels of the tile that may show it, one bit each.
+// of copies, the nearest depth (float bits). A queue is sorted by depth and has blocks of QUEUE_BLOCK copies. A block
+// begins with two words per copy: the instance's index and the copy's nearest depth (float bits). Then it has
+// QUEUE_BLOCK bits per pixel of the tile, one for each copy that the pixel may show. The rest of the last block is zero.
 //
 // Fragment shaders also draw quads of 1, 2, 4 or 8 pixels a side, each with a single copy. A record holds corner and
 // log2 of the side (x | y << QUAD_BITS | log2 << 2 QUAD_BITS, pixels), the instance's index, 0, the nearest depth.

@@ -3,9 +3,10 @@
 use super::Content;
 use super::entry::{Derived, Entry};
 use crate::error::Result;
-use crate::plan::levels::{self, coarsest, pixels_per_unit};
+use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, GRAZING, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
+use crate::shader::InstanceBlock;
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
 use crate::solid::table_slot::Part;
@@ -19,6 +20,8 @@ pub(crate) struct ViewPlan {
     pub frame: FramePlan,
     /// One per drawn object, in order.
     pub objects: Vec<PlannedObject>,
+    /// Number of blocks: those of all objects, then those of coarser levels.
+    pub blocks: u32,
 }
 
 /// An object in a plan.
@@ -27,6 +30,32 @@ pub(crate) struct PlannedObject {
     pub level: u8,
     /// The surface that the search walks; `None` for searches on the map.
     pub surface: Option<Arc<OffsetSurface>>,
+    /// True if its copies have levels of their own.
+    pub levelled: bool,
+    /// Those of this view.
+    pub copies: Option<LevelledCopies>,
+}
+
+/// The copies of an object, each with a level of its own.
+pub(crate) struct LevelledCopies {
+    pub levels: CopyLevels,
+    /// The surfaces of the levels after the finest.
+    pub coarser: Vec<Arc<OffsetSurface>>,
+    /// Number of the block of the first of these.
+    pub first_block: u32,
+}
+
+impl LevelledCopies {
+    /// Number of the block of a copy. `number`: that of its object.
+    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
+        let [_, _, _, across] = copy.position_sx;
+        let [y, z, depth, _] = copy.scale_depth;
+        let level = self.levels.of(depth, across.max(y).max(z));
+        match level - self.levels.first {
+            0 => number,
+            n => self.first_block + n as u32 - 1,
+        }
+    }
 }
 
 impl Content {
@@ -40,7 +69,12 @@ impl Content {
             self.plan = Some(plan.clone());
             return Ok(plan);
         }
-        let objects = self.with_surfaces(Some(view))?;
+        let mut objects = self.with_surfaces(Some(view))?;
+        let mut blocks = self.objects.number_count() as u32;
+        for copies in objects.iter_mut().filter_map(|of| of.copies.as_mut()) {
+            copies.first_block = blocks;
+            blocks += copies.coarser.len() as u32;
+        }
         let with = self.conditions();
         let read: Vec<PlanObject> = objects
             .iter()
@@ -54,6 +88,7 @@ impl Content {
             version: self.version,
             frame: plan(view, &read, &with),
             objects,
+            blocks,
         });
         self.plan = Some(made.clone());
         Ok(made)
@@ -75,6 +110,7 @@ impl Content {
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
+            level_pixels: self.settings.tolerance.pixels() / GRAZING,
             casts: self.casts(),
             lists_crowds: self.lists_crowds(),
             host_depths: self.is_compute() && self.target_has_depths,
@@ -98,17 +134,11 @@ impl Content {
             let Some(entry) = self.objects.at_mut(one.number) else {
                 continue;
             };
-            let (growth, offset) = (entry.growth(), entry.drawn().offset);
-            let Some(derived) = &mut entry.derived else {
-                continue;
-            };
-            let known = derived.levels.iter().find(|(level, _)| *level == one.level);
-            one.surface = known.map(|(_, surface)| surface.clone());
-            if one.surface.is_none() && derived.solver.follows_tolerance() {
-                let surface = derived.solid.patches(&offset, &growth, one.level)?;
-                derived.levels.push((one.level, surface.clone()));
-                new.push(surface.clone());
-                one.surface = Some(surface);
+            one.surface = entry.surface(one.level, &mut new)?;
+            if let Some(copies) = &mut one.copies {
+                for level in &COPY_LEVELS[copies.levels.first + 1..] {
+                    copies.coarser.extend(entry.surface(*level, &mut new)?);
+                }
             }
         }
         self.make_surfaces(&new);
@@ -116,16 +146,14 @@ impl Content {
     }
 
     /// The level of each object: the coarsest that the view allows, or the exact one if there is no
-    /// view. With shadows, all objects take the finest level that one of them needs. The reason is
+    /// view. Objects with many copies have a level for each. With shadows, all objects take the finest level that one of them needs. The reason is
     /// that a shadow may fall nearer to the eye than its caster.
     fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
         let casts = self.casts();
-        let lists_crowds = self.lists_crowds() && !casts;
         let tolerance = self.settings.tolerance;
         let level_of = |entry: &Entry, derived: &Derived| match view {
             Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
-                let crowd = lists_crowds && entry.drawn().instances.len() > MOST_PROXIES;
-                let pixels = entry.pixels_per_unit(view, [casts, crowd]);
+                let pixels = entry.pixels_per_unit(view, [casts, false]);
                 // An object that does not show takes a level that is already made.
                 let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
                 made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
@@ -133,10 +161,22 @@ impl Content {
             _ => 0,
         };
         let planned = |(number, entry): (u32, &Entry)| {
+            let derived = entry.derived.as_ref()?;
+            let levelled = self.levels_copies(entry, derived);
+            let levels = view.filter(|_| levelled).map(|view| {
+                CopyLevels::new(entry.drawn(), entry.growth().height(), view, tolerance)
+            });
+            let finest = levels.as_ref().map(|levels| COPY_LEVELS[levels.first]);
             Some(PlannedObject {
                 number,
-                level: level_of(entry, entry.derived.as_ref()?),
+                level: finest.unwrap_or_else(|| level_of(entry, derived)),
                 surface: None,
+                levelled,
+                copies: levels.map(|levels| LevelledCopies {
+                    levels,
+                    coarser: Vec::new(),
+                    first_block: 0,
+                }),
             })
         };
         let mask = view.map_or(u32::MAX, |view| view.mask);
@@ -148,6 +188,15 @@ impl Content {
             found.iter_mut().for_each(|f| f.level = finest);
         }
         found
+    }
+
+    /// True if each copy of an object has a level of its own. The view has no influence, so a moving
+    /// camera needs no other pipelines.
+    pub fn levels_copies(&self, entry: &Entry, derived: &Derived) -> bool {
+        let follows = derived.solver.follows_tolerance() && !self.casts() && !self.is_parallel();
+        let object = entry.drawn();
+        let many = object.instances.len() > MOST_PROXIES && object.repeat == [1; 3];
+        follows && many && self.settings.tolerance != Tolerance::EXACT
     }
 
     /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
@@ -169,6 +218,26 @@ impl Content {
 }
 
 impl Entry {
+    /// The surface of a level; none for a search on the map. Adds it to `new` if it is.
+    fn surface(
+        &mut self,
+        level: u8,
+        new: &mut Vec<Arc<OffsetSurface>>,
+    ) -> Result<Option<Arc<OffsetSurface>>> {
+        let (growth, offset) = (self.growth(), self.drawn().offset);
+        let Some(derived) = &mut self.derived else {
+            return Ok(None);
+        };
+        let known = derived.levels.iter().find(|(known, _)| *known == level);
+        if known.is_some() || !derived.solver.follows_tolerance() {
+            return Ok(known.map(|(_, surface)| surface.clone()));
+        }
+        let surface = derived.solid.patches(&offset, &growth, level)?;
+        derived.levels.push((level, surface.clone()));
+        new.push(surface.clone());
+        Ok(Some(surface))
+    }
+
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
     /// `at_once`: see [`pixels_per_unit`].
@@ -201,6 +270,8 @@ impl Entry {
             textures: Arc::as_ptr(&derived.textures) as usize,
             surface,
             takes_patches: derived.takes_patches && surface.is_some(),
+            levelled: planned.levelled,
+            levels: (planned.copies.as_ref()).map(|copies| (&copies.levels, copies.first_block)),
             shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
             outline: Some((derived.solid.outline.as_ref(), away)),
         })

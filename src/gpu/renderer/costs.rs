@@ -15,7 +15,8 @@ use crate::solid::table_slot::Part;
 pub struct ObjectCost {
     /// The draw path.
     pub path: DrawPath,
-    /// Level of the patches; 0 is the exact level. `None` for searches without patches.
+    /// Level of the patches; 0 is the exact level. `None` for searches without patches. Objects
+    /// with more than 64 copies have a level for each copy; this is the finest.
     pub level: Option<u32>,
     /// Upper bound on the shift of the silhouette by patches of this level, in pixels. `None` if
     /// the object reaches the eye, and for searches without patches.
@@ -67,10 +68,17 @@ impl Entry {
         let derived = self.derived.as_ref();
         let follows = derived.is_some_and(|p| p.solver.follows_tolerance());
         let fitted = object.surface.as_ref().filter(|_| follows);
-        let error = fitted.map(|_| self.error_pixels(object.level, view));
-        let tables = [Part::Tables, Part::Frusta, Part::Patches].map(|part| {
-            let stored = object.surface.as_ref().filter(|s| s.slot(part).is_some());
-            stored.map_or(0, |s| 16 * s.vectors(part).len() as u64)
+        let copies = object.copies.as_ref().filter(|c| !c.coarser.is_empty());
+        let of_coarser = copies.map_or(0.0, |copies| copies.levels.error);
+        let error = fitted.map(|_| self.error_pixels(object.level, view).max(of_coarser));
+        let coarser = copies.iter().flat_map(|copies| &copies.coarser);
+        let surfaces = object.surface.iter().chain(coarser);
+        let tables = surfaces.flat_map(|surface| {
+            let stored = |part| surface.slot(part).map(|_| surface.vectors(part).len());
+            let parts = [Part::Tables, Part::Frusta, Part::Patches];
+            parts
+                .into_iter()
+                .filter_map(move |part| Some(16 * stored(part)? as u64))
         });
         let map = derived.and_then(|p| Some(p.map.as_ref()?.texture.bytes()));
         let arc = derived.and_then(|p| Some(p.arc.as_ref()?.texture.bytes()));
@@ -79,7 +87,7 @@ impl Entry {
             level: fitted.map(|_| u32::from(object.level)),
             error_pixels: error.filter(|e| e.is_finite()),
             patches: fitted.map_or(0, |surface| surface.patches()),
-            table_bytes: tables.iter().sum(),
+            table_bytes: tables.sum(),
             map_bytes: map.unwrap_or(0) + arc.unwrap_or(0),
             instance_bytes: INSTANCE_BYTES * u64::from(self.instances.end - self.instances.start),
         }

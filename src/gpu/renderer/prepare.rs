@@ -162,7 +162,11 @@ impl Renderer {
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
-        let read = parts.filter_map(|(object, parts)| Some((object.surface.as_ref()?, *parts)));
+        let read = parts.flat_map(|(object, parts)| {
+            let coarser = object.copies.iter().flat_map(|copies| &copies.coarser);
+            let all = object.surface.iter().chain(coarser);
+            all.map(|surface| (surface, *parts))
+        });
         let buffers = self.content.geometry.lock()?.store(read)?;
         let pipelines = self.device.pipelines()?;
         let output = &self.content.output;
@@ -211,7 +215,7 @@ impl Renderer {
         let motion = self.content.output.planes().has_motion();
         let instances = self.content.objects.instances();
         to.fit(
-            self.content.objects.number_count(),
+            plan.blocks as usize,
             u64::from(instances) * if motion { 2 } else { 1 },
         )?;
         if to.last_record != instances {
@@ -233,9 +237,20 @@ impl Renderer {
             };
             let placements = entry.drawn().placements();
             to.write_object(number, &block)?;
+            let levels = object.copies.as_ref();
+            for (number, surface) in levels
+                .iter()
+                .flat_map(|l| (l.first_block..).zip(&l.coarser))
+            {
+                let block = entry.block(object.number, Some(surface), &self.content.settings);
+                block.map_or(Ok(()), |block| to.write_object(number, &block))?;
+            }
             let mut write = |copy: u32| {
                 let placement = &placements[copy as usize];
-                let block = instance_block(entry.drawn(), placement, number, view);
+                let mut block = instance_block(entry.drawn(), placement, number, view);
+                if let Some(levels) = levels {
+                    block.object[0] = levels.block(number, &block);
+                }
                 let at = entry.instances.start + copy;
                 if motion {
                     let last = last_block(entry, copy as usize, view);

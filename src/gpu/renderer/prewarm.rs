@@ -139,6 +139,8 @@ impl Content {
                     number,
                     level: 0,
                     surface: derived.levels.first().map(|l| l.1.clone()),
+                    levelled: self.levels_copies(entry, derived),
+                    copies: None,
                 };
                 Some((entry, derived.textures.set, planned))
             })

@@ -32,6 +32,8 @@ pub(crate) struct Projector {
     /// Margin of a rectangle on each side, in pixels: more than the roundings of 32 bits, and the
     /// largest distance of a pixel's rays from its centre.
     pub(super) margin: f64,
+    /// Relative margin of nearest depths.
+    depth_slack: f64,
 }
 
 /// Steps of one object unit along an object's axes, and the position of its axis at `z = 0`, both
@@ -61,8 +63,9 @@ pub(super) const SLACK: f64 = 1e-5;
 
 impl Projector {
     /// Makes the projector of a perspective view. `spread`: largest distance of a ray from its
-    /// pixel's centre, pixels.
-    pub fn new(view: &View, spread: f64) -> Self {
+    /// pixel's centre, pixels. `slack`: largest distance of a copy's surface from the one whose
+    /// bounds are projected, pixels.
+    pub fn new(view: &View, spread: f64, slack: f64) -> Self {
         let row = |d: DVec3| {
             let d = d / d.length_squared();
             d + view.forward * (0.5 - view.dir_00.dot(d))
@@ -72,6 +75,7 @@ impl Projector {
         if let Some([first, end]) = view.rows.map(|rows| rows.map(f64::from)) {
             (low.y, high.y) = (low.y.max(first), high.y.min(end));
         }
+        let pixel = view.dir_x.length().max(view.dir_y.length());
         Self {
             ends: [
                 first_pixel(low.x).max(0),
@@ -83,8 +87,9 @@ impl Projector {
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
             low: low + 0.5,
             high: high - 0.5,
-            pixel: view.dir_x.length().max(view.dir_y.length()),
-            margin: MARGIN + spread,
+            pixel,
+            margin: MARGIN + spread + slack,
+            depth_slack: SLACK + slack * pixel,
         }
     }
 
@@ -105,7 +110,7 @@ impl Projector {
         let (low, high) = (self.low - self.margin, self.high + self.margin);
         (
             [row(0, self.margin), row(1, low.x), row(2, low.y)],
-            [high.x as f32, high.y as f32, 0.0, 0.0],
+            [high.x, high.y, 1.0 - self.depth_slack, 0.0].map(|v| v as f32),
         )
     }
 
@@ -183,7 +188,7 @@ impl Projector {
         }
         Some(ScreenBounds {
             pixels,
-            near: (near * (1.0 - SLACK)).max(0.0) as f32,
+            near: (near * (1.0 - self.depth_slack)).max(0.0) as f32,
         })
     }
 
@@ -227,7 +232,7 @@ impl Projector {
         }
         Some(ScreenBounds {
             pixels,
-            near: (near * (1.0 - 2.0 * SLACK)).max(0.0) as f32,
+            near: (near * (1.0 - 2.0 * self.depth_slack)).max(0.0) as f32,
         })
     }
 }
@@ -293,7 +298,7 @@ mod tests {
                     DVec4::X,
                 );
                 let view = View::from_matrices(look, lens, viewport, DepthOrder::Normal).unwrap();
-                let projector = Projector::new(&view, 0.0);
+                let projector = Projector::new(&view, 0.0, 0.0);
                 let ends = |from: f64, size: f64| {
                     let inside = |k: &i32| (from..=from + size).contains(&(f64::from(*k) + 0.5));
                     let all: Vec<u32> = (0..200).filter(inside).map(|k| k as u32).collect();
@@ -329,7 +334,7 @@ mod tests {
     fn clusters_below_a_pixel_have_sound_rectangles() {
         let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);
         let view = View::from_camera(&camera, (64, 48), [1.0, 1e4]).unwrap();
-        let projector = Projector::new(&view, 0.0);
+        let projector = Projector::new(&view, 0.0, 0.0);
         let shape = Cylinder {
             axis: DVec2::ZERO,
             radius: 0.4,

@@ -2,7 +2,9 @@
 
 use super::Drawer;
 use super::cover::{SIDE, within};
-use crate::shader::generated::{QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT};
+use crate::shader::generated::{
+    QUEUE_BLOCK, QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT,
+};
 
 /// A copy in a tile.
 #[derive(Clone, Copy)]
@@ -35,6 +37,8 @@ pub(super) struct BandRecords {
     waiting: Vec<[u32; 3]>,
 }
 
+/// Words of a block of a queue.
+const BLOCK_WORDS: usize = (QUEUE_WORDS * QUEUE_BLOCK) as usize;
 /// Pixels of a tile.
 const PIXELS: usize = (SIDE * SIDE) as usize;
 /// Fragments: least copies of a tile for which it has a queue; those of other tiles are drawn as
@@ -154,7 +158,7 @@ impl BandRecords {
     /// its pixels share records with those of other tiles.
     fn add<'a>(
         &mut self,
-        here: impl DoubleEndedIterator<Item = &'a TileCopy> + Clone,
+        here: impl Iterator<Item = &'a TileCopy> + Clone,
         [x, y]: [u32; 2],
         gathers: bool,
     ) {
@@ -163,14 +167,18 @@ impl BandRecords {
         let near = here.clone().next().map_or(0, |one| one.near);
         let first = self.words.len() as u32;
         let (mut count, mut pixels) = (0, 0);
-        // The first copy of each pixel, and the number behind its last.
-        let mut begins = [0u32; PIXELS];
-        for one in here.clone() {
-            each_bit(one.pixels & !pixels, |k| begins[k] = count);
+        for one in here {
+            let (block, slot) = (count / QUEUE_BLOCK, count % QUEUE_BLOCK);
+            let begin = (first + QUEUE_WORDS * QUEUE_BLOCK * block) as usize;
+            self.words.resize(begin + BLOCK_WORDS, 0);
+            let (copies, marks) = self.words[begin..].split_at_mut(2 * QUEUE_BLOCK as usize);
+            copies[2 * slot as usize..][..2].copy_from_slice(&[one.copy, one.near]);
+            each_bit(one.pixels, |k| {
+                let at = k * QUEUE_BLOCK as usize;
+                marks[at / 32] |= 1 << (at as u32 % 32 + slot);
+            });
             count += 1;
             pixels |= one.pixels;
-            let [low, high] = [one.pixels as u32, (one.pixels >> 32) as u32];
-            self.words.extend([one.copy, one.near, low, high]);
         }
         if !gathers || pixels == u64::MAX {
             let halves = halves_of(pixels) << RECORD_HALVES_SHIFT;
@@ -178,16 +186,9 @@ impl BandRecords {
                 .push([x | y << TILE_BITS | halves, first, count, near]);
             return;
         }
-        let mut ends = [0u32; PIXELS];
-        let mut seen = 0;
-        for (end, one) in (1..=count).rev().zip(here.rev()) {
-            each_bit(one.pixels & !seen, |k| ends[k] = end);
-            seen |= one.pixels;
-        }
         each_bit(pixels, |k| {
             let place = corner + at(k as u32 % SIDE, k as u32 / SIDE);
-            let queue = first + QUEUE_WORDS * begins[k];
-            self.waiting.push([place, queue, ends[k] - begins[k]]);
+            self.waiting.push([place, first, count]);
             if self.waiting.len() == PIXELS {
                 self.gather();
             }
@@ -282,11 +283,18 @@ mod tests {
 
     /// The copies of a queue that a pixel of the tile may show.
     fn list(words: &[u32], begin: u32, count: u32, bit: u32) -> Vec<u32> {
-        let words = &words[begin as usize..][..(QUEUE_WORDS * count) as usize];
-        let copies = words.chunks_exact(QUEUE_WORDS as usize);
-        assert!(copies.clone().all(|w| w[1] == 100 + w[0]));
-        let marked = |w: &&[u32]| w[2 + bit as usize / 32] >> (bit % 32) & 1 == 1;
-        copies.filter(marked).map(|w| w[0]).collect()
+        let mut found = Vec::new();
+        for k in 0..count.next_multiple_of(QUEUE_BLOCK) {
+            let block = &words[begin as usize + (k / QUEUE_BLOCK) as usize * BLOCK_WORDS..];
+            let (slot, at) = (k % QUEUE_BLOCK, bit * QUEUE_BLOCK);
+            let marks = block[(2 * QUEUE_BLOCK + at / 32) as usize];
+            if marks >> (at % 32 + slot) & 1 == 1 {
+                let copy = &block[2 * slot as usize..][..2];
+                assert!(k < count && copy[1] == 100 + copy[0]);
+                found.push(copy[0]);
+            }
+        }
+        found
     }
 
     fn dealt(copies: &[TileCopy], tiles: u32, lists: bool) -> BandRecords {

@@ -132,7 +132,7 @@ mod tests {
         let outer = OuterCylinders::of_radii(&radii);
         let camera = Camera::new(DVec3::new(3.0, 1.0, 2.0), DVec3::new(0.0, 0.0, 0.4));
         let view = View::from_camera(&camera, (640, 480), [0.1, 100.0]).unwrap();
-        let projector = Projector::new(&view, 0.0);
+        let projector = Projector::new(&view, 0.0, 0.0);
         let shape = Cylinder {
             axis: DVec2::ZERO,
             radius: 0.4,

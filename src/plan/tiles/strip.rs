@@ -208,7 +208,7 @@ mod tests {
         ] {
             let camera = Camera::new(DVec3::from_array(eye), DVec3::from_array(target));
             let view = View::from_camera(&camera, (333, 210), [0.1, 1e3]).unwrap();
-            let projector = Projector::new(&view, 0.0);
+            let projector = Projector::new(&view, 0.0, 0.0);
             let candidates = Candidates::new(&projector, &batches);
             let closed = AtomicUsize::new(usize::MAX);
             let found = Visible::of(&candidates, |strip, candidates| {
