@@ -270,7 +270,7 @@ fn modules_are_few_and_small() {
         let most = match (module.entry, module.features, module.output) {
             // Traces twice, from the eye and towards lights, walks the hierarchy of casters, and
             // SPIR-V's optimiser inlines every call.
-            (_, Features::Full, _) => 78_800,
+            (_, Features::Full, _) => 78_900,
             // Copies may also come from queues of the device.
             (Entry::TileCopies | Entry::Tiles, Features::Textured, _) => 43_000,
             // Tiles share an instance, and `live` has both forms of its steps.

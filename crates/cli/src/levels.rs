@@ -1,23 +1,39 @@
 //! The picture of `render --levels`: every object in the colour of its level.
 
 use revmap::gpu::ObjectCost;
-use revmap::scene::{Scene, Shadow};
+use revmap::scene::{Object, Scene, Shadow};
+use std::collections::BTreeSet;
 
 /// The coarsest level that has a colour of its own.
 const COARSEST: f32 = 12.0;
 
-/// The scene reduced to colours: those of the levels by which its objects were drawn. Objects
-/// without levels are grey.
-pub fn painted(scene: &Scene, costs: &[ObjectCost]) -> Scene {
+/// The scene reduced to colours: those of the levels by which its objects, or their copies, were
+/// drawn. Objects without levels are grey. `copies`: the levels of each object's copies, if they
+/// differ.
+pub fn painted(scene: &Scene, costs: &[ObjectCost], copies: &[Vec<u8>]) -> Scene {
     let mut painted = scene.clone();
     painted.lights.clear();
     painted.ambient = [1.0; 3];
     painted.shadow = Shadow::Off;
-    for (object, cost) in painted.objects.iter_mut().zip(costs) {
+    painted.objects.clear();
+    for ((object, cost), copies) in scene.objects.iter().zip(costs).zip(copies) {
+        let mut object = object.clone();
         object.texturing.color_map = None;
         object.texturing.displacement_map = None;
         object.specular.strength = 0.0;
         object.color = cost.level.map_or([0.2; 3], color);
+        for level in BTreeSet::from_iter(copies) {
+            let all = object.instances.iter().zip(copies);
+            let of_level = all.filter(|(_, of)| *of == level).map(|(copy, _)| *copy);
+            painted.objects.push(Object {
+                instances: of_level.collect(),
+                color: color(u32::from(*level)),
+                ..object.clone()
+            });
+        }
+        if copies.is_empty() {
+            painted.objects.push(object);
+        }
     }
     painted
 }
@@ -31,7 +47,36 @@ fn color(level: u32) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
+    use glam::DVec3;
+    use revmap::gpu::DrawPath;
+    use revmap::profile::Profile;
+    use revmap::scene::{Camera, Placement};
+    use std::sync::Arc;
+
+    /// Copies are painted by their own levels, and none is lost.
+    #[test]
+    fn copies_are_painted_one_by_one() {
+        let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
+        let mut object = Object::new("many", Arc::new(profile));
+        object.instances = vec![Placement::default(); 5].into();
+        let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
+        scene.objects = vec![object.clone(), object];
+        let cost = ObjectCost {
+            path: DrawPath::Tiles,
+            level: Some(3),
+            error_pixels: None,
+            patches: 1,
+            table_bytes: 0,
+            map_bytes: 0,
+            instance_bytes: 0,
+        };
+        let found = painted(&scene, &[cost; 2], &[vec![6, 0, 6, 12, 0], vec![]]).objects;
+        let counts: Vec<_> = found.iter().map(|o| (o.instances.len(), o.color)).collect();
+        let wanted = [(2, color(0)), (2, color(6)), (1, color(12)), (5, color(3))];
+        assert_eq!(counts, wanted);
+    }
 
     #[test]
     fn levels_have_colours_of_their_own() {

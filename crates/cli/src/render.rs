@@ -149,7 +149,8 @@ impl Render {
                 edges: Edges::OneRay,
                 ..*settings
             };
-            let painted = levels::painted(scene, &costs);
+            let copies = renderer.offscreen.copy_levels();
+            let painted = levels::painted(scene, &costs, &copies);
             let mut renderer = method_device.renderer(&painted, &settings)?;
             renderer.draw()?;
             revmap_files::write_png(&renderer.read()?, file)?;

@@ -27,8 +27,8 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
     uint layer = count >> QUEUE_LAYER_SHIFT & 127u;
     uint end = first + QUEUE_WORDS * (MAY_BE_OF_DEVICE ? count & QUEUE_COUNT : count);
     float sense = frame.forward.w;
-    uint nearest_begin = 0u; // of the hit, float bits
-    uint block = first;      // the next one
+    uint nearest_word = first; // of the copy that was hit
+    uint block = first;        // the next one
     uint marks = 0u;
     for (;;) {
         // Invocations meet behind this loop, each with the next copy of its own pixel.
@@ -63,15 +63,19 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
         float met_at = sense * depth_of(rays.base + hit.t);
-        bool is_tie = found && met_at == depth && (near < nearest_begin || near == nearest_begin && number < index);
+        bool is_tie = loose && found && met && met_at == depth;
+        if (is_tie) {
+            uvec2 other = uvec2(tile_words[nearest_word], tile_words[nearest_word + 1u]);
+            is_tie = near < other.y || near == other.y && number < other.x;
+        }
         if (met && (met_at < depth || is_tie)) {
             found = true;
-            nearest_begin = near;
+            nearest_word = word;
             depth = met_at;
             nearest = hit;
-            index = number;
         }
     }
+    index = tile_words[nearest_word];
     nearest.steps = steps;
     nearest.exhausted = exhausted;
     return found;

@@ -46,12 +46,16 @@ pub(crate) struct LevelledCopies {
 }
 
 impl LevelledCopies {
-    /// Number of the block of a copy. `number`: that of its object.
-    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
+    /// Index of a copy's level among [`COPY_LEVELS`].
+    pub fn level(&self, copy: &InstanceBlock) -> usize {
         let [_, _, _, across] = copy.position_sx;
         let [y, z, depth, _] = copy.scale_depth;
-        let level = self.levels.of(depth, across.max(y).max(z));
-        match level - self.levels.first {
+        self.levels.of(depth, across.max(y).max(z))
+    }
+
+    /// Number of the block of a copy. `number`: that of its object.
+    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
+        match self.level(copy) - self.levels.first {
             0 => number,
             n => self.first_block + n as u32 - 1,
         }

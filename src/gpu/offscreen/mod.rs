@@ -323,6 +323,12 @@ impl Offscreen {
         self.renderer.object_costs()
     }
 
+    /// Same as [`Renderer::copy_levels`], since the last update that succeeded.
+    #[must_use]
+    pub fn copy_levels(&self) -> Vec<Vec<u8>> {
+        self.renderer.copy_levels()
+    }
+
     /// Same as [`Renderer::device_bytes`]; the target is not counted.
     #[must_use]
     pub fn device_bytes(&self) -> u64 {

@@ -3,6 +3,8 @@
 use super::Renderer;
 use crate::gpu::content::entry::Entry;
 use crate::gpu::content::view_plan::PlannedObject;
+use crate::gpu::resources::block::instance_block;
+use crate::plan::levels::COPY_LEVELS;
 use crate::plan::{DrawPath, View};
 use crate::shader::InstanceBlock;
 use crate::solid::table_slot::Part;
@@ -47,6 +49,24 @@ impl Renderer {
             Some(entry.cost(object, *path, &plan.view))
         };
         objects.filter_map(cost).collect()
+    }
+
+    /// The level of each copy in the last planned frame, one list per object. A list is empty if all
+    /// copies have the level of [`ObjectCost`].
+    #[must_use]
+    pub fn copy_levels(&self) -> Vec<Vec<u8>> {
+        let objects = self.content.plan.iter().flat_map(|plan| {
+            plan.objects.iter().map(|object| {
+                let entry = self.content.objects.at(object.number)?;
+                let copies = object.copies.as_ref()?;
+                let level = |placement| {
+                    let block = instance_block(entry.drawn(), placement, 0, &plan.view);
+                    COPY_LEVELS[copies.level(&block)]
+                };
+                Some(entry.drawn().placements().iter().map(level).collect())
+            })
+        });
+        objects.map(Option::unwrap_or_default).collect()
     }
 
     /// Bytes of all buffers and images of the renderer on the device, and of the geometry that all

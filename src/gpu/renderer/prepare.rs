@@ -14,6 +14,8 @@ use crate::shader::Kind;
 use crate::shader::OBJECT_STRIDE;
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
+use std::borrow::Cow;
+use std::iter;
 use std::sync::Arc;
 
 /// A frame that was prepared in a slot; the argument of [`Renderer::record`]. Preparing the slot
@@ -230,40 +232,36 @@ impl Renderer {
             let Some(entry) = self.content.objects.at(number) else {
                 continue;
             };
-            let Some(block) =
-                entry.block(number, object.surface.as_deref(), &self.content.settings)
-            else {
-                continue;
-            };
             let placements = entry.drawn().placements();
-            to.write_object(number, &block)?;
             let levels = object.copies.as_ref();
-            for (number, surface) in levels
-                .iter()
-                .flat_map(|l| (l.first_block..).zip(&l.coarser))
-            {
-                let block = entry.block(object.number, Some(surface), &self.content.settings);
-                block.map_or(Ok(()), |block| to.write_object(number, &block))?;
+            let coarser = levels.map(|l| (l.first_block..).zip(l.coarser.iter().map(Some)));
+            let all = iter::once((number, object.surface.as_ref()));
+            for (at, surface) in all.chain(coarser.into_iter().flatten()) {
+                let surface = surface.map(Arc::as_ref);
+                if let Some(block) = entry.block(number, surface, &self.content.settings) {
+                    to.write_object(at, &block)?;
+                }
             }
-            let mut write = |copy: u32| {
+            let shown: Cow<[u32]> = match copies {
+                Some(shown) => shown.into(),
+                // Other objects move the blocks of levels.
+                None if entry.version > known || levels.is_some() => {
+                    (0..placements.len() as u32).collect()
+                }
+                None => continue,
+            };
+            let first = entry.instances.start;
+            to.write_instances(first, &shown, |copy| {
                 let placement = &placements[copy as usize];
                 let mut block = instance_block(entry.drawn(), placement, number, view);
                 if let Some(levels) = levels {
                     block.object[0] = levels.block(number, &block);
                 }
-                let at = entry.instances.start + copy;
-                if motion {
-                    let last = last_block(entry, copy as usize, view);
-                    to.write_instance(instances + at, &last)?;
-                }
-                to.write_instance(at, &block)
-            };
-            match copies {
-                Some(shown) => shown.iter().try_for_each(|&copy| write(copy))?,
-                None if entry.version > known => {
-                    (0..placements.len() as u32).try_for_each(write)?;
-                }
-                None => {}
+                block
+            })?;
+            if motion {
+                let last = |copy| last_block(entry, copy as usize, view);
+                to.write_instances(instances + first, &shown, last)?;
             }
         }
         if let Some(crowds) = &plan.frame.crowds {

@@ -199,9 +199,18 @@ impl FrameSlot {
         write(&mut self.objects, at, block)
     }
 
-    pub fn write_instance(&mut self, number: u32, instance: &InstanceBlock) -> Result<()> {
-        let at = number as usize * size_of::<InstanceBlock>();
-        write(&mut self.instances, at, instance)
+    /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of the
+    /// instance of copy 0.
+    pub fn write_instances(
+        &mut self,
+        first: u32,
+        copies: &[u32],
+        block: impl Fn(u32) -> InstanceBlock + Sync,
+    ) -> Result<()> {
+        let from = first as usize * size_of::<InstanceBlock>();
+        let (blocks, _) = self.instances.mapped()?[from..].as_chunks_mut();
+        fill(blocks, 0, copies, &block);
+        Ok(())
     }
 
     /// Writes the copies that may cast shadows.
@@ -317,6 +326,28 @@ impl FrameSlot {
         }
         self.named = Some(now);
     }
+}
+
+/// Fills `blocks`, of which the first belongs to copy `first`.
+fn fill(
+    blocks: &mut [[u8; size_of::<InstanceBlock>()]],
+    first: u32,
+    copies: &[u32],
+    block: &(impl Fn(u32) -> InstanceBlock + Sync),
+) {
+    const FEW: usize = 4096;
+    if copies.len() <= FEW {
+        for copy in copies {
+            blocks[(copy - first) as usize].copy_from_slice(bytemuck::bytes_of(&block(*copy)));
+        }
+        return;
+    }
+    let (near, far) = copies.split_at(copies.len() / 2);
+    let (a, b) = blocks.split_at_mut((far[0] - first) as usize);
+    rayon::join(
+        || fill(a, first, near, block),
+        || fill(b, far[0], far, block),
+    );
 }
 
 /// Makes a storage buffer with half as much again to spare, because moving objects grow it in small
