@@ -182,6 +182,7 @@ impl PipelineCompiler {
                 textures: 0,
                 surface: None,
                 takes_patches: solver == Solver::Exact,
+                listed_patches: 0,
                 levelled: false,
                 levels: None,
                 shape: shape_of(object, [0.0; 4]),

@@ -61,6 +61,9 @@ pub(crate) struct PlanObject<'a> {
     pub surface: Option<&'a Arc<OffsetSurface>>,
     /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
+    /// Number of patches that lists of its tiles are made from: those of the second level if its
+    /// copies have levels of their own, as few have the finest.
+    pub listed_patches: u64,
     /// True if its copies have levels of their own.
     pub levelled: bool,
     /// Those of this view, and the number of the first coarser block.
@@ -347,11 +350,6 @@ impl PlanObject<'_> {
         } else {
             Placements::Many(&self.object.instances)
         }
-    }
-
-    /// Patches that lists of the object's tiles are made from.
-    pub fn listed_patches(&self) -> u64 {
-        self.surface.map_or(0, |s| s.patches() as u64)
     }
 
     /// True if the box shows no more than the surface's patches.

@@ -157,7 +157,7 @@ impl Content {
         let tolerance = self.settings.tolerance;
         let level_of = |entry: &Entry, derived: &Derived| match view {
             Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
-                let pixels = entry.pixels_per_unit(view, [casts, false]);
+                let pixels = entry.pixels_per_unit(view, casts);
                 // An object that does not show takes a level that is already made.
                 let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
                 made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
@@ -168,7 +168,8 @@ impl Content {
             let derived = entry.derived.as_ref()?;
             let levelled = self.levels_copies(entry, derived);
             let levels = view.filter(|_| levelled).map(|view| {
-                CopyLevels::new(entry.drawn(), entry.growth().height(), view, tolerance)
+                let height = entry.growth().height();
+                CopyLevels::new(entry.drawn(), height, view, tolerance, self.lists_crowds())
             });
             let finest = levels.as_ref().map(|levels| COPY_LEVELS[levels.first]);
             Some(PlannedObject {
@@ -244,15 +245,14 @@ impl Entry {
 
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
-    /// `at_once`: see [`pixels_per_unit`].
-    pub fn pixels_per_unit(&self, view: &View, [all, at_once]: [bool; 2]) -> f64 {
+    pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
         let height = self.growth().height();
-        pixels_per_unit(self.drawn(), height, view, [all, at_once])
+        pixels_per_unit(self.drawn(), height, view, all)
     }
 
     /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
     pub fn error_pixels(&self, level: u8, view: &View) -> f64 {
-        levels::bound(level) * self.pixels_per_unit(view, [false; 2])
+        levels::bound(level) * self.pixels_per_unit(view, false)
     }
 
     /// The object in the form that a plan reads; `None` before it is derived.
@@ -263,6 +263,8 @@ impl Entry {
     ) -> Option<PlanObject<'a>> {
         let derived = self.derived.as_ref()?;
         let surface = planned.surface.as_ref();
+        let second = planned.copies.as_ref().and_then(|c| c.coarser.first());
+        let listed = second.or(surface);
         let block = self.block(planned.number, surface.map(Arc::as_ref), settings)?;
         let texels = 2.0 / f64::from(block.map[1]);
         let away = largest_width(&self.drawn().offset).max(0.0) + texels;
@@ -274,6 +276,7 @@ impl Entry {
             textures: Arc::as_ptr(&derived.textures) as usize,
             surface,
             takes_patches: derived.takes_patches && surface.is_some(),
+            listed_patches: listed.map_or(0, |surface| surface.patches() as u64),
             levelled: planned.levelled,
             levels: (planned.copies.as_ref()).map(|copies| (&copies.levels, copies.first_block)),
             shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
