@@ -150,8 +150,9 @@ impl Content {
     }
 
     /// The level of each object: the coarsest that the view allows, or the exact one if there is no
-    /// view. Objects with many copies have a level for each. With shadows, all objects take the finest level that one of them needs. The reason is
-    /// that a shadow may fall nearer to the eye than its caster.
+    /// view. Objects with many copies have a level for each. With shadows, all objects take the
+    /// finest level that one of them needs. The reason is that a shadow may fall nearer to the eye
+    /// than its caster.
     fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
         let casts = self.casts();
         let tolerance = self.settings.tolerance;
