@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// COPY_BOUNDS finds the copies that some pixel may show, one invocation per copy of a crowd. COPY_RECORDS makes the records
-// of those that are listed in tiles: relative to the eye, in double precision, like instance_block() of
+// COPY_BOUNDS finds the copies that some pixel may show, one invocation per copy of a crowd. COPY_RECORDS makes the
+// records of those that are listed in tiles: relative to the eye, in double precision, like instance_block() of
 // src/gpu/resources/block.rs.
 #define INSTANCE_ACCESS
 #include "stage/crowd.glsl"
@@ -85,7 +85,8 @@ void make_record(uint visible)
     dvec3 middle = p + turned(q, s * dvec3(0.0lf, 0.0lf, 0.5lf));
     double depth = dot(middle, TRIPLE(crowd.forward));
     dvec3 to_plane = TRIPLE(crowd.dir_00) * max(depth, 0.0lf);
-    dvec3 origin = turned(dvec4(-q.xyz, q.w), to_plane - p) / s - dvec3(packDouble2x32(axis.xy), packDouble2x32(axis.zw), 0.0lf);
+    dvec3 to_axis = dvec3(packDouble2x32(axis.xy), packDouble2x32(axis.zw), 0.0lf);
+    dvec3 origin = turned(dvec4(-q.xyz, q.w), to_plane - p) / s - to_axis;
     Instance i;
     i.position_sx = vec4(vec3(p), float(s.x));
     i.rotation = vec4(q);

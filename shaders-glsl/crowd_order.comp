@@ -16,7 +16,8 @@ void make_ranges()
         uint count = bin_words[head_word(STEPS + k)];
         bin_words[head_word(STEPS + k)] = sum;
         // A range begins with the first step after its share of the copies.
-        for (; range < CROWD_RANGES && float(sum) * float(CROWD_RANGES) >= float(visible) * float(range) && count > 0u; ++range) {
+        float share = float(sum) / float(visible) * float(CROWD_RANGES);
+        for (; range < CROWD_RANGES && share >= float(range) && count > 0u; ++range) {
             bin_words[head_word(RANGE_FIRSTS + range)] = sum;
         }
         sum += count;

@@ -15,7 +15,8 @@ void main()
     // Halves of the tile in which no pixel shows a copy are left out.
     uvec4 halves = uvec4(tile_words[at]) >> RECORD_HALVES_SHIFT + uvec4(0u, 1u, 2u, 3u) & 1u;
     uvec2 far = uvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
-    vec2 corner = vec2(tile_corner_of(tile_words[at]) + GROUP_PIXELS / 2u * (far * (1u + halves.yw) + (1u - far) * (1u - halves.xz)));
+    uvec2 half_tiles = far * (1u + halves.yw) + (1u - far) * (1u - halves.xz);
+    vec2 corner = vec2(tile_corner_of(tile_words[at]) + GROUP_PIXELS / 2u * half_tiles);
     float near = depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner * frame.pixels.xz + frame.pixels.yw, near, 1.0);
     if (VIEWS > 1u && VIEW_INDEX != frame_block.view.x) {

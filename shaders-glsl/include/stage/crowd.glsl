@@ -20,7 +20,8 @@ const uint LISTED = 4u;  // copies that are listed in a tile
 const uint ENTRIES = 8u; // entries of tiles
 const uint RANGES = 12u; // for each range of depth, its copies
 const uint RANGE_FIRSTS = RANGES + 4u * CROWD_RANGES; // for each range, the number of copies in nearer ranges
-const uint STEPS = RANGE_FIRSTS + CROWD_RANGES;       // for each step of depth, the number of its copies; then its next place
+// For each step of depth, the number of its copies; later its next place in the order.
+const uint STEPS = RANGE_FIRSTS + CROWD_RANGES;
 // Words of a layer's head.
 const uint LAYER_COMMAND = 0u; // indirect draw or dispatch
 const uint LAYER_RECORDS = 4u; // number of its records
@@ -50,8 +51,9 @@ layout(set = 2, binding = 8, std430) readonly buffer CrowdBlock {
     ivec4 picture; // first and last pixel: left, top, right, bottom
     uvec4 size;    // tiles across and down; layers; objects
     uvec4 counts;  // copies; most entries; first words of the head and of the cover
-    uvec4 lists;   // for each tile of each layer, first words of: number of entries; ~ of the nearest depth; marked pixels, two
-                   // words; first place in the queues
+    // First words of lists of the tiles of all layers: number of entries; ~ of the nearest depth; marked pixels, two
+    // words for each tile; first place in the queues.
+    uvec4 lists;
     uvec4 copies;  // first words of: copies in the picture; their numbers by depth; those of listed copies; entries
     uvec4 tiles;   // in tile_words: first words of records, listed copies and queues; 1: records of pixels, 0: of tiles
     uvec4 steps;   // step of the nearest copies; rows of groups of a dispatch over pixels; unused
