@@ -34,7 +34,7 @@ uvec2 this_pixel(out uint first, out uint count)
 void main()
 {
     take_frame();
-    take_object(pushed.object);
+    take_only_object(pushed.object);
     take_lights();
     uint first, count;
     uvec2 pixel = this_pixel(first, count);
@@ -46,9 +46,7 @@ void main()
         count_steps(pixel, hit);
         if (found) {
             Instance i = instances[index];
-            if (ONE_OBJECT == 0u) {
-                take_object(i.object.x);
-            }
+            take_one_of_objects(i.object.x);
             Look look = look_of(i);
 #if HOST_SHADING
             look.instance = index;

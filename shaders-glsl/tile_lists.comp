@@ -33,7 +33,8 @@ void main()
     }
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
-    uvec2 header = patch_tables[object.parts.z].xy;
+    place_own_tables();
+    uvec2 header = listed_table(0u).xy;
     float unit = uintBitsToFloat(header.y);
 
     if (self == 0u) {

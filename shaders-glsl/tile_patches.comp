@@ -6,18 +6,14 @@
 void main()
 {
     begin_frame();
-    if (ONE_OBJECT != 0u) {
-        take_object(pushed.object); // before any barrier: see take_frame()
-    }
+    take_only_object(pushed.object); // before any barrier: see take_frame()
     share_record();
     barrier();
     take_shared_record();
     share_patches();
     barrier();
     take_shared_instance();
-    if (ONE_OBJECT == 0u) {
-        take_object(tile_instance.object.x);
-    }
+    take_one_of_objects(tile_instance.object.x);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;

@@ -7,7 +7,9 @@ void main()
 {
     begin_frame();
     take_record();
-    take_object(ONE_OBJECT != 0u ? pushed.object : tile_instance.object.x);
+    take_only_object(pushed.object);
+    take_one_of_objects(tile_instance.object.x);
+    place_own_tables();
     begin_tile();
     // Records of the last bin contain the span. Records in tile order do not.
     vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;

@@ -12,9 +12,7 @@ void main()
     vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
     take_frame();
     take_lights();
-    if (ONE_OBJECT != 0u) {
-        take_object(instances[tile_words[tile_queue.x]].object.x);
-    }
+    take_only_object(instances[tile_words[tile_queue.x]].object.x);
     float depth = 2.0; // behind everything
     uint index;
     Hit hit;
@@ -24,9 +22,7 @@ void main()
         discard;
     }
     Instance i = instances[index];
-    if (ONE_OBJECT == 0u) {
-        take_object(i.object.x);
-    }
+    take_one_of_objects(i.object.x);
     PixelRays rays = pixel_rays(i);
     Look look = look_of(i);
 #if HOST_SHADING

@@ -278,11 +278,10 @@ fn crowd_object(
     };
     let [x, y] = [shape.axis.x, shape.axis.y].map(words_of);
     // Without levels every copy has the object's block.
-    let levels = of
-        .levels
-        .map_or(([f32::INFINITY; 4], [0; 2]), |(l, first)| {
-            (l.limits, [l.first as u32, first])
-        });
+    let levels = of.levelled.map_or(([f32::INFINITY; 4], [0; 2]), |copies| {
+        let levels = &copies.levels;
+        (levels.limits, [levels.first as u32, copies.first_block])
+    });
     CrowdObject {
         axis: [x[0], x[1], y[0], y[1]],
         shape: [

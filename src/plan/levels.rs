@@ -6,9 +6,12 @@ use super::tiles::{Cylinder, Projector};
 use super::view::View;
 use crate::scene::{Cluster, Object, Placement};
 use crate::settings::Tolerance;
+use crate::shader::InstanceBlock;
+use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::FitOptions;
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
+use std::sync::Arc;
 
 /// The coarsest level: patches within a 36th of the height.
 pub(crate) const COARSEST: u8 = 12;
@@ -23,7 +26,7 @@ pub(crate) const GRAZING: f64 = 16.0;
 pub(crate) const COPY_LEVELS: [u8; 5] = [0, 3, 6, 9, COARSEST];
 
 /// The choice of a level for each copy of an object in a view.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct CopyLevels {
     /// Index of the finest level that a copy may need.
     pub first: usize,
@@ -88,6 +91,33 @@ impl CopyLevels {
     pub fn of(&self, depth: f32, scale: f32) -> usize {
         let passes = |limit: &&f32| depth >= scale * **limit;
         self.limits.iter().filter(passes).count().max(self.first)
+    }
+}
+
+/// The copies of an object, each with a level of its own.
+#[derive(Default)]
+pub(crate) struct LevelledCopies {
+    pub levels: CopyLevels,
+    /// The surfaces of the levels after the finest.
+    pub coarser: Vec<Arc<OffsetSurface>>,
+    /// Number of the block of the first of these.
+    pub first_block: u32,
+}
+
+impl LevelledCopies {
+    /// Index of a copy's level among [`COPY_LEVELS`].
+    pub fn level(&self, copy: &InstanceBlock) -> usize {
+        let [_, _, _, across] = copy.position_sx;
+        let [y, z, depth, _] = copy.scale_depth;
+        self.levels.of(depth, across.max(y).max(z))
+    }
+
+    /// Number of the block of a copy. `number`: that of its object.
+    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
+        match self.level(copy) - self.levels.first {
+            0 => number,
+            n => self.first_block + n as u32 - 1,
+        }
     }
 }
 

@@ -127,7 +127,7 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
 
 /// The projector of a view, with a margin for the levels of copies.
 fn projector(view: &View, objects: &[PlanObject], with: &Conditions) -> Projector {
-    let levelled = objects.iter().any(|of| of.levelled);
+    let levelled = objects.iter().any(|of| of.levelled.is_some());
     let slack = if levelled { with.level_pixels } else { 0.0 };
     Projector::new(view, with.ray_spread, slack)
 }
@@ -152,9 +152,9 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
-            one_object: u32::from(alone && !of.levelled),
+            one_object: u32::from(alone) << u32::from(of.levelled.is_some()),
             one_instance: u32::from(alone && of.copies().len() == 1),
-            own_tables: u32::from(alone && !of.levelled && with.holds_tables(of)),
+            own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant
         }
     };

@@ -1,6 +1,6 @@
 //! The choice of each object's draw path from the view, the placements and the surface.
 
-use super::levels::CopyLevels;
+use super::levels::LevelledCopies;
 use super::proxy;
 use super::tiles::{Cylinder, Placements};
 use super::view::View;
@@ -61,13 +61,8 @@ pub(crate) struct PlanObject<'a> {
     pub surface: Option<&'a Arc<OffsetSurface>>,
     /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
-    /// Number of patches that lists of its tiles are made from: those of the second level if its
-    /// copies have levels of their own, as few have the finest.
-    pub listed_patches: u64,
-    /// True if its copies have levels of their own.
-    pub levelled: bool,
-    /// Those of this view, and the number of the first coarser block.
-    pub levels: Option<(&'a CopyLevels, u32)>,
+    /// Its copies, if they have levels of their own.
+    pub levelled: Option<&'a LevelledCopies>,
     pub shape: Cylinder,
     /// The outline, and the largest distance of the surface from it in object units.
     pub outline: Option<(&'a OutlineCache, f64)>,
@@ -246,7 +241,7 @@ impl Conditions {
     /// True if a uniform buffer holds an object's tables.
     pub fn holds_tables(&self, of: &PlanObject) -> bool {
         of.surface
-            .is_some_and(|surface| surface.tables().own <= self.own_vectors)
+            .is_some_and(|surface| surface.tables().vectors.len() <= self.own_vectors)
     }
 
     /// Every pipeline that an object may need while parameters, lights, camera and placements
@@ -282,10 +277,10 @@ impl Conditions {
             kinds.push((Kind::Boxes, &[0, 1]));
         }
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
-        // An offset may move the size of the tables across the limit.
-        let large = of
-            .surface
-            .is_some_and(|s| 4 * s.tables().own > 3 * self.own_vectors);
+        // An offset may move the size of the tables across the limit, and levels may lie apart.
+        let large =
+            (of.surface).is_some_and(|s| 4 * s.tables().vectors.len() > 3 * self.own_vectors);
+        let large = large || of.levelled.is_some();
         let own: &[u32] = match (variant.one_object == 0, large) {
             (true, _) => &[0],
             (false, false) => &[1],
@@ -350,6 +345,14 @@ impl PlanObject<'_> {
         } else {
             Placements::Many(&self.object.instances)
         }
+    }
+
+    /// Number of patches that lists of its tiles are made from: those of the second level if its
+    /// copies have levels of their own, as few have the finest.
+    pub fn listed_patches(&self) -> u64 {
+        let second = self.levelled.and_then(|copies| copies.coarser.first());
+        let surface = second.or(self.surface);
+        surface.map_or(0, |surface| surface.patches() as u64)
     }
 
     /// True if the box shows no more than the surface's patches.

@@ -66,7 +66,7 @@ impl FramePlan {
         let mut dealt = visible.deal(drawer, &layer_of, &queues);
         let layers_of_lists = layers.iter().zip(&mut dealt.layers);
         for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
-            let patches = |&n: &u32| objects[n as usize].listed_patches;
+            let patches = |&n: &u32| objects[n as usize].listed_patches();
             let patches = layer.objects.iter().map(patches).sum();
             let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
             if !with.gains_by_lists(tiles_of_all, patches) {

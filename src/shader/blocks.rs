@@ -88,7 +88,7 @@ pub struct ObjectBlock {
     /// Replicas along x, y, z; bits: reflected along x, y, z.
     pub cells: [u32; 4],
     /// First instance, number of instances, index of the shape map among the maps of shadows,
-    /// number of the solid.
+    /// first vector of all levels' tables.
     pub instances: [u32; 4],
     /// Tables of the quadric search: where they begin, first record, first range, bits of the unit
     /// of `r^2`. Tables of another search: where they begin, and the search's three facts.

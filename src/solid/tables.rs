@@ -7,8 +7,6 @@ use crate::surface::{Contour, FitOptions, GpuPatch, QuadricPatch, Tables, fit_pa
 /// A table that may be stored anywhere in a buffer.
 pub(crate) struct GpuTables {
     pub vectors: Vec<[u32; 4]>,
-    /// Number of vectors, from the first on, that the search itself reads.
-    pub own: usize,
     /// The words of `Object.patches` of `blocks.glsl` after the first vector's number.
     facts: [u32; 3],
 }
@@ -40,10 +38,8 @@ impl GpuTables {
             [a, b, c, d]
         };
         vectors.extend(tables.records.chunks(2).map(ranges));
-        let own = vectors.len();
         Self {
             vectors,
-            own,
             facts: [index(first_record), index(first_range), unit.to_bits()],
         }
     }
@@ -52,7 +48,6 @@ impl GpuTables {
     pub fn of_search(table: &SearchTable) -> Self {
         Self {
             vectors: table.vectors.clone(),
-            own: table.vectors.len(),
             facts: table.facts,
         }
     }

@@ -318,8 +318,12 @@ impl Session {
         for plan in &file.flights {
             for &stage in stages {
                 let settings = flight::settings(stage);
-                let own = flight::fly(&device, &settings, plan.copies, plan.frames, plan.compared)?;
-                let name = format!("flight-{}-{}.csv", plan.copies, stage.name());
+                let Some(own) = flight::fly(&device, &settings, plan)? else {
+                    let message = "the device has no shaderFloat64, so it lists no tiles of crowds";
+                    output::warn(message);
+                    continue;
+                };
+                let name = format!("{}.csv", own.name());
                 folder::write_text(&self.out.join(name), &own.table().csv())?;
                 all.push(own);
             }

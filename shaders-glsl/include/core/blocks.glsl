@@ -56,7 +56,7 @@ struct Object {
     vec4 specular;   // strength, shininess; height of the box and of its part below z = 0, profile units
     vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
-    uvec4 instances; // first, count, index of the shape map among those of shadows, index of the object
+    uvec4 instances; // first, count, index of the shape map among those of shadows, first vector of all levels' tables
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
     uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches; first vector of the rows of sides
@@ -100,42 +100,76 @@ void take_frame()
     frame.pixels = frame_block.pixels;
 }
 
-// Copies the object from either buffer.
-#define TAKE_OBJECT(from) \
+// Copy the members of an object that all levels share, and those that differ, from either buffer.
+#define TAKE_SHARED(from) \
     object.map = from.map; \
-    object.bounds = from.bounds; \
     object.offset = from.offset; \
     object.axis = from.axis; \
     object.albedo = from.albedo; \
     object.specular = from.specular; \
     object.texturing = from.texturing; \
     object.cells = from.cells; \
-    object.instances = from.instances; \
+    object.instances = from.instances
+
+#define TAKE_LEVEL(from) \
+    object.bounds = from.bounds; \
     object.patches = from.patches; \
     object.parts = from.parts
 
-void take_object(uint number)
+// Loads what a draw or dispatch of one object has in a uniform buffer.
+void take_only_object(uint number)
 {
     if (ONE_OBJECT != 0u) {
-        TAKE_OBJECT(own_object);
+        TAKE_SHARED(own_object);
         // Loop lengths come from the storage buffer: lavapipe 22 treats uniforms that loops depend on as constants, and
         // crashes.
         object.offset.w = objects[number].object.offset.w;
         object.cells = objects[number].object.cells;
-    } else {
-        TAKE_OBJECT(objects[number].object);
+    }
+    if (ONE_OBJECT == 1u) {
+        TAKE_LEVEL(own_object);
     }
 }
 
-// Loads the members of an object that a search reads.
+// Loads the rest: one of several objects, or a level.
+void take_one_of_objects(uint number)
+{
+    if (ONE_OBJECT == 0u) {
+        TAKE_SHARED(objects[number].object);
+    }
+    if (ONE_OBJECT != 1u) {
+        TAKE_LEVEL(objects[number].object);
+    }
+}
+
+void take_object(uint number)
+{
+    take_only_object(number);
+    take_one_of_objects(number);
+}
+
+// Makes the places of the object's tables relative to the uniform buffer, if it holds them.
+void place_own_tables()
+{
+    if (OWN_TABLES != 0u) {
+        object.patches.x = ONE_OBJECT == 2u ? object.patches.x - object.instances.w : 0u;
+        object.parts.z = ONE_OBJECT == 2u ? object.parts.z - object.instances.w : 0u;
+    }
+}
+
+// Loads the members of an object that a search reads and that another copy of the draw may not share.
 void take_shape(uint number)
 {
-    object.map = objects[number].object.map;
-    object.bounds = objects[number].object.bounds;
-    object.offset = objects[number].object.offset;
-    object.axis = objects[number].object.axis;
-    object.cells = objects[number].object.cells;
-    object.patches = objects[number].object.patches;
+    if (ONE_OBJECT != 1u) {
+        object.bounds = objects[number].object.bounds;
+        object.patches = objects[number].object.patches;
+    }
+    if (ONE_OBJECT == 0u) {
+        object.map = objects[number].object.map;
+        object.offset = objects[number].object.offset;
+        object.axis = objects[number].object.axis;
+        object.cells = objects[number].object.cells;
+    }
 }
 
 #endif

@@ -13,8 +13,8 @@ layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
 
-// Tables of a draw or dispatch that reads only one; for listed patches, their table. Software drivers gather from
-// uniform buffers several times faster.
+// Tables of a draw or dispatch that has one object, of all its levels; for listed patches, their table. Software
+// drivers gather from uniform buffers several times faster.
 layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[OWN_VECTORS];
 };
@@ -30,32 +30,31 @@ bool takes_own_tables()
 #endif
 }
 
+// The functions below need place_own_tables() of blocks.glsl.
 uint patch_word(uint at)
 {
-    if (takes_own_tables()) {
-        return own_patch_tables[at >> 2][at & 3u];
-    }
-    return patch_tables[object.patches.x + (at >> 2)][at & 3u];
+    uint vector = object.patches.x + (at >> 2);
+    return takes_own_tables() ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
-    if (takes_own_tables()) {
-        return uintBitsToFloat(own_patch_tables[at]);
-    }
-    return uintBitsToFloat(patch_tables[object.patches.x + at]);
+    uint vector = object.patches.x + at;
+    return uintBitsToFloat(takes_own_tables() ? own_patch_tables[vector] : patch_tables[vector]);
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
-    return OWN_TABLES != 0u ? own_patch_tables[at] : patch_tables[object.parts.z + at];
+    uint vector = object.parts.z + at;
+    return OWN_TABLES != 0u ? own_patch_tables[vector] : patch_tables[vector];
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
-    return OWN_TABLES != 0u ? own_patch_tables[at][k] : patch_tables[object.parts.z + at][k];
+    uint vector = object.parts.z + at;
+    return OWN_TABLES != 0u ? own_patch_tables[vector][k] : patch_tables[vector][k];
 }
 
 // Returns the least and largest r^2 of a node.

@@ -48,8 +48,9 @@ bool starts_within(Meridian m)
     uint beyond = 0u;
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
-        vec4 q = patch_vector(object.patches.y + 2u * record);
-        float above = m.o.z - patch_vector(object.patches.y + 2u * record + 1u).x;
+        uint at = object.patches.y + 2u * record;
+        vec4 q = patch_vector(at);
+        float above = m.o.z - patch_vector(at + 1u).x;
         vec4 ranges = patch_vector(object.patches.z + (record >> 1));
         vec2 range = (record & 1u) == 0u ? ranges.xy : ranges.zw;
         float p = -q.x * (q.y + above * (q.z + above * q.w));

@@ -54,9 +54,8 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         if (!marked && i.object.y != layer) {
             continue;
         }
-        if (ONE_OBJECT == 0u) {
-            take_shape(i.object.x);
-        }
+        take_shape(i.object.x);
+        place_own_tables();
         PixelRays rays = pixel_rays(i);
         Hit hit;
         bool met = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);

@@ -17,8 +17,8 @@ void begin_frame()
 
 uint record_word(uint n)
 {
-    return LIST_LENGTH != 0u ? bin_words[bin_records(pushed.bin) + 4u * gl_WorkGroupID.x + n]
-                             : tile_words[4u * (pushed.first + gl_WorkGroupID.x) + n];
+    uint at = 4u * gl_WorkGroupID.x + n + (LIST_LENGTH != 0u ? bin_records(pushed.bin) : 4u * pushed.first);
+    return LIST_LENGTH != 0u ? bin_words[at] : tile_words[at];
 }
 
 // Loads the record and its instance.

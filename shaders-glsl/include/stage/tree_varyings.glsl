@@ -61,6 +61,7 @@ void take_over_tree()
 #endif
 #if READS_TABLES
     object.patches = tree_patches;
+    place_own_tables();
 #endif
 }
 #endif

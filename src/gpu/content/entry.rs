@@ -132,10 +132,11 @@ impl Entry {
     }
 
     /// The block that shaders read, for this surface; `None` before anything was derived.
+    /// `window`: first vector of the tables of all levels.
     pub fn block(
         &self,
-        number: u32,
         surface: Option<&OffsetSurface>,
+        window: u32,
         settings: &SearchSettings,
     ) -> Option<ObjectBlock> {
         let derived = self.derived.as_ref()?;
@@ -192,7 +193,7 @@ impl Entry {
                 self.instances.start,
                 self.instances.end - self.instances.start,
                 derived.shadow_map,
-                number,
+                window,
             ],
             patches: begin(Part::Tables)
                 .zip(surface)

@@ -3,14 +3,16 @@
 use super::Content;
 use super::entry::{Derived, Entry};
 use crate::error::Result;
-use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, GRAZING, coarsest, pixels_per_unit};
-use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
+use crate::plan::levels::{
+    self, COPY_LEVELS, CopyLevels, GRAZING, LevelledCopies, coarsest, pixels_per_unit,
+};
+use crate::plan::{Conditions, FramePlan, MOST_PROXIES, Parts, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
-use crate::shader::InstanceBlock;
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::reach::largest_width;
 use crate::solid::table_slot::Part;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The plan of one view, for one version of a renderer's objects.
@@ -30,35 +32,28 @@ pub(crate) struct PlannedObject {
     pub level: u8,
     /// The surface that the search walks; `None` for searches on the map.
     pub surface: Option<Arc<OffsetSurface>>,
-    /// True if its copies have levels of their own.
-    pub levelled: bool,
-    /// Those of this view.
-    pub copies: Option<LevelledCopies>,
+    /// Its copies, if they have levels of their own.
+    pub levelled: Option<LevelledCopies>,
 }
 
-/// The copies of an object, each with a level of its own.
-pub(crate) struct LevelledCopies {
-    pub levels: CopyLevels,
-    /// The surfaces of the levels after the finest.
-    pub coarser: Vec<Arc<OffsetSurface>>,
-    /// Number of the block of the first of these.
-    pub first_block: u32,
-}
-
-impl LevelledCopies {
-    /// Index of a copy's level among [`COPY_LEVELS`].
-    pub fn level(&self, copy: &InstanceBlock) -> usize {
-        let [_, _, _, across] = copy.position_sx;
-        let [y, z, depth, _] = copy.scale_depth;
-        self.levels.of(depth, across.max(y).max(z))
+impl PlannedObject {
+    /// The surfaces of all its levels, from the finest on.
+    pub fn surfaces(&self) -> impl Iterator<Item = &Arc<OffsetSurface>> {
+        let coarser = self.levelled.iter().flat_map(|copies| &copies.coarser);
+        self.surface.iter().chain(coarser)
     }
 
-    /// Number of the block of a copy. `number`: that of its object.
-    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
-        match self.level(copy) - self.levels.first {
-            0 => number,
-            n => self.first_block + n as u32 - 1,
-        }
+    /// The vectors that hold the tables of all its levels, and other tables between them.
+    pub fn window(&self, parts: &Parts) -> Range<u32> {
+        let kinds = [(parts.tables, Part::Tables), (parts.patches, Part::Patches)];
+        let stored = self.surfaces().flat_map(|surface| {
+            let read = kinds.into_iter().filter(|(reads, _)| *reads);
+            read.filter_map(|(_, part)| Some((surface.slot(part)?.begin(), surface.vectors(part))))
+        });
+        stored
+            .map(|(begin, vectors)| begin..begin + vectors.len() as u32)
+            .reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
+            .unwrap_or_default()
     }
 }
 
@@ -75,7 +70,7 @@ impl Content {
         }
         let mut objects = self.with_surfaces(Some(view))?;
         let mut blocks = self.objects.number_count() as u32;
-        for copies in objects.iter_mut().filter_map(|of| of.copies.as_mut()) {
+        for copies in objects.iter_mut().filter_map(|of| of.levelled.as_mut()) {
             copies.first_block = blocks;
             blocks += copies.coarser.len() as u32;
         }
@@ -125,7 +120,7 @@ impl Content {
     /// were.
     fn lists_crowds(&self) -> bool {
         self.settings.device_lists
-            && self.device.chosen.features.shader_float64 == ash::vk::TRUE
+            && self.device.chosen.lists_crowds()
             && !self.output.planes().has_motion()
     }
 
@@ -139,7 +134,7 @@ impl Content {
                 continue;
             };
             one.surface = entry.surface(one.level, &mut new)?;
-            if let Some(copies) = &mut one.copies {
+            if let Some(copies) = &mut one.levelled {
                 for level in &COPY_LEVELS[copies.levels.first + 1..] {
                     copies.coarser.extend(entry.surface(*level, &mut new)?);
                 }
@@ -177,11 +172,9 @@ impl Content {
                 number,
                 level: finest.unwrap_or_else(|| level_of(entry, derived)),
                 surface: None,
-                levelled,
-                copies: levels.map(|levels| LevelledCopies {
+                levelled: levels.map(|levels| LevelledCopies {
                     levels,
-                    coarser: Vec::new(),
-                    first_block: 0,
+                    ..LevelledCopies::default()
                 }),
             })
         };
@@ -264,9 +257,7 @@ impl Entry {
     ) -> Option<PlanObject<'a>> {
         let derived = self.derived.as_ref()?;
         let surface = planned.surface.as_ref();
-        let second = planned.copies.as_ref().and_then(|c| c.coarser.first());
-        let listed = second.or(surface);
-        let block = self.block(planned.number, surface.map(Arc::as_ref), settings)?;
+        let block = self.block(surface.map(Arc::as_ref), 0, settings)?;
         let texels = 2.0 / f64::from(block.map[1]);
         let away = largest_width(&self.drawn().offset).max(0.0) + texels;
         Some(PlanObject {
@@ -277,9 +268,7 @@ impl Entry {
             textures: Arc::as_ptr(&derived.textures) as usize,
             surface,
             takes_patches: derived.takes_patches && surface.is_some(),
-            listed_patches: listed.map_or(0, |surface| surface.patches() as u64),
-            levelled: planned.levelled,
-            levels: (planned.copies.as_ref()).map(|copies| (&copies.levels, copies.first_block)),
+            levelled: planned.levelled.as_ref(),
             shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
             outline: Some((derived.solid.outline.as_ref(), away)),
         })

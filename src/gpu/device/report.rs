@@ -54,6 +54,11 @@ impl Candidate {
         filters.then_some(self.properties.limits.max_sampler_anisotropy)
     }
 
+    /// True if shaders have 64-bit numbers, in which the device makes the records of crowds.
+    pub fn lists_crowds(&self) -> bool {
+        self.features.shader_float64 == vk::TRUE
+    }
+
     /// Returns true if triangles can be clipped by the four sides of a box, and corners are placed
     /// precisely enough for the strips of these sides. Hulls then draw solids that the sides cut.
     /// SwiftShader places corners at sixteenths of a pixel: 10 pixels of 14,000 were lost along the
@@ -138,7 +143,11 @@ impl Candidate {
             ("GPU timestamps", timestamps),
             ("anisotropic filtering", yes_no(self.anisotropy().is_some())),
             ("hulls of solids that their box cuts", yes_no(self.clips())),
-            ("squares of crowds as points", yes_no(self.large_points())),
+            ("quads of crowds as points", yes_no(self.large_points())),
+            (
+                "tiles of crowds listed by device",
+                yes_no(self.lists_crowds()),
+            ),
             ("largest map", format!("{side} texels a side")),
             ("largest picture", format!("{width} x {height}")),
         ]

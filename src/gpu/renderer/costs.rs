@@ -58,7 +58,7 @@ impl Renderer {
         let objects = self.content.plan.iter().flat_map(|plan| {
             plan.objects.iter().map(|object| {
                 let entry = self.content.objects.at(object.number)?;
-                let copies = object.copies.as_ref()?;
+                let copies = object.levelled.as_ref()?;
                 let level = |placement| {
                     let block = instance_block(entry.drawn(), placement, 0, &plan.view);
                     COPY_LEVELS[copies.level(&block)]
@@ -88,12 +88,10 @@ impl Entry {
         let derived = self.derived.as_ref();
         let follows = derived.is_some_and(|p| p.solver.follows_tolerance());
         let fitted = object.surface.as_ref().filter(|_| follows);
-        let copies = object.copies.as_ref().filter(|c| !c.coarser.is_empty());
+        let copies = object.levelled.as_ref().filter(|c| !c.coarser.is_empty());
         let of_coarser = copies.map_or(0.0, |copies| copies.levels.error);
         let error = fitted.map(|_| self.error_pixels(object.level, view).max(of_coarser));
-        let coarser = copies.iter().flat_map(|copies| &copies.coarser);
-        let surfaces = object.surface.iter().chain(coarser);
-        let tables = surfaces.flat_map(|surface| {
+        let tables = object.surfaces().flat_map(|surface| {
             let stored = |part| surface.slot(part).map(|_| surface.vectors(part).len());
             let parts = [Part::Tables, Part::Frusta, Part::Patches];
             parts

@@ -164,33 +164,39 @@ impl Renderer {
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
-        let read = parts.flat_map(|(object, parts)| {
-            let coarser = object.copies.iter().flat_map(|copies| &copies.coarser);
-            let all = object.surface.iter().chain(coarser);
-            all.map(|surface| (surface, *parts))
-        });
+        let read =
+            parts.flat_map(|(object, parts)| object.surfaces().map(|surface| (surface, *parts)));
         let buffers = self.content.geometry.lock()?.store(read)?;
         let pipelines = self.device.pipelines()?;
         let output = &self.content.output;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
+        let own_vectors = self.device.chosen.constants().own_vectors as usize;
         let mut steps = Vec::with_capacity(frame.steps.len());
         for step in &frame.steps {
             let object = &plan.objects[step.object as usize];
             let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
             let derived = entry.derived.as_ref().ok_or_else(gone)?;
-            let tables = object
-                .surface
-                .as_ref()
-                .filter(|_| step.variant.own_tables != 0);
             let part = match step.kind {
                 Kind::TileLists | Kind::TilePatches => Part::Patches,
                 _ => Part::Tables,
             };
-            let begin = tables.and_then(|s| s.slot(part)).map_or(0, Slot::begin);
+            let mut variant = step.variant;
+            let begin = match (&object.surface, &object.levelled) {
+                _ if variant.own_tables == 0 => 0,
+                (_, Some(_)) => {
+                    let window = object.window(&frame.parts[step.object as usize]);
+                    variant.own_tables = u32::from(window.len() <= own_vectors);
+                    window.start
+                }
+                (surface, None) => {
+                    let slot = surface.as_ref().and_then(|s| s.slot(part));
+                    slot.map_or(0, Slot::begin)
+                }
+            };
             steps.push(BoundStep {
                 pipeline: match self.hides {
-                    true => pipelines.known(step.variant, step.kind, output, &self.owner)?,
-                    false => Some(pipelines.get(step.variant, step.kind, output, &self.owner)?),
+                    true => pipelines.known(variant, step.kind, output, &self.owner)?,
+                    false => Some(pipelines.get(variant, step.kind, output, &self.owner)?),
                 },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
@@ -227,18 +233,20 @@ impl Renderer {
         // Instance blocks depend on the view.
         let known = to.written.take().filter(|(before, _)| before == view);
         let known = known.map_or(0, |(_, version)| version);
-        for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
+        let parts = &plan.frame.parts;
+        for ((object, copies), parts) in plan.objects.iter().zip(&plan.frame.copies).zip(parts) {
             let number = object.number;
             let Some(entry) = self.content.objects.at(number) else {
                 continue;
             };
             let placements = entry.drawn().placements();
-            let levels = object.copies.as_ref();
+            let levels = object.levelled.as_ref();
             let coarser = levels.map(|l| (l.first_block..).zip(l.coarser.iter().map(Some)));
             let all = iter::once((number, object.surface.as_ref()));
+            let window = object.window(parts).start;
             for (at, surface) in all.chain(coarser.into_iter().flatten()) {
                 let surface = surface.map(Arc::as_ref);
-                if let Some(block) = entry.block(number, surface, &self.content.settings) {
+                if let Some(block) = entry.block(surface, window, &self.content.settings) {
                     to.write_object(at, &block)?;
                 }
             }

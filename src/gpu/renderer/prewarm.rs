@@ -9,6 +9,7 @@ use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::output::Output;
 use crate::gpu::vk::pipelines::Owner;
+use crate::plan::levels::LevelledCopies;
 use crate::plan::{PlanObject, variants};
 use crate::settings::Solver;
 use crate::shader::Pushed;
@@ -139,8 +140,7 @@ impl Content {
                     number,
                     level: 0,
                     surface: derived.levels.first().map(|l| l.1.clone()),
-                    levelled: self.levels_copies(entry, derived),
-                    copies: None,
+                    levelled: (self.levels_copies(entry, derived)).then(LevelledCopies::default),
                 };
                 Some((entry, derived.textures.set, planned))
             })

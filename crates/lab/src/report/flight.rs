@@ -1,14 +1,17 @@
-//! A flight through the army: the time of every frame, and how far pictures are from exact ones.
+//! A flight through the army, or an army that moves: the time of every frame, and how far pictures
+//! are from exact ones.
 
 use super::columns::Cell;
-use super::plan::{army, flight_camera};
+use super::plan::{Flight, army, flight_camera};
+use super::row::Row;
 use super::stats;
 use super::table::Table;
 use crate::compare::{PixelErrors, pixel_errors};
-use crate::method::MethodSettings;
+use crate::method::{Edges, Method, MethodSettings};
 use crate::renderer::MethodDevice;
 use revmap::error::Result;
 use revmap::gpu::Times;
+use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use std::time::Instant;
 
@@ -27,32 +30,41 @@ pub fn settings(stage: DrawStage) -> MethodSettings {
 pub struct FlightTimes {
     /// How it was drawn.
     pub settings: MethodSettings,
-    /// How many solids it went through.
-    pub solids: u32,
+    /// What was flown.
+    pub plan: Flight,
     /// Times of every frame; the CPU's part of a new view is within `prepare_ms`.
     pub times: Vec<Times>,
     /// Frames that were held to exact pictures, and their errors in pixels.
     pub errors: Vec<(usize, PixelErrors)>,
 }
 
-/// Flies through `count` solids in so many frames; each `every`th picture is held to an exact one.
+/// Flies through an army. `None` if the device cannot list the tiles of crowds, as the plan says.
 pub fn fly(
     device: &MethodDevice,
     settings: &MethodSettings,
-    count: u32,
-    frames: usize,
-    every: usize,
-) -> Result<FlightTimes> {
-    let mut scene = army(count)?.scene;
-    let at = |frame: usize| flight_camera(frame as f64 / frames as f64);
+    plan: &Flight,
+) -> Result<Option<FlightTimes>> {
+    if plan.device_lists && !device.lists_crowds() {
+        return Ok(None);
+    }
+    let settings = &MethodSettings {
+        device_lists: plan.device_lists,
+        ..*settings
+    };
+    let still = army(plan.copies)?.scene;
+    let mut scene = still.clone();
+    let at = |scene: &mut Scene, frame: usize| match plan.copies_move {
+        true => shift_copies(scene, &still, frame),
+        false => scene.camera = flight_camera(frame as f64 / plan.frames as f64),
+    };
     let mut renderer = device.renderer(&scene, settings)?;
     renderer.offscreen.prewarm()?;
     for _ in 0..WARM {
         renderer.draw()?;
     }
-    let mut times = Vec::with_capacity(frames);
-    for frame in 0..frames {
-        scene.camera = at(frame);
+    let mut times = Vec::with_capacity(plan.frames);
+    for frame in 0..plan.frames {
+        at(&mut scene, frame);
         let start = Instant::now();
         renderer.update(&scene)?;
         let update_ms = start.elapsed().as_secs_f64() * 1e3;
@@ -62,8 +74,8 @@ pub fn fly(
     }
     drop(renderer);
     let mut errors = Vec::new();
-    for frame in (0..frames).step_by(every) {
-        scene.camera = at(frame);
+    for frame in (0..plan.frames).step_by(plan.compared) {
+        at(&mut scene, frame);
         let picture = |tolerance| {
             let all = MethodSettings {
                 tolerance,
@@ -78,12 +90,24 @@ pub fn fly(
             pixel_errors(&scene, &exact, &picture(settings.tolerance)?)?,
         ));
     }
-    Ok(FlightTimes {
+    Ok(Some(FlightTimes {
         settings: *settings,
-        solids: count,
+        plan: plan.clone(),
         times,
         errors,
-    })
+    }))
+}
+
+/// Moves all copies up and down, each by a tenth of its height and at a time of its own.
+fn shift_copies(scene: &mut Scene, still: &Scene, frame: usize) {
+    for (object, still) in scene.objects.iter_mut().zip(&still.objects) {
+        let moved = |(k, copy): (usize, &Placement)| {
+            let mut copy = *copy;
+            copy.position.z += 0.1 * (0.3 * frame as f64 + k as f64).sin();
+            copy
+        };
+        object.instances = still.instances.iter().enumerate().map(moved).collect();
+    }
 }
 
 impl FlightTimes {
@@ -108,6 +132,36 @@ impl FlightTimes {
         [most(|e| e.p999), most(|e| e.contour_max)]
     }
 
+    /// The median frame over the measured time of one solid in the same stage, over the ratio of the
+    /// pixels hit.
+    pub fn by_equal_pixels(&self, rows: &[&Row]) -> Option<f64> {
+        let like = |row: &&&Row| {
+            let (own, of) = (&self.settings, &row.settings);
+            let drawn = |s: &MethodSettings| (s.method, s.edges, s.stage, s.tolerance, s.width);
+            let one = (
+                Method::DEFAULT,
+                Edges::OneRay,
+                own.stage,
+                own.tolerance,
+                own.width,
+            );
+            row.view == 0 && drawn(of) == one
+        };
+        let one = rows.iter().find(like)?;
+        let hits: Vec<f64> = self.errors.iter().map(|e| e.1.pixels as f64).collect();
+        let hits = stats::median(&hits)?;
+        Some(self.frame_ms()[0] / one.time()?.value * one.errors.hits as f64 / hits)
+    }
+
+    /// A name for its file.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let lists = ["", "-device-lists"][usize::from(self.plan.device_lists)];
+        let moving = ["", "-copies-move"][usize::from(self.plan.copies_move)];
+        let stage = self.settings.stage.name();
+        format!("flight-{}-{stage}{lists}{moving}", self.plan.copies)
+    }
+
     /// Every frame.
     pub fn table(&self) -> Table {
         let text = |n: Option<f64>| Cell::number(n).csv();
@@ -130,17 +184,26 @@ impl FlightTimes {
     }
 }
 
-/// The table of flights.
-pub fn table(flights: &[FlightTimes]) -> Table {
+/// The table of flights. `rows`: what was measured with a camera that stands still.
+pub fn table(flights: &[FlightTimes], rows: &[&Row]) -> Table {
     let text = |n: f64| Cell::Number(n).shown();
     Table::of(
         flights,
         &[
-            ("solids", &|f| f.solids.to_string()),
+            ("solids", &|f| f.plan.copies.to_string()),
             ("stage", &|f| f.settings.stage.name().to_owned()),
+            ("moves", &|f| {
+                ["camera", "copies"][usize::from(f.plan.copies_move)].to_owned()
+            }),
+            ("lists by", &|f| {
+                ["CPU", "device"][usize::from(f.plan.device_lists)].to_owned()
+            }),
             ("frames", &|f| text(f.times.len() as f64)),
             ("median (ms)", &|f| text(f.frame_ms()[0])),
             ("of it CPU (ms)", &|f| text(f.prepare_ms())),
+            ("by equal pixels", &|f| {
+                Cell::number(f.by_equal_pixels(rows)).shown()
+            }),
             ("slowest (ms)", &|f| text(f.frame_ms()[1])),
             ("slowest / median", &|f| {
                 text(f.frame_ms()[1] / f.frame_ms()[0])

@@ -226,7 +226,7 @@ impl<'a> Writer<'a> {
         place: &Place,
     ) -> Result<()> {
         let shown = match table.of {
-            exhibit::Records::Flights => flight::table(self.run.flights),
+            exhibit::Records::Flights => flight::table(self.run.flights, context.rows),
             _ => table.shown(context, &place.rows)?,
         };
         if shown.records.is_empty() {

@@ -8,6 +8,7 @@ use revmap_lab::report::DeviceBench;
 use revmap_lab::report::flight::{self, FlightTimes};
 use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::pictures::Sheets;
+use revmap_lab::report::plan::Flight;
 use revmap_lab::report::plan::{Overrides, embedded};
 use revmap_lab::report::row::Row;
 use std::sync::atomic::AtomicBool;
@@ -70,10 +71,23 @@ fn four_samples_bring_edges_closer_to_64_rays() {
     assert!(four < 0.6 * one, "{four} of {one}");
 }
 
-fn flight(device: &MethodDevice, stage: DrawStage, tolerance: f64) -> FlightTimes {
+fn flight(
+    device: &MethodDevice,
+    stage: DrawStage,
+    tolerance: f64,
+    [device_lists, copies_move]: [bool; 2],
+) -> FlightTimes {
     let mut settings = flight::settings(stage).sized(160, 90);
     settings.tolerance = Tolerance::new(tolerance).unwrap();
-    flight::fly(device, &settings, 1600, 6, 3).unwrap()
+    let plan = Flight {
+        copies: 1600,
+        frames: 6,
+        compared: 3,
+        device_lists,
+        copies_move,
+    };
+    let flown = flight::fly(device, &settings, &plan).unwrap();
+    flown.expect("a device with shaderFloat64")
 }
 
 #[test]
@@ -81,7 +95,7 @@ fn flights_time_each_frame_and_hold_their_tolerance() {
     let device = Device::open_validated(None).unwrap();
     let methods = MethodDevice::new(device.clone()).unwrap();
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let fine = flight(&methods, stage, 0.25);
+        let fine = flight(&methods, stage, 0.25, [false; 2]);
         assert_eq!((fine.times.len(), fine.errors.len()), (6, 2));
         assert!(fine.errors.iter().all(|(_, e)| e.pixels > 1000));
         let worst = fine.worst();
@@ -90,8 +104,15 @@ fn flights_time_each_frame_and_hold_their_tolerance() {
         assert!(0.0 < median && median <= slowest);
         assert_eq!(fine.table().records.len(), 6);
         // A tolerance of many pixels must show, or nothing would be compared.
-        let coarse = flight(&methods, stage, 60.0);
+        let coarse = flight(&methods, stage, 60.0, [false; 2]);
         assert!(coarse.worst()[0] > fine.worst()[0], "{:?}", coarse.worst());
+        // Pixels are the same whoever makes the lists.
+        let errors = |of: &FlightTimes| of.errors.iter().map(|e| e.1.pixels).collect::<Vec<_>>();
+        let listed = flight(&methods, stage, 0.25, [true, false]);
+        assert_eq!((errors(&listed), listed.worst()), (errors(&fine), worst));
+        let moving = flight(&methods, stage, 0.25, [false, true]);
+        assert!(moving.worst().into_iter().all(|e| e <= 0.25));
+        assert_ne!(moving.errors[0].1.pixels, moving.errors[1].1.pixels);
     }
     device.check().unwrap();
 }
