@@ -8,7 +8,7 @@ use revmap::frame::Frame;
 use revmap::gpu::Offscreen;
 use revmap::maps::ColorMap;
 use revmap::scene::{Object, Scene};
-use revmap::settings::{Settings, Tolerance};
+use revmap::settings::{Settings, Solver, Tolerance};
 use revmap_lab::compare::pixel_errors;
 use std::sync::Arc;
 
@@ -68,6 +68,38 @@ fn copies_have_levels_of_their_own() {
                 exact.distance, found.distance,
                 "{what}: all copies are exact"
             );
+        }
+    }
+    device().check().unwrap();
+}
+
+/// The only object is in uniform buffers, with the tables of all levels of its copies. Two objects
+/// of one look are in storage buffers.
+#[test]
+fn levels_of_the_only_object_have_equal_bits() {
+    for (name, eye, target) in VIEWS {
+        let mut one = army(700);
+        one.objects = vec![one.objects.swap_remove(1)];
+        (one.camera.eye, one.camera.target) = (eye, target);
+        let mut two = one.clone();
+        let (first, rest) = one.objects[0].instances.split_at(100);
+        two.objects.push(one.objects[0].clone());
+        two.objects[0].instances = first.to_vec().into();
+        two.objects[1].instances = rest.to_vec().into();
+        for stage in STAGES {
+            let tree = Settings {
+                tolerance: Tolerance::DEFAULT,
+                ..by_tree(stage, true)
+            };
+            let lists = Settings {
+                solver: Solver::Exact,
+                proxy_min_pixels: 0,
+                ..tree
+            };
+            for settings in [tree, lists] {
+                let what = format!("{name}: {stage:?}, {:?}", settings.solver);
+                assert_same_bits(&draw(&one, &settings), &draw(&two, &settings), &what);
+            }
         }
     }
     device().check().unwrap();
