@@ -420,7 +420,8 @@ impl View {
     }
 }
 
-/// The depth range that contains every box; near is never closer than a ten-thousandth of far.
+/// The depth range that contains every box before the eye; near is never closer than a
+/// ten-thousandth of far.
 fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
     let mut low = f64::INFINITY;
     let mut high: f64 = 0.0;
@@ -441,7 +442,9 @@ fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
         };
         let farthest = [radius * SQRT_2, middle_z.abs() + half.z];
         let of = |cluster: &Cluster| cluster.around(camera.eye, farthest).along(camera.forward);
-        low = low.min(object.least_of_copies(|c| of(c)[0], |p| range(p)[0]));
+        // What is behind the eye must not cost precision.
+        let nearest = |[near, far]: [f64; 2]| if far > 0.0 { near } else { f64::INFINITY };
+        low = low.min(object.least_of_copies(|c| nearest(of(c)), |p| nearest(range(p))));
         high = high.max(-object.least_of_copies(|c| -of(c)[1], |p| -range(p)[1]));
     }
     if high <= 0.0 {

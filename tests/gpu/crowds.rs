@@ -1,7 +1,7 @@
 //! Crowds: copies proven hidden are left out, and no pixel changes.
 
 use crate::common::ways::{STAGES, apart};
-use crate::common::{device, shapes};
+use crate::common::{device, next_frame, shapes};
 use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
 use revmap::gpu::{DrawPath, Offscreen};
@@ -138,6 +138,28 @@ pub const VIEWS: [(&str, DVec3, DVec3); 4] = [
         DVec3::new(5.0, 5.0, 0.0),
     ),
 ];
+
+/// A solid behind the eye takes no part in the range of depths, so hits keep their order.
+#[test]
+fn a_solid_behind_the_eye_changes_no_pixel() {
+    for (name, eye, target) in VIEWS {
+        let mut scene = army(700);
+        (scene.camera.eye, scene.camera.target) = (eye, target);
+        let mut behind = scene.clone();
+        let mut object = Object::new("behind", Arc::new(shapes::vase()));
+        object.placement.position = eye + 10.0 * (eye - target);
+        behind.objects.push(object);
+        for stage in STAGES {
+            let drawn = |scene: &Scene| {
+                let settings = by_tree(stage, true);
+                next_frame(&mut Offscreen::new(device(), scene, &settings).unwrap())
+            };
+            let what = format!("{name}: {stage:?}");
+            assert_same_bits(&drawn(&behind), &drawn(&scene), &what);
+        }
+    }
+    device().check().unwrap();
+}
 
 /// Pictures are equal bit for bit, with and without culling, in either stage.
 #[test]
