@@ -151,9 +151,10 @@ pub struct Variant {
     /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
     /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
-    /// 1 if the draw has one object, and a uniform buffer holds its tables.
+    /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
     pub own_tables: u32,
-    /// 1 if there is one object, and a uniform buffer holds it.
+    /// 1 if there is one object, and a uniform buffer holds it; 2 if its copies also have levels of
+    /// their own.
     pub one_object: u32,
     /// 1 if there is one instance of it. Compute stage.
     pub one_instance: u32,
