@@ -101,3 +101,13 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Fails at a key: the call is wrong.
+pub(crate) fn usage<T>(key: &str, message: impl Into<String>) -> Result<T> {
+    Err(Error::new(ErrorKind::Usage, message).at_key(key))
+}
+
+/// Fails at a key: the value is wrong.
+pub(crate) fn content<T>(key: &str, message: impl Into<String>) -> Result<T> {
+    Err(Error::new(ErrorKind::Content, message).at_key(key))
+}

@@ -1,7 +1,7 @@
 //! Converts pixels to ray directions; the GPU's block and the reference share this code.
 
 use super::Camera;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, content};
 use glam::DVec3;
 
 /// The rays of a camera for pictures of one size.
@@ -38,33 +38,35 @@ impl CameraFrame {
     /// not between 0 and 180 degrees, `up` is zero, or a number is not finite. [`ErrorKind::Usage`]
     /// if a side of the picture is 0.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Result<Self> {
-        let wrong = |key: &str, what: &str| {
-            Err(Error::new(ErrorKind::Content, what).at_key(format!("camera.{key}")))
-        };
         for (key, value) in [
-            ("eye", camera.eye),
-            ("target", camera.target),
-            ("up", camera.up),
+            ("camera.eye", camera.eye),
+            ("camera.target", camera.target),
+            ("camera.up", camera.up),
         ] {
             if !value.is_finite() {
-                return wrong(key, "is not finite; give three numbers");
+                return content(key, "is not finite; give three numbers");
             }
         }
-        if !(camera.fov_y > 0.0 && camera.fov_y < 180.0) {
-            return wrong("fov_y", "must lie between 0 and 180 degrees, ends excluded");
+        let fov = camera.fov_y;
+        if !(fov > 0.0 && fov < 180.0) {
+            let message = format!("is {fov:?} degrees; give more than 0 and less than 180");
+            return content("camera.fov_y", message);
         }
         if width == 0 || height == 0 {
             let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
             return Err(Error::new(ErrorKind::Usage, message));
         }
         if !camera.shift.iter().all(|s| s.is_finite()) {
-            return wrong("shift", "is not finite; give two numbers");
+            return content("camera.shift", "is not finite; give two numbers");
         }
         let Some(forward) = (camera.target - camera.eye).try_normalize() else {
-            return wrong("target", "is the same point as the eye; move one of them");
+            return content(
+                "camera.target",
+                "is where the eye is; look at some other point",
+            );
         };
         let Some(up) = camera.up.try_normalize() else {
-            return wrong("up", "is zero; give a direction");
+            return content("camera.up", "has no length; [0, 0, 1] is usual");
         };
         let right = [up, DVec3::Y, DVec3::X]
             .into_iter()
@@ -137,98 +139,41 @@ mod tests {
 
     #[test]
     fn looking_along_up_still_gives_a_frame() {
-        for up in [
-            DVec3::Z,
-            DVec3::new(0.0, 0.0, -3.0),
-            DVec3::new(1e-13, 0.0, 1.0),
-        ] {
-            let c = Camera {
-                eye: DVec3::new(0.0, 0.0, 3.0),
-                target: DVec3::ZERO,
-                up,
-                ..camera()
-            };
-            let frame = CameraFrame::new(&c, 64, 64).unwrap();
-            assert!(frame.pixel(3, 60).is_finite());
-            assert!(
-                frame.right.length() > 0.0 && frame.up.dot(DVec3::Y) > 0.0,
-                "{frame:?}"
-            );
-        }
-        let c = Camera {
-            eye: DVec3::ZERO,
-            target: DVec3::Y,
-            up: DVec3::Y,
+        let looking = |eye, target, up| Camera {
+            eye,
+            target,
+            up,
             ..camera()
         };
+        for up in [DVec3::Z, -3.0 * DVec3::Z, DVec3::new(1e-13, 0.0, 1.0)] {
+            let c = looking(3.0 * DVec3::Z, DVec3::ZERO, up);
+            let frame = CameraFrame::new(&c, 64, 64).unwrap();
+            assert!(frame.pixel(3, 60).is_finite());
+            let (right, up) = (frame.right, frame.up);
+            assert!(right.length() > 0.0 && up.dot(DVec3::Y) > 0.0, "{frame:?}");
+        }
+        let c = looking(DVec3::ZERO, DVec3::Y, DVec3::Y);
         assert!(CameraFrame::new(&c, 64, 64).unwrap().right.length() > 0.0);
     }
 
     #[test]
     fn impossible_cameras_are_named() {
-        let cases: [(&str, Camera); 8] = [
-            (
-                "camera.target",
-                Camera {
-                    target: camera().eye,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.fov_y",
-                Camera {
-                    fov_y: 0.0,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.fov_y",
-                Camera {
-                    fov_y: 180.0,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.fov_y",
-                Camera {
-                    fov_y: f64::NAN,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.up",
-                Camera {
-                    up: DVec3::ZERO,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.up",
-                Camera {
-                    up: DVec3::NAN,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.eye",
-                Camera {
-                    eye: DVec3::INFINITY,
-                    ..camera()
-                },
-            ),
-            (
-                "camera.target",
-                Camera {
-                    target: DVec3::NAN,
-                    ..camera()
-                },
-            ),
+        let cases: [(&str, fn(&mut Camera)); 9] = [
+            ("target", |c| c.target = c.eye),
+            ("fov_y", |c| c.fov_y = 0.0),
+            ("fov_y", |c| c.fov_y = 180.0),
+            ("fov_y", |c| c.fov_y = f64::NAN),
+            ("up", |c| c.up = DVec3::ZERO),
+            ("up", |c| c.up = DVec3::NAN),
+            ("eye", |c| c.eye = DVec3::INFINITY),
+            ("target", |c| c.target = DVec3::NAN),
+            ("shift", |c| c.shift[1] = f64::NAN),
         ];
-        for (key, camera) in cases {
-            assert_eq!(
-                CameraFrame::new(&camera, 8, 8).unwrap_err().key.as_deref(),
-                Some(key)
-            );
+        for (key, spoil) in cases {
+            let mut camera = camera();
+            spoil(&mut camera);
+            let error = CameraFrame::new(&camera, 8, 8).unwrap_err();
+            assert_eq!(error.key, Some(format!("camera.{key}")));
         }
         assert_eq!(
             CameraFrame::new(&camera(), 0, 8).unwrap_err().kind,

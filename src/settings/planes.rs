@@ -1,6 +1,6 @@
 //! The values that are stored of a hit.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Result, usage};
 
 /// The requested planes of a frame; others are neither computed nor stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,17 +67,14 @@ impl PlaneList {
     /// The list of these planes.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] if a plane is there twice.
+    /// [`ErrorKind::Usage`](crate::error::ErrorKind::Usage) if a plane is there twice.
     pub fn new(planes: &[Plane]) -> Result<Self> {
         let twice = (1..planes.len()).any(|n| planes[..n].contains(&planes[n]));
         let mut list = [Plane::Color; Plane::COUNT];
-        match list.get_mut(..planes.len()).filter(|_| !twice) {
-            Some(to) => to.copy_from_slice(planes),
-            None => {
-                let message = "a plane is there twice; give each one once";
-                return Err(Error::new(ErrorKind::Usage, message).at_key("planes"));
-            }
-        }
+        let Some(to) = list.get_mut(..planes.len()).filter(|_| !twice) else {
+            return usage("planes", "a plane is there twice; give each one once");
+        };
+        to.copy_from_slice(planes);
         Ok(Self {
             count: planes.len(),
             planes: list,

@@ -1,6 +1,6 @@
 //! Checks of an output: what the device draws into, and the memory that compute writes to.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, usage};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
@@ -9,50 +9,26 @@ use crate::maps::MapFormat;
 use crate::settings::{Plane, Planes, SearchSettings, Solver};
 use ash::vk;
 
+/// Most views of a pass; every device with multiview has this many.
+const MOST_VIEWS: u32 = 6;
+
 impl Output {
     /// Returns an error for an output that the device or the solver cannot draw.
     pub(crate) fn check(&self, device: &Shared, settings: &SearchSettings) -> Result<()> {
-        let exact = matches!(
-            settings.solver,
-            Solver::Exact | Solver::Quadric | Solver::Live
-        );
-        let in_pass = matches!(self, Self::Pass(_));
-        let all_outputs = matches!(self.planes(), Planes::Color | Planes::All);
-        if !(all_outputs || in_pass && exact) {
+        let (planes, solver) = (self.planes(), settings.solver);
+        let exact = solver.follows_tolerance() || solver == Solver::Live;
+        let all_outputs = matches!(planes, Planes::Color | Planes::All);
+        if !(all_outputs || exact && matches!(self, Self::Pass(_))) {
             let message = "depth alone and lists are drawn in a pass, by exact, quadric or live; give one of them";
-            return Err(usage("planes", message.into()));
+            return usage("planes", message);
         }
-        if matches!(self.planes(), Planes::List(_)) && settings.map_format == MapFormat::Rgba8 {
+        if matches!(planes, Planes::List(_)) && settings.map_format == MapFormat::Rgba8 {
             let message = "lists of planes read no map in rgba8; take r16 or r32";
-            return Err(usage("map_format", message.into()));
+            return usage("map_format", message);
         }
-        let Self::Pass(pass) = self else {
-            return Ok(());
-        };
-        if pass.planes == Planes::All
-            && device.chosen.features.fragment_stores_and_atomics == vk::FALSE
-        {
-            return Err(Error::new(
-                ErrorKind::Unsupported,
-                "all planes in a pass need the feature fragmentStoresAndAtomics; enable it",
-            ));
-        }
-        pass.check_samples(device)?;
-        let (planes, most) = (
-            attachments(pass.planes),
-            device.limits().max_color_attachments,
-        );
-        if planes > most as usize {
-            let message = format!("{planes} planes; the device draws into {most} at once");
-            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
-        }
-        match &pass.begun {
-            PassKind::RenderPass { pass: raw, .. } => pass.check_render_pass(device, *raw),
-            PassKind::Dynamic {
-                color,
-                depth,
-                stencil,
-            } => pass.check_formats(device, color, *depth, *stencil),
+        match self {
+            Self::Pass(pass) => pass.check(device),
+            Self::Compute(_) => Ok(()),
         }
     }
 
@@ -60,65 +36,81 @@ impl Output {
     pub(crate) fn check_target(&self, target: Option<&ComputeTarget>) -> Result<()> {
         let compute = matches!(self, Self::Compute(_));
         let all = self.planes() == Planes::All;
-        let Some(target) = target else {
-            if compute || all {
+        let target = match target {
+            None if !compute && !all => return Ok(()),
+            None => {
                 let message = "shaders write to a target; give one to set_compute_target";
-                return Err(usage("target", message.into()));
+                return usage("target", message);
             }
-            return Ok(());
+            Some(target) => target,
         };
         if !compute && !all {
-            let message = "only attachments are drawn into; leave the target out";
-            return Err(usage("target", message.into()));
+            return usage(
+                "target",
+                "only attachments are drawn into; leave the target out",
+            );
         }
         if target.words == vk::Buffer::null() {
-            return Err(usage("words", "the buffer is null; give one".into()));
+            return usage("words", "the buffer is null; give one");
         }
         let (count, wanted) = (target.images.len(), if compute && all { 4 } else { 0 });
         if count != wanted || target.images.contains(&vk::ImageView::null()) {
             let message = format!("{count} images; give {wanted}, none of them null");
-            return Err(usage("images", message));
+            return usage("images", message);
         }
         Ok(())
     }
 }
 
-/// Most views of a pass; every device with multiview has this many.
-const MOST_VIEWS: u32 = 6;
-
 impl PassFormats {
-    fn check_samples(&self, device: &Shared) -> Result<()> {
-        if self.sample_rays && device.chosen.features.sample_rate_shading == vk::FALSE {
-            let message = "rays through samples need the feature sampleRateShading; enable it";
-            return Err(Error::new(ErrorKind::Unsupported, message));
+    fn check(&self, device: &Shared) -> Result<()> {
+        let (features, limits) = (&device.chosen.features, device.limits());
+        let &Self { views, samples, .. } = self;
+        let all = self.planes == Planes::All;
+        let unsupported = |message: &str| Err(Error::new(ErrorKind::Unsupported, message));
+        if all && features.fragment_stores_and_atomics == vk::FALSE {
+            let message =
+                "all planes in a pass need the feature fragmentStoresAndAtomics; enable it";
+            return unsupported(message);
         }
-        if !(1..=MOST_VIEWS).contains(&self.views) {
-            let message = format!("{} views; give 1 to {MOST_VIEWS}", self.views);
-            return Err(usage("views", message));
+        if self.sample_rays && features.sample_rate_shading == vk::FALSE {
+            let message = "rays through samples need the feature sampleRateShading; enable it";
+            return unsupported(message);
+        }
+        if !(1..=MOST_VIEWS).contains(&views) {
+            return usage("views", format!("{views} views; give 1 to {MOST_VIEWS}"));
         }
         if !self.slope_bias.is_none() && !matches!(self.planes, Planes::Depth { .. }) {
             let message = "only depths alone have a bias for slopes; draw Planes::Depth";
-            return Err(usage("slope_bias", message.into()));
+            return usage("slope_bias", message);
         }
-        if self.views > 1 && self.planes == Planes::All {
+        if views > 1 && all {
             let message = "all planes are drawn for one view; give a list of planes";
-            return Err(usage("views", message.into()));
+            return usage("views", message);
         }
-        if [1, 2, 4, 8].contains(&self.samples) {
-            return Ok(());
+        if ![1, 2, 4, 8].contains(&samples) {
+            return usage("samples", format!("{samples} samples; give 1, 2, 4 or 8"));
         }
-        let message = format!("{} samples; give 1, 2, 4 or 8", self.samples);
-        Err(usage("samples", message))
-    }
-
-    /// Checks the handle and the sample count. Vulkan cannot return the formats of a render pass.
-    fn check_render_pass(&self, device: &Shared, raw: vk::RenderPass) -> Result<()> {
-        if raw == vk::RenderPass::null() {
-            return Err(usage("pass", "the render pass is null; give one".into()));
+        let (planes, most) = (attachments(self.planes), limits.max_color_attachments);
+        if planes > most as usize {
+            let message = format!("{planes} planes; the device draws into {most} at once");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
         }
-        let limits = device.limits();
-        let colors = limits.framebuffer_color_sample_counts;
-        self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
+        match &self.begun {
+            PassKind::RenderPass { pass, .. } if *pass == vk::RenderPass::null() => {
+                usage("pass", "the render pass is null; give one")
+            }
+            // Vulkan cannot return the formats of a render pass.
+            PassKind::RenderPass { .. } => {
+                let colors = limits.framebuffer_color_sample_counts;
+                self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
+            }
+            PassKind::Dynamic {
+                color,
+                depth,
+                stencil,
+            } => self.check_formats(device, color, *depth, *stencil),
+        }
     }
 
     fn check_formats(
@@ -128,40 +120,38 @@ impl PassFormats {
         depth: vk::Format,
         stencil: vk::Format,
     ) -> Result<()> {
-        let wanted = attachments(self.planes);
-        if color.len() != wanted {
-            let (planes, count) = (self.planes, color.len());
-            let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
-            return Err(usage("color", message));
-        }
+        use vk::ImageAspectFlags as A;
         use vk::ImageUsageFlags as U;
+        let (planes, count, wanted) = (self.planes, color.len(), attachments(self.planes));
+        if count != wanted {
+            let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
+            return usage("color", message);
+        }
         for (&format, number) in color.iter().zip(0..) {
-            let plane = match self.planes {
+            let plane = match planes {
                 Planes::List(list) => list.planes()[number],
                 _ => Plane::Color,
             };
-            if format == vk::Format::UNDEFINED || has_depth(format) || has_stencil(format) {
+            if aspects(format) != A::COLOR {
                 let message = format!("{format:?} holds no colours; give a format that does");
-                return Err(usage("color", message));
+                return usage("color", message);
             }
             if let Some(wanted) = misfit(plane, format) {
                 let message = format!("{format:?} does not hold {plane:?}; give {wanted}");
-                return Err(usage("color", message));
+                return usage("color", message);
             }
             self.check_format(device, format, U::COLOR_ATTACHMENT)?;
         }
-        if !has_depth(depth) {
+        if !aspects(depth).contains(A::DEPTH) {
             let message = format!("{depth:?} holds no depths; give a format that does");
-            return Err(usage("depth", message));
+            return usage("depth", message);
         }
         self.check_format(device, depth, U::DEPTH_STENCIL_ATTACHMENT)?;
-        if stencil == vk::Format::UNDEFINED {
-            return Ok(());
-        }
-        if !has_stencil(stencil) || stencil != depth {
+        let fits = aspects(stencil).contains(A::STENCIL) && stencil == depth;
+        if !fits && stencil != vk::Format::UNDEFINED {
             let message =
                 format!("{stencil:?} is not the depth's format, with stencil; give that, or none");
-            return Err(usage("stencil", message));
+            return usage("stencil", message);
         }
         Ok(())
     }
@@ -172,18 +162,14 @@ impl PassFormats {
         format: vk::Format,
         usage: vk::ImageUsageFlags,
     ) -> Result<()> {
+        let (tiling, flags) = (vk::ImageTiling::OPTIMAL, vk::ImageCreateFlags::empty());
+        let (kind, physical) = (vk::ImageType::TYPE_2D, device.chosen.physical);
+        let functions = &device.functions;
         // SAFETY: plain query of the device's own physical device.
         let found = unsafe {
-            device
-                .functions
-                .get_physical_device_image_format_properties(
-                    device.chosen.physical,
-                    format,
-                    vk::ImageType::TYPE_2D,
-                    vk::ImageTiling::OPTIMAL,
-                    usage,
-                    vk::ImageCreateFlags::empty(),
-                )
+            functions.get_physical_device_image_format_properties(
+                physical, format, kind, tiling, usage, flags,
+            )
         };
         let found = found.map_err(|code| {
             let name = &device.chosen.report.name;
@@ -203,50 +189,39 @@ impl PassFormats {
     }
 }
 
-fn usage(key: &str, message: String) -> Error {
-    Error::new(ErrorKind::Usage, message).at_key(key)
-}
-
-fn has_depth(format: vk::Format) -> bool {
+/// What an image of a format holds.
+fn aspects(format: vk::Format) -> vk::ImageAspectFlags {
     use vk::Format as F;
-    matches!(
-        format,
-        F::D16_UNORM | F::X8_D24_UNORM_PACK32 | F::D32_SFLOAT
-    ) || (has_stencil(format) && format != F::S8_UINT)
-}
-
-fn has_stencil(format: vk::Format) -> bool {
-    use vk::Format as F;
-    matches!(
-        format,
-        F::S8_UINT | F::D16_UNORM_S8_UINT | F::D24_UNORM_S8_UINT | F::D32_SFLOAT_S8_UINT
-    )
+    use vk::ImageAspectFlags as A;
+    match format {
+        F::UNDEFINED => A::empty(),
+        F::S8_UINT => A::STENCIL,
+        F::D16_UNORM | F::X8_D24_UNORM_PACK32 | F::D32_SFLOAT => A::DEPTH,
+        F::D16_UNORM_S8_UINT | F::D24_UNORM_S8_UINT | F::D32_SFLOAT_S8_UINT => {
+            A::DEPTH | A::STENCIL
+        }
+        _ => A::COLOR,
+    }
 }
 
 /// The kind of format that a plane needs, unless `format` is one. Reads the name of the format in
 /// the specification, whose last part is the numeric type.
 fn misfit(plane: Plane, format: vk::Format) -> Option<&'static str> {
     let name = format!("{format:?}");
-    let is = |types: &[&str]| types.iter().any(|of| name.contains(of));
+    let is = |part: &str| name.contains(part);
+    let signed = is("_SNORM") || is("_SFLOAT");
+    let fraction = !is("_UINT") && !is("_SINT");
+    let words = ["R32G32_UINT", "R32G32B32A32_UINT"];
     let (fits, wanted) = match plane {
         Plane::Identity => (
-            is(&["R32G32_UINT", "R32G32B32A32_UINT"]),
+            words.iter().any(|one| is(one)),
             "R32G32_UINT or R32G32B32A32_UINT",
         ),
-        Plane::Normal => (
-            is(&["_SNORM", "_SFLOAT"]) && is(&["B"]),
-            "three signed channels or floats",
-        ),
-        Plane::OctahedralNormal => (
-            is(&["_SNORM", "_SFLOAT"]) && is(&["G"]),
-            "two signed channels or floats",
-        ),
-        Plane::Motion => (is(&["_SFLOAT"]) && is(&["G"]), "two floats"),
-        Plane::Material => (
-            !is(&["_UINT", "_SINT"]) && is(&["G"]),
-            "two fractions or floats",
-        ),
-        Plane::Color | Plane::BaseColor => (!is(&["_UINT", "_SINT"]), "fractions or floats"),
+        Plane::Normal => (signed && is("B"), "three signed channels or floats"),
+        Plane::OctahedralNormal => (signed && is("G"), "two signed channels or floats"),
+        Plane::Motion => (is("_SFLOAT") && is("G"), "two floats"),
+        Plane::Material => (fraction && is("G"), "two fractions or floats"),
+        Plane::Color | Plane::BaseColor => (fraction, "fractions or floats"),
     };
     (!fits).then_some(wanted)
 }
