@@ -2,10 +2,8 @@
 //! plan of the last view. It records no commands.
 //!
 //! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
-//! derives resources from new values. `view_plan.rs` plans a view's frame. `casters.rs` keeps the
-//! hierarchy of copies that cast shadows.
+//! derives resources from new values. `view_plan.rs` plans a view's frame.
 
-mod casters;
 pub(super) mod entry;
 pub(super) mod objects;
 pub(super) mod refresh;
@@ -16,41 +14,39 @@ use crate::gpu::device::Shared;
 use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::host_image::ObjectImages;
-use crate::gpu::resources::textures::{ShadowMaps, Textures};
-use crate::gpu::vk::output::Output;
+use crate::gpu::resources::textures::Textures;
+use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, ShadowCasters, Variant};
-use objects::{Objects, next_renderer};
+use crate::shader::{HostLook, Variant};
+use objects::Objects;
+use refresh::{Common, Wanted};
+use std::collections::BTreeSet;
 use std::sync::Arc;
-use view_plan::ViewPlan;
+use view_plan::{Casters, ViewPlan};
 
 /// Objects, lights, and all that is derived from them.
 pub(super) struct Content {
     pub objects: Objects,
     pub textures: Textures,
-    pub shadow_maps: Arc<ShadowMaps>,
     pub uploads: Uploads,
     pub geometry: Arc<Geometry>,
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
     pub lit: Lighting,
-    /// Entries whose values differ from what was derived.
-    pub changed: Vec<u32>,
-    /// True if the fallback draws every entry, because one has no surface and shadows meet all by
-    /// one search.
-    all_fall_back: bool,
-    pub casters: ShadowCasters,
-    /// Entries that are new or were changed since the last frame, if motion is drawn.
-    pub moved: Vec<u32>,
+    /// Values that were set since the last refresh.
+    pub wanted: Wanted,
+    pub common: Common,
+    /// Numbers of objects that are new or were changed since the last frame, if motion is drawn.
+    pub moved: BTreeSet<u32>,
     /// Counts changes.
     pub version: u64,
     /// The plan of the last view.
     pub plan: Option<Arc<ViewPlan>>,
     /// The copies that may cast shadows, as of the last frame with shadows.
-    hierarchy: Option<casters::Casters>,
-    /// True if compute compares depths with those of the target.
-    pub target_has_depths: bool,
+    casters: Option<Casters>,
+    /// The memory that shaders write to, in compute or for all planes.
+    pub target: Option<ComputeTarget>,
     pub rebuilds: u64,
     pub notes: Vec<String>,
     pub settings: SearchSettings,
@@ -68,24 +64,22 @@ impl Content {
         output: Output,
         settings: &SearchSettings,
     ) -> Result<Self> {
-        let identity = next_renderer();
-        let mut uploads = Uploads::of(identity);
+        let objects = Objects::new();
+        let mut uploads = Uploads::of(objects.renderer);
         Ok(Self {
-            objects: Objects::of(identity),
+            objects,
             textures: Textures::new(device, &mut uploads, settings.map_format)?,
-            shadow_maps: Arc::default(),
             uploads,
             geometry,
             lighting: Lighting::default(),
             lit: Lighting::default(),
-            changed: Vec::new(),
-            all_fall_back: false,
-            casters: ShadowCasters::default(),
-            moved: Vec::new(),
+            wanted: Wanted::new(),
+            common: Common::default(),
+            moved: BTreeSet::new(),
             version: 1,
             plan: None,
-            hierarchy: None,
-            target_has_depths: true,
+            casters: None,
+            target: None,
             rebuilds: 0,
             notes: Vec::new(),
             settings: *settings,
@@ -113,14 +107,13 @@ impl Content {
             relief: images.relief.is_some(),
             heights: images.relief.is_some() && images.heights,
         };
-        let (settings, planes) = (&self.settings, self.output.planes());
         Variant::new(
-            settings,
-            planes,
+            &self.settings,
+            self.output.planes(),
             solver,
             &self.lighting,
             object,
-            self.casters,
+            self.common.casters,
             host,
         )
     }

@@ -1,10 +1,10 @@
-//! The objects of a renderer, and their identities: the renderer, its entry, and the object in that
-//! entry.
+//! The objects of a renderer, and their identities.
 
 use super::Content;
-use super::entry::{Entry, History, LastValues};
+use super::entry::{Entry, LastValues, Values};
+use super::refresh::Wanted;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::Object;
+use crate::scene::{Growth, Object};
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,81 +12,75 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// An object of one renderer; other renderers reject the id. The id names the same object whatever
 /// is set, and no other object after the removal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ObjectId {
-    pub(in crate::gpu) renderer: u32,
-    pub(in crate::gpu) generation: u32,
-    pub(in crate::gpu) number: u32,
-}
+pub struct ObjectId(u64);
 
-// 64 bits hold 16 million objects at once, a million objects in turn per entry, and a million
-// renderers of the process. Identities of renderers repeat after that.
-const NUMBER_BITS: u32 = 24;
-const GENERATION_BITS: u32 = 20;
+// From the highest bits: a million renderers of the process, a million objects in turn per entry, 16
+// million objects at once. Identities of renderers repeat after that.
 const RENDERER_BITS: u32 = 20;
+const GENERATION_BITS: u32 = 20;
+const NUMBER_BITS: u32 = 24;
 
 /// Upper limit on entries of a renderer.
-pub(in crate::gpu) const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
-/// Upper limit on objects that use one entry in turn. The entry then stays empty.
-pub(in crate::gpu) const MOST_GENERATIONS: u32 = 1 << GENERATION_BITS;
+const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
 
 impl ObjectId {
+    /// The first object that uses entry `number` of a renderer.
+    const fn first(renderer: u32, number: u32) -> Self {
+        Self((renderer as u64) << (GENERATION_BITS + NUMBER_BITS) | number as u64)
+    }
+
+    /// The next object that uses the same entry. After the last one the entry stays empty.
+    fn next(self) -> Option<Self> {
+        let next = self.0.wrapping_add(1 << NUMBER_BITS);
+        (next >> NUMBER_BITS & ((1 << GENERATION_BITS) - 1) != 0).then_some(Self(next))
+    }
+
     /// The object's number in pictures of [`Plane::Identity`](crate::settings::Plane::Identity). No
     /// two objects of a renderer have the same one at a time.
     #[must_use]
+    #[allow(clippy::cast_possible_truncation)] // masked
     pub const fn number(self) -> u32 {
-        self.number
+        self.0 as u32 & (MOST_NUMBERS as u32 - 1)
     }
 
     /// The id as one number, never 0, for interfaces that carry plain numbers.
     #[must_use]
     pub const fn to_bits(self) -> u64 {
-        let renderer = (self.renderer as u64) << (NUMBER_BITS + GENERATION_BITS);
-        renderer | (self.generation as u64) << NUMBER_BITS | self.number as u64
+        self.0
     }
 
     /// The id that [`ObjectId::to_bits`] encoded. Any other number is the id of no object.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // each part is masked
     pub const fn from_bits(bits: u64) -> Self {
-        Self {
-            renderer: (bits >> (NUMBER_BITS + GENERATION_BITS)) as u32,
-            generation: (bits >> NUMBER_BITS) as u32 & (MOST_GENERATIONS - 1),
-            number: bits as u32 & (MOST_NUMBERS as u32 - 1),
-        }
+        Self(bits)
     }
-}
-
-/// The identity of a new renderer, which is not 0.
-pub(in crate::gpu) fn next_renderer() -> u32 {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1
 }
 
 /// Entries by number, their order, and ranges of instances.
 pub(crate) struct Objects {
-    /// The renderer that ids name.
+    /// The renderer that ids name, not 0.
     pub renderer: u32,
     numbered: Vec<Numbered>,
     free: Vec<u32>,
-    /// Numbers and generations in the order in which objects were added, including dead ones.
-    order: Vec<(u32, u32)>,
+    /// Objects in the order in which they were added, including dead ones.
+    order: Vec<ObjectId>,
     /// The number of dead ones in `order`.
     dead: usize,
     instances: RangeAllocator<u32>,
 }
 
-/// The entry that has a number now, and how many had it before.
-#[derive(Default)]
+/// An entry, and the last object that used it.
 struct Numbered {
-    generation: u32,
+    id: ObjectId,
     entry: Option<Entry>,
 }
 
 impl Objects {
-    /// No objects, for the renderer of this identity.
-    pub fn of(renderer: u32) -> Self {
+    /// No objects, for a new renderer.
+    pub fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
         Self {
-            renderer,
+            renderer: COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1,
             numbered: Vec::new(),
             free: Vec::new(),
             order: Vec::new(),
@@ -110,18 +104,24 @@ impl Objects {
         self.instances.initial_range().end
     }
 
-    /// All objects with their numbers, in the order in which they were added.
-    pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
-        self.order.iter().filter_map(|&(number, generation)| {
-            let numbered = &self.numbered[number as usize];
-            let entry = numbered.entry.as_ref()?;
-            (numbered.generation == generation).then_some((number, entry))
-        })
+    /// The entry of an object; `None` if the object does not exist.
+    fn get(&self, id: ObjectId) -> Option<&Entry> {
+        let numbered = self.numbered.get(id.number() as usize);
+        numbered.filter(|n| n.id == id)?.entry.as_ref()
     }
 
-    /// The numbers of all objects, in the same order.
-    pub fn numbers(&self) -> Vec<u32> {
-        self.ordered().map(|(number, _)| number).collect()
+    /// All objects with their numbers, in the order in which they were added.
+    pub fn ordered(&self) -> impl Iterator<Item = (u32, &Entry)> {
+        self.order
+            .iter()
+            .filter_map(|&id| Some((id.number(), self.get(id)?)))
+    }
+
+    /// Adds the values of all other objects that are drawn.
+    pub fn add_drawn(&self, to: &mut Wanted) {
+        for (number, entry) in self.ordered().filter(|(_, e)| e.resources().is_some()) {
+            to.entry(number).or_insert_with(|| entry.values.clone());
+        }
     }
 
     /// The entry of a number; `None` if it is gone.
@@ -146,33 +146,31 @@ impl Objects {
         }
         let instances = self.allocate(object.placements().len())?;
         let number = self.free.pop().unwrap_or_else(|| {
-            self.numbered.push(Numbered::default());
-            self.numbered.len() as u32 - 1
+            let number = self.numbered.len() as u32;
+            let id = ObjectId::first(self.renderer, number);
+            self.numbered.push(Numbered { id, entry: None });
+            number
         });
         let numbered = &mut self.numbered[number as usize];
         numbered.entry = Some(Entry::new(object, instances, version));
-        self.order.push((number, numbered.generation));
-        Ok(ObjectId {
-            renderer: self.renderer,
-            number,
-            generation: numbered.generation,
-        })
+        self.order.push(numbered.id);
+        Ok(numbered.id)
     }
 
     pub fn remove(&mut self, id: ObjectId) {
-        let numbered = &mut self.numbered[id.number as usize];
-        numbered.generation += 1;
+        let numbered = &mut self.numbered[id.number() as usize];
         if let Some(entry) = numbered.entry.take() {
             self.instances.free_range(entry.instances);
         }
-        if numbered.generation < MOST_GENERATIONS {
-            self.free.push(id.number);
+        if let Some(next) = id.next() {
+            numbered.id = next;
+            self.free.push(id.number());
         }
         self.dead += 1;
         if self.dead > self.order.len() / 2 {
-            let alive = |&(n, g): &(u32, u32)| self.numbered[n as usize].generation == g;
-            self.order.retain(alive);
-            self.dead = 0;
+            let mut order = std::mem::take(&mut self.order);
+            order.retain(|id| self.get(*id).is_some());
+            (self.order, self.dead) = (order, 0);
         }
     }
 
@@ -202,75 +200,82 @@ impl Objects {
 impl Content {
     /// Returns the entry of an object, or an error if the object does not exist.
     pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
-        let numbered = self.objects.numbered.get(id.number as usize);
-        let numbered = numbered.filter(|numbered| {
-            numbered.generation == id.generation && id.renderer == self.objects.renderer
-        });
-        numbered
-            .and_then(|numbered| numbered.entry.as_ref())
-            .ok_or_else(|| {
-                let message = "the object was removed, or is another renderer's";
-                Error::new(ErrorKind::Usage, message)
-            })
+        self.objects.get(id).ok_or_else(gone)
+    }
+
+    /// The values of an object that were set last.
+    pub fn latest(&self, id: ObjectId) -> Result<&Values> {
+        let entry = self.entry(id)?;
+        Ok(self.wanted.get(&id.number()).unwrap_or(&entry.values))
     }
 
     /// Returns the entry of an object, marked as changed.
     pub fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
-        self.entry(id)?;
+        let last = LastValues::of(&self.latest(id)?.object);
+        let entry = self.objects.at_mut(id.number()).ok_or_else(gone)?;
         self.version += 1;
-        let version = self.version;
-        let gone = || Error::new(ErrorKind::Usage, "the object was removed");
-        let entry = self.objects.at_mut(id.number).ok_or_else(gone)?;
-        entry.version = version;
-        if self.output.planes().has_motion() && matches!(entry.history, History::Still) {
-            entry.history = History::Moved(LastValues::of(entry.latest()));
-            self.moved.push(id.number);
+        entry.version = self.version;
+        if self.output.planes().has_motion() && self.moved.insert(id.number()) {
+            entry.last = Some(last);
         }
         Ok(entry)
     }
 
-    /// Makes the present values those of the last frame.
-    pub fn end_frame(&mut self) {
-        let moved = std::mem::take(&mut self.moved);
-        self.version += u64::from(!moved.is_empty());
-        for number in moved {
-            if let Some(entry) = self.objects.at_mut(number) {
-                entry.history = History::Still;
-                entry.version = self.version;
-            }
+    /// Returns the values that the next refresh gives to an object. A change of the object must
+    /// remove the boundary.
+    pub fn want(&mut self, id: ObjectId) -> Result<&mut Values> {
+        self.change(id)?;
+        let values = &self.objects.get(id).ok_or_else(gone)?.values;
+        Ok((self.wanted.entry(id.number())).or_insert_with(|| values.clone()))
+    }
+
+    /// Returns the object that the next refresh gives, for a change of its form or look.
+    pub fn reshape(&mut self, id: ObjectId) -> Result<&mut Object> {
+        let values = self.want(id)?;
+        values.boundary = None;
+        Ok(&mut values.object)
+    }
+
+    /// Changes placements of an object at once, without a refresh: see [`Values::place`].
+    pub fn place(&mut self, id: ObjectId, set: impl Fn(&mut Object, Option<Growth>)) -> Result<()> {
+        self.change(id)?.values.place(&set);
+        if let Some(wanted) = self.wanted.get_mut(&id.number()) {
+            wanted.place(set);
         }
+        Ok(())
     }
 
     /// Gives an object room for exactly this many copies.
     pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
         if self.entry(id)?.instances.len() != count {
-            self.objects.resize(id.number, count)?;
+            self.objects.resize(id.number(), count)?;
             self.change(id)?;
         }
         Ok(())
     }
 }
 
+fn gone() -> Error {
+    let message = "the object was removed, or is another renderer's";
+    Error::new(ErrorKind::Usage, message)
+}
+
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
-    fn every_id_comes_back_from_its_bits() {
-        let (most, last) = ((1 << RENDERER_BITS) - 1, MOST_GENERATIONS - 1);
-        for renderer in [1, 2, most] {
-            for generation in [0, 1, last] {
-                for number in [0, 1, MOST_NUMBERS as u32 - 1] {
-                    let id = ObjectId {
-                        renderer,
-                        generation,
-                        number,
-                    };
-                    assert_ne!(id.to_bits(), 0);
-                    assert_eq!(ObjectId::from_bits(id.to_bits()), id);
-                }
-            }
-        }
-        assert_ne!(next_renderer(), next_renderer());
+    fn an_entry_ends_with_its_last_object() {
+        let renderer = (1 << RENDERER_BITS) - 1;
+        let number = MOST_NUMBERS as u32 - 1;
+        let first = ObjectId::first(renderer, number);
+        let second = first.next().unwrap();
+        assert_eq!([first, second].map(ObjectId::number), [number; 2]);
+        assert!(second > first && ObjectId::from_bits(second.to_bits()) == second);
+        let last = ObjectId(u64::MAX);
+        assert_eq!((last.number(), last.next()), (number, None));
+        assert_ne!(ObjectId::first(Objects::new().renderer, 0).to_bits(), 0);
+        assert_ne!(Objects::new().renderer, Objects::new().renderer);
     }
 }

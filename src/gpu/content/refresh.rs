@@ -1,52 +1,37 @@
 //! Conversion of values to all that does not depend on a view: solids, contours, maps, textures and
-//! variants. All is derived before any new value is stored. A failure restores what
-//! shadows need of all objects.
+//! variants. What an object is drawn by follows from the object and from [`Common`] facts. It is
+//! derived anew for changed objects, and for all objects if the common facts change.
 
 use super::Content;
-use super::entry::{Derived, Entry};
-use crate::error::{Error, ErrorKind, Result};
+use super::entry::{Boundary, Derived, Values};
+use crate::error::{Error, Result, content};
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
-use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
 use crate::maps::Projection;
-use crate::scene::{GrownObject, Growth, Object};
+use crate::scene::Object;
 use crate::settings::Solver;
-use crate::shader::ShadowCasters;
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::solid::offset_surface::OffsetSurface;
-use crate::solid::outline_cache::OffsetContour;
+use crate::shader::{ShadowCasters, is_beveled};
 use rayon::prelude::*;
-use std::collections::HashSet;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Values that a refresh applies, by number of the object.
+pub(in crate::gpu) type Wanted = BTreeMap<u32, Values>;
 
 /// The search for objects without a surface of their own; it reads only the map.
 pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
-/// An object for which all is derived anew, and what was found for it so far.
-struct Resolved {
-    number: u32,
-    /// The object in a box that has grown.
-    grown: Option<GrownObject>,
-    solid: Arc<Solid>,
-    /// The contour of a search on patches, made.
-    contour: Option<Arc<OffsetContour>>,
-    /// The table of another crate's search, made.
-    table: Option<Arc<OffsetSurface>>,
-    map: Option<Arc<ShapeTexture>>,
-}
-
-impl Resolved {
-    /// The object that is drawn for `entry`, and the growth of its box.
-    fn shown<'a>(&'a self, entry: &'a Entry) -> (&'a Object, Growth) {
-        let own = (entry.latest(), Growth::default());
-        self.grown.as_ref().map_or(own, |g| (&g.object, g.growth))
-    }
-
-    /// True if the search on patches has no contour to search.
-    fn fails(&self) -> bool {
-        self.contour.as_ref().is_some_and(|c| c.get().is_err())
-    }
+/// Facts of all objects that each object's resources depend on; the default without shadows.
+#[derive(Clone, Default)]
+pub(in crate::gpu) struct Common {
+    /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
+    /// all by one search.
+    falls_back: bool,
+    /// The properties of solids that shadow rays may meet.
+    pub casters: ShadowCasters,
+    pub shadow_maps: Arc<ShadowMaps>,
 }
 
 impl Content {
@@ -54,146 +39,113 @@ impl Content {
     /// added since that call are left out until they are set again. Lights and all other values but
     /// placements and copies are again those of that call.
     pub fn refresh(&mut self) -> Result<()> {
-        if self.changed.is_empty() {
+        if self.wanted.is_empty() {
             return Ok(());
         }
-        let mut changed = std::mem::take(&mut self.changed);
-        changed.sort_unstable();
-        changed.dedup();
-        let before = (self.all_fall_back, self.casters, self.shadow_maps.clone());
-        let result = self.apply(&changed);
+        let mut wanted = std::mem::take(&mut self.wanted);
+        let before = self.common.clone();
+        let result = self.make_all(&mut wanted);
         if result.is_ok() {
             self.lit.clone_from(&self.lighting);
         } else {
             self.lighting.clone_from(&self.lit);
-            (self.all_fall_back, self.casters, self.shadow_maps) = before;
-            for number in changed {
-                self.forget(number)?;
+            self.common = before;
+        }
+        self.version += 1;
+        for (number, values) in wanted {
+            let Some(entry) = self.objects.at_mut(number) else {
+                continue;
+            };
+            entry.version = self.version;
+            if result.is_ok() {
+                entry.values = values;
+            }
+            let count = entry.values.object.placements().len();
+            if entry.instances.len() != count {
+                self.objects.resize(number, count)?;
             }
         }
         result
     }
 
-    /// Drops the values that were set for an entry.
-    fn forget(&mut self, number: u32) -> Result<()> {
-        let version = self.version + 1;
-        let Some(entry) = self.objects.at_mut(number) else {
-            return Ok(());
-        };
-        entry.wanted = None;
-        entry.wanted_images = None;
-        entry.version = version;
-        self.version = version;
-        let count = entry.object.placements().len();
-        if entry.instances.len() != count {
-            self.objects.resize(number, count)?;
-        }
-        Ok(())
-    }
-
-    /// Derives all of the changed objects, and of all others if data that they share changes.
-    fn apply(&mut self, changed: &[u32]) -> Result<()> {
-        let mut work = self.resolve(changed)?;
-        let common = (self.falls_back(&work), self.shadow_casters());
-        if common != (self.all_fall_back, self.casters) {
-            (self.all_fall_back, self.casters) = common;
+    /// Makes the resources of all values that are wanted. Adds the values of all other objects if
+    /// the common facts change.
+    fn make_all(&mut self, wanted: &mut Wanted) -> Result<()> {
+        self.find_boundaries(wanted)?;
+        let found = (self.falls_back(wanted), self.shadow_casters(wanted));
+        if found != (self.common.falls_back, self.common.casters) {
             // Other code draws each object from now on.
-            work.extend(self.resolve(&self.others(&work))?);
+            (self.common.falls_back, self.common.casters) = found;
+            self.objects.add_drawn(wanted);
         }
-        self.find_maps(&mut work)?;
-        let shadow_maps = self.shadow_maps_with(&work)?;
-        if !Arc::ptr_eq(&shadow_maps, &self.shadow_maps) {
-            self.shadow_maps = shadow_maps;
+        for (&number, values) in wanted.iter_mut() {
+            let made = self.find_map(number, values);
+            made.map_err(|e| self.named(e, number, values))?;
+        }
+        let maps = self.shadow_maps(wanted)?;
+        let known = self.common.shadow_maps.maps.iter();
+        if !known.map(Arc::as_ptr).eq(maps.iter().map(Arc::as_ptr)) {
             // Each object binds the new maps.
-            let mut others = self.resolve(&self.others(&work))?;
-            self.find_maps(&mut others)?;
-            work.extend(others);
+            self.common.shadow_maps = Arc::new(ShadowMaps { maps });
+            self.objects.add_drawn(wanted);
         }
-        let mut ready = Vec::with_capacity(work.len());
-        for one in work {
-            let derived = self.derive(&one);
-            let derived = derived.map_err(|e| self.named(e, one.number, "profile"))?;
-            ready.push((one.number, one.grown, derived));
-        }
-        self.version += 1;
-        let version = self.version;
-        for (number, grown, derived) in ready {
-            let Some(entry) = self.objects.at_mut(number) else {
-                continue;
-            };
-            if let Some(wanted) = entry.wanted.take() {
-                entry.object = wanted;
-            }
-            if let Some(images) = entry.wanted_images.take() {
-                entry.images = images;
-            }
-            entry.grown = grown;
-            entry.derived = Some(derived);
-            entry.version = version;
+        for (&number, values) in wanted {
+            let made = self.derive(number, values);
+            made.map_err(|e| self.named(e, number, values))?;
         }
         Ok(())
     }
 
-    /// The numbers of all other objects.
-    fn others(&self, work: &[Resolved]) -> Vec<u32> {
-        let known: HashSet<u32> = work.iter().map(|one| one.number).collect();
-        let mut all = self.objects.numbers();
-        all.retain(|number| !known.contains(number));
-        all
-    }
-
-    /// Finds or makes the solids, contours and tables of objects, on all cores.
-    fn resolve(&mut self, numbers: &[u32]) -> Result<Vec<Resolved>> {
+    /// Finds or makes the boundaries that are missing, on all cores.
+    fn find_boundaries(&mut self, wanted: &mut Wanted) -> Result<()> {
         let solver = self.settings.solver;
-        let mut resolved = Vec::with_capacity(numbers.len());
         let mut geometry = self.geometry.lock()?;
-        for &number in numbers {
-            let Some(entry) = self.objects.at(number) else {
-                continue;
-            };
-            let grown = geometry.solids.grown.grown(entry.latest());
-            let object = grown.as_ref().map_or(entry.latest(), |g| &g.object);
-            let growth = grown.as_ref().map(|g| g.growth).unwrap_or_default();
+        let (mut contours, mut tables) = (Vec::new(), Vec::new());
+        for values in wanted.values_mut().filter(|v| v.boundary.is_none()) {
+            values.grown = geometry.solids.grown.grown(&values.object);
+            let object = values.drawn();
             let solid = geometry.solids.get(&object.profile);
             let (mut contour, mut table) = (None, None);
             if solver.follows_tolerance() {
                 contour = Some(solid.contour(&object.offset)?);
             } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
-                let rows = MapKey::new(object, &growth, &self.settings).rows;
-                table = Some(solid.search_table(search, &object.offset, rows)?);
+                let rows = MapKey::new(object, &values.growth(), &self.settings).rows;
+                table = Some((0, solid.search_table(search, &object.offset, rows)?));
             }
-            resolved.push(Resolved {
-                number,
-                grown,
+            contours.extend(contour.clone());
+            tables.extend(table.clone().map(|(_, table)| table));
+            values.boundary = Some(Boundary {
                 solid,
                 contour,
-                table,
+                levels: table.into_iter().collect(),
                 map: None,
             });
         }
         drop(geometry);
-        self.rebuilds += make_contours(&resolved);
-        let tables: Vec<_> = resolved.iter().filter_map(|r| r.table.clone()).collect();
-        self.make_surfaces(&tables);
-        for one in &resolved {
-            if let Some(error) = one.table.as_ref().and_then(|table| table.failure()) {
-                return Err(self.named(error.clone(), one.number, "profile"));
+        contours.retain(|contour| !contour.is_made());
+        let fails = distinct(&mut contours).par_iter();
+        self.rebuilds += fails.filter(|c| c.get().is_err()).count() as u64;
+        self.make_surfaces(&mut tables);
+        for (&number, values) in wanted.iter() {
+            let Some(boundary) = &values.boundary else {
+                continue;
+            };
+            if let Some(error) = boundary.levels.first().and_then(|(_, s)| s.failure()) {
+                return Err(self.named(error.clone(), number, values));
             }
-            let error = one.contour.as_ref().and_then(|c| c.get().err());
-            self.note_fallback(one.number, error);
+            if let Some(Err(error)) = boundary.contour.as_ref().map(|c| c.get()) {
+                self.note_fallback(number, &values.object, error);
+            }
         }
-        Ok(resolved)
+        Ok(())
     }
 
     /// Adds a note on an object whose contour failed with this error.
-    fn note_fallback(&mut self, number: u32, error: Option<&Error>) {
-        let Some(error) = error else {
-            return;
-        };
-        let name = self.objects.at(number).map_or("", |e| &e.latest().name);
+    fn note_fallback(&mut self, number: u32, object: &Object, error: &Error) {
         let note = format!(
-            "object.{} ({name}) is drawn by the search {} in place of {}: {}",
+            "object.{} ({}) is drawn by the search {} in place of {}: {}",
             self.objects.position(number),
+            object.name,
             FALLBACK.name(),
             self.settings.solver.name(),
             error.message
@@ -203,200 +155,141 @@ impl Content {
         }
     }
 
-    /// Returns true if shadows force the fallback on all objects: a shadow's ray meets every solid
-    /// by one search.
-    fn falls_back(&self, work: &[Resolved]) -> bool {
-        let fails = |derived: &Derived| {
-            let contour = derived.contour.as_ref();
-            contour.is_some_and(|contour| contour.get().is_err())
-        };
-        let old = |number: &u32| {
-            let entry = self.objects.at(*number);
-            entry.is_some_and(|entry| entry.derived.as_ref().is_some_and(fails))
-        };
-        self.casts() && (work.iter().any(Resolved::fails) || self.others(work).iter().any(old))
+    /// The latest values of all objects if they cast shadows.
+    fn shadowed<'a>(&'a self, wanted: &'a Wanted) -> impl Iterator<Item = &'a Values> {
+        let casts = self.casts();
+        let all = self.objects.ordered().filter(move |_| casts);
+        all.map(|(number, entry)| wanted.get(&number).unwrap_or(&entry.values))
     }
 
-    /// The properties of solids that shadow rays may meet; the default without shadows.
-    fn shadow_casters(&self) -> ShadowCasters {
-        if !self.casts() {
-            return ShadowCasters::default();
-        }
-        let objects = || self.objects.ordered().map(|(_, e)| e.latest());
+    fn falls_back(&self, wanted: &Wanted) -> bool {
+        let mut boundaries = self.shadowed(wanted).filter_map(|v| v.boundary.as_ref());
+        boundaries.any(Boundary::fails)
+    }
+
+    fn shadow_casters(&self, wanted: &Wanted) -> ShadowCasters {
+        let mut objects = self.shadowed(wanted).map(|v| &v.object);
         ShadowCasters {
-            repeated: objects().any(|o| o.repeat != [1; 3]),
-            beveled: objects().any(|o| o.offset.bevel != 0.0),
+            repeated: self.shadowed(wanted).any(|v| v.object.repeat != [1; 3]),
+            beveled: objects.any(|object| object.offset.bevel != 0.0),
         }
+    }
+
+    /// The maps that shadows read.
+    fn shadow_maps(&self, wanted: &Wanted) -> Result<Vec<Arc<ShapeTexture>>> {
+        let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
+        let all = self.shadowed(wanted);
+        for map in all.filter_map(|v| v.boundary.as_ref()?.map.as_ref()) {
+            if !maps.iter().any(|known| Arc::ptr_eq(known, map)) {
+                maps.push(map.clone());
+            }
+        }
+        let count = maps.len();
+        if count > MAX_SHADOW_MAPS as usize {
+            let message = format!(
+                "shadows between {count} different shapes; at most {MAX_SHADOW_MAPS} are drawn: share profiles, or set \"off\""
+            );
+            return content("shadow", message);
+        }
+        Ok(maps)
     }
 
     /// The search that draws an object.
-    fn solver_of(&self, one: &Resolved) -> Solver {
-        if one.fails() || (self.all_fall_back && one.contour.is_some()) {
+    fn solver_of(&self, boundary: &Boundary) -> Solver {
+        if boundary.fails() || (self.common.falls_back && boundary.contour.is_some()) {
             FALLBACK
         } else {
             self.settings.solver
         }
     }
 
-    /// Finds or bakes the shape maps of objects.
-    fn find_maps(&mut self, work: &mut [Resolved]) -> Result<()> {
-        for one in work {
-            let map = self.map_of(one);
-            one.map = map.map_err(|e| self.named(e, one.number, "profile"))?;
-        }
+    /// Finds or bakes the shape map of an object, if its search reads one.
+    fn find_map(&mut self, number: u32, values: &mut Values) -> Result<()> {
+        let (object, growth) = (values.drawn(), values.growth());
+        let key = MapKey::new(object, &growth, &self.settings);
+        let known = self.objects.at(number).map(|entry| &entry.values);
+        let known = known.filter(|known| Arc::ptr_eq(&known.drawn().profile, &object.profile));
+        let known = known.and_then(|known| known.boundary.as_ref()?.map.clone());
+        let known = known.filter(|map| map.key.holds(&key));
+        let Some(mut boundary) = values.boundary.take() else {
+            return Ok(());
+        };
+        boundary.map = match known {
+            _ if !self.solver_of(&boundary).reads_map() => None,
+            Some(known) => Some(known),
+            None => Some(boundary.solid.map(&self.device, &mut self.uploads, key)?),
+        };
+        values.boundary = Some(boundary);
         Ok(())
     }
 
-    /// The shape map of an object; `None` if nothing reads it.
-    fn map_of(&mut self, one: &Resolved) -> Result<Option<Arc<ShapeTexture>>> {
-        let Some(entry) = self.objects.at(one.number) else {
-            return Ok(None);
+    /// Makes all that draws an object, beside its boundary.
+    fn derive(&mut self, number: u32, values: &mut Values) -> Result<()> {
+        let Some(boundary) = &values.boundary else {
+            return Ok(());
         };
-        if !self.solver_of(one).reads_map() {
-            return Ok(None);
-        }
-        let (wanted, growth) = one.shown(entry);
-        let key = MapKey::new(wanted, &growth, &self.settings);
-        let there = entry.derived.as_ref().and_then(|p| p.map.as_ref());
-        if let Some(there) = there
-            && Arc::ptr_eq(&wanted.profile, &entry.drawn().profile)
-            && there.key.holds(&key)
-        {
-            return Ok(Some(there.clone()));
-        }
-        let map = one.solid.map(&self.device, &mut self.uploads, key)?;
-        Ok(Some(map))
-    }
-
-    /// The maps that shadows read, including maps of changed objects. Returns the present value if
-    /// nothing differs.
-    fn shadow_maps_with(&self, work: &[Resolved]) -> Result<Arc<ShadowMaps>> {
-        if !self.casts() {
-            return Ok(if self.shadow_maps.maps.is_empty() {
-                self.shadow_maps.clone()
-            } else {
-                Arc::default()
-            });
-        }
-        let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
-        for (number, entry) in self.objects.ordered() {
-            let map = match work.iter().find(|one| one.number == number) {
-                Some(one) => one.map.as_ref(),
-                None => entry.derived.as_ref().and_then(|p| p.map.as_ref()),
-            };
-            if let Some(map) = map
-                && !maps.iter().any(|m| Arc::ptr_eq(m, map))
-            {
-                maps.push(map.clone());
-            }
-        }
-        let remedy = "share profiles";
-        few_enough(maps.len(), "different shapes", MAX_SHADOW_MAPS, remedy)?;
-        let same = maps.len() == self.shadow_maps.maps.len()
-            && maps
-                .iter()
-                .zip(&self.shadow_maps.maps)
-                .all(|(a, b)| Arc::ptr_eq(a, b));
-        Ok(if same {
-            self.shadow_maps.clone()
-        } else {
-            Arc::new(ShadowMaps { maps })
-        })
-    }
-
-    /// Makes all that draws an object.
-    fn derive(&mut self, one: &Resolved) -> Result<Derived> {
-        let (number, solid, solver) = (one.number, &one.solid, self.solver_of(one));
-        let Some(entry) = self.objects.at(number) else {
-            return Err(Error::new(
-                ErrorKind::Other,
-                "an object is gone while it is refreshed",
-            ));
-        };
-        let (object, growth) = one.shown(entry);
-        check_format(entry.latest(), solver, &self.settings).map_err(|e| self.under(e, number))?;
-        let facts = one.map.as_ref().map_or_else(
-            || MapKey::new(object, &growth, &self.settings).unbaked(&object.profile),
-            |m| m.facts,
+        let (object, map) = (values.drawn(), &boundary.map);
+        let solver = self.solver_of(boundary);
+        check_format(&values.object, solver, &self.settings).map_err(|mut e| {
+            e.key = (e.key).map(|key| format!("object.{}.{key}", self.objects.position(number)));
+            e
+        })?;
+        let facts = map.as_ref().map_or_else(
+            || MapKey::new(object, &values.growth(), &self.settings).unbaked(&object.profile),
+            |map| map.facts,
         );
-        let arc = if object.texturing.projection == Projection::Arc {
-            Some(solid.arc(&self.device, &mut self.uploads, &facts)?)
-        } else {
-            None
+        let arc = match object.texturing.projection {
+            Projection::Arc => Some(
+                boundary
+                    .solid
+                    .arc(&self.device, &mut self.uploads, &facts)?,
+            ),
+            _ => None,
         };
-        let variant = self.variant(solver, object, entry.latest_images());
-        let shadow_map = one.map.as_ref().and_then(|map| {
-            let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
-            self.shadow_maps.maps.iter().position(same)
+        let shadows = &self.common.shadow_maps;
+        let mut numbered = (0u32..).zip(&shadows.maps);
+        let shadow_map = map.as_ref().and_then(|map| {
+            let found = numbered.find(|(_, known)| Arc::ptr_eq(known, map));
+            found.map(|(number, _)| number)
         });
         let bound = ObjectTextures {
             look: &object.texturing,
-            images: entry.latest_images(),
-            shape: one.map.clone(),
+            images: &values.images,
+            shape: map.clone(),
             arc: arc.clone(),
-            shadows: &self.shadow_maps,
+            shadows,
         };
-        Ok(Derived {
-            textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
-            solid: solid.clone(),
-            contour: one.contour.clone(),
-            levels: one.table.iter().map(|table| (0, table.clone())).collect(),
+        let textures = (self.textures).set(&self.device, &mut self.uploads, bound)?;
+        let steps = self.settings.max_steps;
+        let steps = steps.unwrap_or_else(|| solver.default_steps(is_beveled(object)));
+        values.derived = Some(Derived {
             solver,
+            steps: steps.max(1),
             takes_patches: solver == Solver::Exact && self.settings.proxy_min_pixels != u32::MAX,
-            map: one.map.clone(),
             facts,
             arc,
-            shadow_map: shadow_map.and_then(|n| u32::try_from(n).ok()).unwrap_or(0),
-            variant,
-        })
+            shadow_map: shadow_map.unwrap_or(0),
+            textures,
+            variant: self.variant(solver, object, &values.images),
+        });
+        Ok(())
     }
 
-    /// Adds the key `object.N.key` to an error without a key, and the object's file to an error
-    /// without a file.
-    fn named(&self, error: Error, number: u32, key: &str) -> Error {
-        let error = if error.key.is_none() {
-            self.under(error.at_key(key), number)
-        } else {
-            error
-        };
-        match self
-            .objects
-            .at(number)
-            .and_then(|e| e.latest().file.clone())
-        {
-            Some(file) if error.file.is_none() => error.in_file(file),
-            _ => error,
+    /// Adds the key `object.N.profile` and the object's file to an error without them.
+    fn named(&self, mut error: Error, number: u32, values: &Values) -> Error {
+        if error.key.is_none() {
+            error = error.at_key(format!("object.{}.profile", self.objects.position(number)));
         }
-    }
-
-    fn under(&self, mut error: Error, number: u32) -> Error {
-        if let Some(key) = &mut error.key
-            && !key.starts_with("object.")
-        {
-            *key = format!("object.{}.{key}", self.objects.position(number));
+        match &values.object.file {
+            Some(file) => error.in_file(file),
+            None => error,
         }
-        error
     }
 }
 
-/// Returns an error for more of these than shadows are drawn between.
-fn few_enough(count: usize, what: &str, most: u32, remedy: &str) -> Result<()> {
-    if count <= most as usize {
-        return Ok(());
-    }
-    let message = format!(
-        "shadows between {count} {what}; at most {most} are drawn: {remedy}, or set \"off\""
-    );
-    Err(Error::new(ErrorKind::Content, message).at_key("shadow"))
-}
-
-/// Makes all contours that are not made yet, on all cores, each once. Returns the number of those
-/// that do not close.
-fn make_contours(resolved: &[Resolved]) -> u64 {
-    let contours = resolved.iter().filter_map(|one| one.contour.as_ref());
-    let mut new: Vec<_> = contours.filter(|contour| !contour.is_made()).collect();
-    new.sort_unstable_by_key(|contour| Arc::as_ptr(contour));
-    new.dedup_by_key(|contour| Arc::as_ptr(contour));
-    let fails = new.par_iter().filter(|contour| contour.get().is_err());
-    fails.count() as u64
+/// Each of these values once.
+pub(in crate::gpu) fn distinct<T>(all: &mut Vec<Arc<T>>) -> &[Arc<T>] {
+    all.sort_unstable_by_key(Arc::as_ptr);
+    all.dedup_by_key(|one| Arc::as_ptr(one));
+    all
 }

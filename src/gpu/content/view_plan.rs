@@ -1,8 +1,10 @@
-//! A frame's plan and the surfaces that it draws.
+//! A frame's plan, the surfaces that it draws, and the hierarchy of copies that cast shadows.
 
 use super::Content;
-use super::entry::{Derived, Entry};
+use super::entry::{Boundary, Derived, Entry, Values};
+use super::refresh::distinct;
 use crate::error::Result;
+use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{
     self, COPY_LEVELS, CopyLevels, GRAZING, LevelledCopies, coarsest, pixels_per_unit,
 };
@@ -15,6 +17,10 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// The copies that may cast shadows, with the values that their boxes depend on: version of the
+/// content, mask of the view, level of all surfaces.
+pub(super) type Casters = ((u64, u32, u8), Arc<Hierarchy>);
+
 /// The plan of one view, for one version of a renderer's objects.
 pub(crate) struct ViewPlan {
     pub view: View,
@@ -24,6 +30,9 @@ pub(crate) struct ViewPlan {
     pub objects: Vec<PlannedObject>,
     /// Number of blocks: those of all objects, then those of coarser levels.
     pub blocks: u32,
+    /// Number of instances, with free ones. The records of the last frame's placements are after
+    /// them.
+    pub instances: u32,
 }
 
 /// An object in a plan.
@@ -74,20 +83,17 @@ impl Content {
             copies.first_block = blocks;
             blocks += copies.coarser.len() as u32;
         }
-        let with = self.conditions();
-        let read: Vec<PlanObject> = objects
-            .iter()
-            .filter_map(|planned| {
-                let entry = self.objects.at(planned.number)?;
-                entry.plan_object(planned, &self.settings)
-            })
-            .collect();
+        let read = objects.iter().filter_map(|planned| {
+            let entry = self.objects.at(planned.number)?;
+            entry.plan_object(planned)
+        });
         let made = Arc::new(ViewPlan {
             view: *view,
             version: self.version,
-            frame: plan(view, &read, &with),
+            frame: plan(view, &read.collect::<Vec<_>>(), &self.conditions()),
             objects,
             blocks,
+            instances: self.objects.instances(),
         });
         self.plan = Some(made.clone());
         Ok(made)
@@ -95,24 +101,24 @@ impl Content {
 
     /// The inputs of a plan other than view and objects.
     pub fn conditions(&self) -> Conditions {
-        let limits = self.device.limits();
+        let (limits, chosen) = (self.device.limits(), &self.device.chosen);
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            clips: self.device.chosen.clips(),
-            software: self.device.chosen.report.kind == "cpu",
-            subgroup_size: self.device.chosen.subgroup_size,
+            clips: chosen.clips(),
+            software: chosen.report.kind == "cpu",
+            subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
-            own_vectors: self.device.chosen.constants().own_vectors as usize,
+            own_vectors: chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
             level_pixels: self.settings.tolerance.pixels() / GRAZING,
             casts: self.casts(),
             lists_crowds: self.lists_crowds(),
-            host_depths: self.is_compute() && self.target_has_depths,
+            host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
         }
     }
 
@@ -124,10 +130,20 @@ impl Content {
             && !self.output.planes().has_motion()
     }
 
-    /// Returns all objects with surfaces of the levels that the view allows. Makes the surfaces that
-    /// are new.
+    /// Returns all objects that a view shows, with surfaces of the levels that it allows; of the
+    /// exact levels if there is no view. Makes the surfaces that are new. With shadows, all objects
+    /// take the finest level that one of them needs, because a shadow may fall nearer to the eye
+    /// than its caster.
     pub fn with_surfaces(&mut self, view: Option<&View>) -> Result<Vec<PlannedObject>> {
-        let mut found = self.levels(view);
+        let mask = view.map_or(u32::MAX, |view| view.mask);
+        let shown = |(_, entry): &(u32, &Entry)| entry.mask & mask != 0;
+        let shown = self.objects.ordered().filter(shown);
+        let planned = shown.filter_map(|(number, entry)| self.planned(number, entry, view));
+        let mut found: Vec<_> = planned.collect();
+        if self.casts() {
+            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
+            found.iter_mut().for_each(|f| f.level = finest);
+        }
         let mut new = Vec::new();
         for one in &mut found {
             let Some(entry) = self.objects.at_mut(one.number) else {
@@ -140,53 +156,42 @@ impl Content {
                 }
             }
         }
-        self.make_surfaces(&new);
+        self.make_surfaces(&mut new);
         Ok(found)
     }
 
-    /// The level of each object: the coarsest that the view allows, or the exact one if there is no
-    /// view. Objects with many copies have a level for each. With shadows, all objects take the
-    /// finest level that one of them needs. The reason is that a shadow may fall nearer to the eye
-    /// than its caster.
-    fn levels(&self, view: Option<&View>) -> Vec<PlannedObject> {
-        let casts = self.casts();
+    /// An object at the coarsest level that the view allows, without surfaces. Objects with many
+    /// copies have a level for each.
+    fn planned(&self, number: u32, entry: &Entry, view: Option<&View>) -> Option<PlannedObject> {
+        let (boundary, derived) = entry.resources()?;
         let tolerance = self.settings.tolerance;
-        let level_of = |entry: &Entry, derived: &Derived| match view {
-            Some(view) if tolerance != Tolerance::EXACT && derived.solver.follows_tolerance() => {
-                let pixels = entry.pixels_per_unit(view, casts);
-                // An object that does not show takes a level that is already made.
-                let made = derived.levels.first().filter(|_| pixels <= 0.0 && !casts);
-                made.map_or_else(|| coarsest(tolerance, pixels), |(level, _)| *level)
-            }
-            _ => 0,
+        let fitted = tolerance != Tolerance::EXACT && derived.solver.follows_tolerance();
+        let mut planned = PlannedObject {
+            number,
+            level: 0,
+            surface: None,
+            levelled: None,
         };
-        let planned = |(number, entry): (u32, &Entry)| {
-            let derived = entry.derived.as_ref()?;
-            let levelled = self.levels_copies(entry, derived);
-            let levels = view.filter(|_| levelled).map(|view| {
-                let height = entry.growth().height();
-                CopyLevels::new(entry.drawn(), height, view, tolerance, self.lists_crowds())
-            });
-            let finest = levels.as_ref().map(|levels| COPY_LEVELS[levels.first]);
-            Some(PlannedObject {
-                number,
-                level: finest.unwrap_or_else(|| level_of(entry, derived)),
-                surface: None,
-                levelled: levels.map(|levels| LevelledCopies {
+        match view {
+            Some(view) if self.levels_copies(entry, derived) => {
+                let (object, height) = (entry.drawn(), entry.values.growth().height());
+                let levels = CopyLevels::new(object, height, view, tolerance, self.lists_crowds());
+                planned.level = COPY_LEVELS[levels.first];
+                planned.levelled = Some(LevelledCopies {
                     levels,
                     ..LevelledCopies::default()
-                }),
-            })
-        };
-        let mask = view.map_or(u32::MAX, |view| view.mask);
-        let shown = |(_, entry): &(u32, &Entry)| entry.mask & mask != 0;
-        let objects = self.objects.ordered().filter(shown);
-        let mut found: Vec<_> = objects.filter_map(planned).collect();
-        if casts {
-            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
-            found.iter_mut().for_each(|f| f.level = finest);
+                });
+            }
+            Some(view) if fitted => {
+                let pixels = entry.pixels_per_unit(view, self.casts());
+                // An object that does not show takes a level that is already made.
+                let made = boundary.levels.first();
+                let made = made.filter(|_| pixels <= 0.0 && !self.casts());
+                planned.level = made.map_or_else(|| coarsest(tolerance, pixels), |made| made.0);
+            }
+            _ => {}
         }
-        found
+        Some(planned)
     }
 
     /// True if each copy of an object has a level of its own. The view has no influence, so a moving
@@ -199,20 +204,51 @@ impl Content {
     }
 
     /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
-    pub fn make_surfaces(&mut self, surfaces: &[Arc<OffsetSurface>]) {
-        let mut new: Vec<_> = surfaces.iter().filter(|s| !s.is_made()).collect();
-        new.sort_unstable_by_key(|s| Arc::as_ptr(s));
-        new.dedup_by_key(|s| Arc::as_ptr(s));
+    pub fn make_surfaces(&mut self, surfaces: &mut Vec<Arc<OffsetSurface>>) {
+        surfaces.retain(|surface| !surface.is_made());
         let part = match (self.settings.solver, self.is_compute()) {
             (Solver::Exact, false) => Part::Frusta,
             (Solver::Exact, true) => Part::Patches,
             _ => Part::Tables,
         };
+        let new = distinct(surfaces);
         new.par_iter().for_each(|surface| {
             surface.make();
             surface.vectors(part);
         });
         self.rebuilds += new.len() as u64;
+    }
+
+    /// The hierarchy over the copies of a plan's objects that cast shadows. Builds it if they have
+    /// changed.
+    pub fn hierarchy(&mut self, plan: &ViewPlan) -> Arc<Hierarchy> {
+        // With shadows, all surfaces have one level.
+        let level = plan.objects.iter().map(|object| object.level).min();
+        let key = (plan.version, plan.view.mask, level.unwrap_or(0));
+        if let Some((known, hierarchy)) = &self.casters
+            && *known == key
+        {
+            return hierarchy.clone();
+        }
+        let mut leaves = Vec::new();
+        for planned in &plan.objects {
+            let entry = self.objects.at(planned.number);
+            let object = entry.and_then(|entry| {
+                let (_, derived) = entry.resources()?;
+                Some((derived.shadow_map, entry.plan_object(planned)?))
+            });
+            let Some((map, object)) = object else {
+                continue;
+            };
+            let copies = object.object.placements().par_iter().enumerate();
+            leaves.par_extend(copies.map(|(copy, placement)| {
+                let instance = object.first_instance + copy as u32;
+                Leaf::new(instance, map, placement, &object.shape)
+            }));
+        }
+        let made = Arc::new(Hierarchy::new(&mut leaves));
+        self.casters = Some((key, made.clone()));
+        made
     }
 }
 
@@ -223,16 +259,21 @@ impl Entry {
         level: u8,
         new: &mut Vec<Arc<OffsetSurface>>,
     ) -> Result<Option<Arc<OffsetSurface>>> {
-        let (growth, offset) = (self.growth(), self.drawn().offset);
-        let Some(derived) = &mut self.derived else {
+        let (growth, offset) = (self.values.growth(), self.drawn().offset);
+        let Values {
+            boundary: Some(Boundary { solid, levels, .. }),
+            derived: Some(derived),
+            ..
+        } = &mut self.values
+        else {
             return Ok(None);
         };
-        let known = derived.levels.iter().find(|(known, _)| *known == level);
+        let known = levels.iter().find(|(known, _)| *known == level);
         if known.is_some() || !derived.solver.follows_tolerance() {
             return Ok(known.map(|(_, surface)| surface.clone()));
         }
-        let surface = derived.solid.patches(&offset, &growth, level)?;
-        derived.levels.push((level, surface.clone()));
+        let surface = solid.patches(&offset, &growth, level)?;
+        levels.push((level, surface.clone()));
         new.push(surface.clone());
         Ok(Some(surface))
     }
@@ -240,8 +281,7 @@ impl Entry {
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
     pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
-        let height = self.growth().height();
-        pixels_per_unit(self.drawn(), height, view, all)
+        pixels_per_unit(self.drawn(), self.values.growth().height(), view, all)
     }
 
     /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
@@ -250,18 +290,14 @@ impl Entry {
     }
 
     /// The object in the form that a plan reads; `None` before it is derived.
-    pub fn plan_object<'a>(
-        &'a self,
-        planned: &'a PlannedObject,
-        settings: &crate::settings::SearchSettings,
-    ) -> Option<PlanObject<'a>> {
-        let derived = self.derived.as_ref()?;
-        let surface = planned.surface.as_ref();
-        let block = self.block(surface.map(Arc::as_ref), 0, settings)?;
-        let texels = 2.0 / f64::from(block.map[1]);
-        let away = largest_width(&self.drawn().offset).max(0.0) + texels;
+    pub fn plan_object<'a>(&'a self, planned: &'a PlannedObject) -> Option<PlanObject<'a>> {
+        let (boundary, derived) = self.resources()?;
+        let (object, surface) = (self.drawn(), planned.surface.as_ref());
+        let bounds = self.bounds(derived, surface.map(Arc::as_ref));
+        let texels = 2.0 / f64::from(derived.facts.rows);
+        let away = largest_width(&object.offset).max(0.0) + texels;
         Some(PlanObject {
-            object: self.drawn(),
+            object,
             number: planned.number,
             first_instance: self.instances.start,
             variant: derived.variant,
@@ -269,8 +305,8 @@ impl Entry {
             surface,
             takes_patches: derived.takes_patches && surface.is_some(),
             levelled: planned.levelled.as_ref(),
-            shape: shape_of(self.drawn(), block.bounds.map(f64::from)),
-            outline: Some((derived.solid.outline.as_ref(), away)),
+            shape: shape_of(object, bounds.map(f64::from)),
+            outline: Some((boundary.solid.outline.as_ref(), away)),
         })
     }
 }

@@ -46,7 +46,7 @@ impl Renderer {
         let objects = plan.objects.iter().zip(&plan.frame.paths);
         let cost = |(object, path): (&PlannedObject, &DrawPath)| {
             let entry = self.content.objects.at(object.number)?;
-            Some(entry.cost(object, *path, &plan.view))
+            entry.cost(object, *path, &plan.view)
         };
         objects.filter_map(cost).collect()
     }
@@ -84,30 +84,29 @@ impl Renderer {
 }
 
 impl Entry {
-    fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> ObjectCost {
-        let derived = self.derived.as_ref();
-        let follows = derived.is_some_and(|p| p.solver.follows_tolerance());
+    fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> Option<ObjectCost> {
+        let (boundary, derived) = self.resources()?;
+        let follows = derived.solver.follows_tolerance();
         let fitted = object.surface.as_ref().filter(|_| follows);
         let copies = object.levelled.as_ref().filter(|c| !c.coarser.is_empty());
         let of_coarser = copies.map_or(0.0, |copies| copies.levels.error);
         let error = fitted.map(|_| self.error_pixels(object.level, view).max(of_coarser));
-        let tables = object.surfaces().flat_map(|surface| {
-            let stored = |part| surface.slot(part).map(|_| surface.vectors(part).len());
-            let parts = [Part::Tables, Part::Frusta, Part::Patches];
-            parts
-                .into_iter()
-                .filter_map(move |part| Some(16 * stored(part)? as u64))
+        let parts = [Part::Tables, Part::Frusta, Part::Patches];
+        let stored = object.surfaces().flat_map(|surface| {
+            let stored = move |part: &Part| surface.slot(*part).is_some();
+            let stored = parts.into_iter().filter(stored);
+            stored.map(move |part| 16 * surface.vectors(part).len() as u64)
         });
-        let map = derived.and_then(|p| Some(p.map.as_ref()?.texture.bytes()));
-        let arc = derived.and_then(|p| Some(p.arc.as_ref()?.texture.bytes()));
-        ObjectCost {
+        let map = boundary.map.as_ref().map(|map| map.texture.bytes());
+        let arc = derived.arc.as_ref().map(|arc| arc.texture.bytes());
+        Some(ObjectCost {
             path,
             level: fitted.map(|_| u32::from(object.level)),
             error_pixels: error.filter(|e| e.is_finite()),
             patches: fitted.map_or(0, |surface| surface.patches()),
-            table_bytes: tables.sum(),
+            table_bytes: stored.sum(),
             map_bytes: map.unwrap_or(0) + arc.unwrap_or(0),
-            instance_bytes: INSTANCE_BYTES * u64::from(self.instances.end - self.instances.start),
-        }
+            instance_bytes: INSTANCE_BYTES * self.instances.len() as u64,
+        })
     }
 }

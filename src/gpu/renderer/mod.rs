@@ -14,11 +14,11 @@ mod slot;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::Content;
+use crate::gpu::content::refresh::distinct;
 use crate::gpu::device::Shared;
 use crate::gpu::open::Device;
 use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::vk::output::ComputeTarget;
-use crate::gpu::vk::output::Output;
+use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::gpu::vk::pipelines::Owner;
 use crate::gpu::vk::shading::HostShading;
 use crate::plan::DrawPath;
@@ -47,8 +47,6 @@ use std::sync::Arc;
 pub struct Renderer {
     pub(super) content: Content,
     pub(super) slots: Vec<FrameSlot>,
-    /// The memory that shaders write to, in compute or for all planes, and how often it was set.
-    pub(super) target: Option<(ComputeTarget, u64)>,
     /// The owner of its pipelines, with the host's shading.
     pub(super) owner: Owner,
     /// True if `prepare` compiles nothing.
@@ -129,7 +127,6 @@ impl Renderer {
             slots: (0..slots)
                 .map(|_| FrameSlot::new(&device))
                 .collect::<Result<_>>()?,
-            target: None,
             hides: false,
             owner,
             content,
@@ -180,21 +177,14 @@ impl Renderer {
     /// displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
-        let mut seen = Vec::new();
-        let mut shapes = 0;
-        for derived in (self.content.objects.ordered()).filter_map(|(_, e)| e.derived.as_ref()) {
-            let images = [
-                derived.map.as_ref().map(|m| &m.texture),
-                derived.arc.as_ref().map(|a| &a.texture),
-            ];
-            for image in images.into_iter().flatten() {
-                if !seen.contains(&Arc::as_ptr(image)) {
-                    seen.push(Arc::as_ptr(image));
-                    shapes += image.bytes();
-                }
-            }
+        let all = self.content.objects.ordered();
+        let mut images = Vec::new();
+        for (boundary, derived) in all.filter_map(|(_, entry)| entry.resources()) {
+            images.extend(boundary.map.as_ref().map(|map| map.texture.clone()));
+            images.extend(derived.arc.as_ref().map(|arc| arc.texture.clone()));
         }
-        [shapes, self.content.textures.bytes()]
+        let shapes = distinct(&mut images).iter().map(|image| image.bytes());
+        [shapes.sum(), self.content.textures.bytes()]
     }
 
     /// With `true`, [`Renderer::prepare`] compiles no pipeline. Whatever needs one that is not
@@ -232,10 +222,9 @@ impl Renderer {
     /// * they live until another target is set and the frames that were recorded before are done.
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) -> Result<()> {
         self.content.output.check_target(Some(&target))?;
-        let count = self.target.as_ref().map_or(0, |t| t.1) + 1;
-        self.content.target_has_depths = target.depths;
-        self.target = Some((target, count));
+        self.content.target = Some(target);
         self.content.version += 1;
+        self.slots.iter_mut().for_each(|slot| slot.named = None);
         Ok(())
     }
 }

@@ -17,9 +17,10 @@ impl Renderer {
         object.check()?;
         self.content.version += 1;
         let id = self.content.objects.add(object, self.content.version)?;
-        self.content.changed.push(id.number);
+        let values = self.content.latest(id)?.clone();
+        self.content.wanted.insert(id.number(), values);
         if self.content.output.planes().has_motion() {
-            self.content.moved.push(id.number);
+            self.content.moved.insert(id.number());
         }
         Ok(id)
     }
@@ -31,7 +32,8 @@ impl Renderer {
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.content.entry(id)?;
         self.content.objects.remove(id);
-        self.content.moved.retain(|number| *number != id.number);
+        self.content.wanted.remove(&id.number());
+        self.content.moved.remove(&id.number());
         self.content.version += 1;
         Ok(())
     }
@@ -41,7 +43,7 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
-        Ok(self.content.entry(id)?.latest())
+        Ok(&self.content.latest(id)?.object)
     }
 
     /// Sets all values of an object. Equal values cost nothing.
@@ -51,7 +53,7 @@ impl Renderer {
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
         object.check()?;
-        let latest = self.content.entry(id)?.latest();
+        let latest = self.object(id)?;
         if latest.same_look(&object) {
             if latest.instances != object.instances {
                 self.set_instances(id, object.instances)?;
@@ -59,8 +61,7 @@ impl Renderer {
             return self.set_placement(id, object.placement);
         }
         self.content.resize(id, object.placements().len())?;
-        self.content.change(id)?.wanted = Some(object);
-        self.content.changed.push(id.number);
+        *self.content.reshape(id)? = object;
         Ok(())
     }
 
@@ -114,10 +115,7 @@ impl Renderer {
     }
 
     fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {
-        let entry = self.content.change(id)?;
-        let images = &entry.images;
-        set(entry.wanted_images.get_or_insert_with(|| images.clone()));
-        self.content.changed.push(id.number);
+        set(&mut self.content.want(id)?.images);
         Ok(())
     }
 
@@ -127,13 +125,9 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
-        if self.content.entry(id)?.latest().offset == offset {
-            return Ok(());
+        if self.object(id)?.offset != offset {
+            self.content.reshape(id)?.offset = offset;
         }
-        let entry = self.content.change(id)?;
-        let (wanted, object) = (&mut entry.wanted, &entry.object);
-        wanted.get_or_insert_with(|| object.clone()).offset = offset;
-        self.content.changed.push(id.number);
         Ok(())
     }
 
@@ -143,18 +137,12 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
-        if self.content.entry(id)?.latest().placement == placement {
+        if self.object(id)?.placement == placement {
             return Ok(());
         }
-        let entry = self.content.change(id)?;
-        entry.object.placement = placement;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.placement = placement;
-        }
-        if let Some(grown) = &mut entry.grown {
-            grown.object.placement = grown.growth.placement(&placement);
-        }
-        Ok(())
+        self.content.place(id, |object, growth| {
+            object.placement = growth.map_or(placement, |g| g.placement(&placement));
+        })
     }
 
     /// Sets the copies of an object. An empty list gives one copy, at the object's placement.
@@ -165,16 +153,12 @@ impl Renderer {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
         self.content.resize(id, instances.len().max(1))?;
-        let entry = self.content.change(id)?;
-        if let Some(wanted) = &mut entry.wanted {
-            wanted.instances.clone_from(&instances);
-        }
-        if let Some(grown) = &mut entry.grown {
-            let all = instances.iter().map(|p| grown.growth.placement(p));
-            grown.object.instances = all.collect();
-        }
-        entry.object.instances = instances;
-        Ok(())
+        self.content.place(id, |object, growth| {
+            object.instances = match growth {
+                Some(growth) => instances.iter().map(|p| growth.placement(p)).collect(),
+                None => instances.clone(),
+            };
+        })
     }
 
     /// Ends a frame of all views: the next frame's motion is that from the present values. Call it
@@ -183,7 +167,14 @@ impl Renderer {
     /// number of copies has no motion of its own in that frame. Without this call no object moves.
     /// Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
     pub fn end_frame(&mut self) {
-        self.content.end_frame();
+        let content = &mut self.content;
+        content.version += u64::from(!content.moved.is_empty());
+        for number in std::mem::take(&mut content.moved) {
+            if let Some(entry) = content.objects.at_mut(number) {
+                entry.last = None;
+                entry.version = content.version;
+            }
+        }
     }
 
     /// Sets lights and shadows for all objects.
@@ -200,7 +191,7 @@ impl Renderer {
         check_lights(lighting)?;
         let codes = |l: &Lighting| (l.lights.len(), l.shadow);
         if codes(lighting) != codes(&self.content.lighting) {
-            self.content.changed.extend(self.content.objects.numbers());
+            self.content.objects.add_drawn(&mut self.content.wanted);
             self.content.version += 1;
         }
         if codes(lighting) == codes(&self.content.lit) {

@@ -3,15 +3,14 @@
 //! objects anew.
 
 use super::Renderer;
-use super::slot::{BoundPlan, BoundStep};
+use super::slot::{BoundPlan, BoundStep, SlotBuffer, Written};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{add_casters, frame_block, instance_block};
 use crate::gpu::resources::motion::last_block;
 use crate::plan::View;
 use crate::settings::Planes;
-use crate::shader::Kind;
-use crate::shader::OBJECT_STRIDE;
+use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
 use crate::solid::table_slot::{Part, Slot};
 use ash::vk;
 use std::borrow::Cow;
@@ -23,9 +22,9 @@ use std::sync::Arc;
 #[derive(Debug, PartialEq, Eq)]
 #[must_use]
 pub struct PreparedFrame {
-    pub(in crate::gpu) renderer: u32,
-    pub(in crate::gpu) slot: usize,
-    pub(in crate::gpu) serial: u64,
+    pub(super) renderer: u32,
+    pub(super) slot: usize,
+    pub(super) serial: u64,
     reads_depths: bool,
     statistics: FrameStatistics,
 }
@@ -100,32 +99,28 @@ impl Renderer {
         self.check(slot, view)?;
         let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
         let plan = self.content.plan(view, known)?;
-        self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
-        let anew = {
-            let bound = self.slots[slot].bound.as_ref();
-            bound.is_none_or(|bound| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0)
-        };
-        if anew {
-            self.slots[slot].bound = None;
+        let to = &mut self.slots[slot];
+        to.staging = self.content.uploads.record(&self.device, cmd);
+        let stale = |bound: &BoundPlan| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0;
+        if to.bound.as_ref().is_none_or(stale) {
+            to.bound = None;
             let bound = self.bind(&plan)?;
-            self.write(slot, view, &plan)?;
+            self.write(slot, &plan)?;
             let to = &mut self.slots[slot];
-            let target = self.target.as_ref().map(|(t, n)| (t, *n));
-            to.name(&bound.buffers.tables, target);
+            to.name(&bound.buffers.tables, self.content.target.as_ref());
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
-        let last_record = self.content.objects.instances();
-        let mut block = frame_block(view, &self.content.lighting, last_record);
+        let mut block = frame_block(view, &self.content.lighting, plan.instances);
         if let Some(hierarchy) = &to.hierarchy {
-            let maps = self.content.shadow_maps.maps.len();
+            let maps = self.content.common.shadow_maps.maps.len();
             add_casters(&mut block, hierarchy, view.eye, maps);
         }
-        to.write_frame(&block)?;
+        to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
         // SAFETY: as the caller promised.
         unsafe { self.record_lists(cmd, slot)? };
-        let to = &mut self.slots[slot];
+        let to = &self.slots[slot];
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
             slot,
@@ -136,28 +131,21 @@ impl Renderer {
     }
 
     fn check(&self, slot: usize, view: &View) -> Result<()> {
-        let usage = |message: String| Err(Error::new(ErrorKind::Usage, message));
-        if slot >= self.slots.len() {
-            return usage(format!("slot {slot}; there are {}", self.slots.len()));
-        }
-        if view.order != self.content.output.depth_order() {
-            return usage("the view's depth order is not the output's; give both the same".into());
-        }
-        if view.parallel != self.content.is_parallel() {
-            return usage(
-                "parallel views go with an output of parallel depths, and no others".into(),
-            );
-        }
-        let views = self.content.output.views();
-        if view.layer >= views {
-            return usage(format!(
-                "view {} of a pass with {views}; give an index below that",
-                view.layer
-            ));
-        }
-        self.content
-            .output
-            .check_target(self.target.as_ref().map(|t| &t.0))
+        let output = &self.content.output;
+        let (slots, views) = (self.slots.len(), output.views());
+        let message = if slot >= slots {
+            format!("slot {slot}; there are {slots}")
+        } else if view.order != output.depth_order() {
+            "the view's depth order is not the output's; give both the same".into()
+        } else if view.parallel != self.content.is_parallel() {
+            "parallel views go with an output of parallel depths, and no others".into()
+        } else if view.layer >= views {
+            let layer = view.layer;
+            format!("view {layer} of a pass with {views}; give an index below that")
+        } else {
+            return output.check_target(self.content.target.as_ref());
+        };
+        Err(Error::new(ErrorKind::Usage, message))
     }
 
     /// Stores the tables of a plan, and finds the bindings of its steps.
@@ -171,11 +159,12 @@ impl Renderer {
         let output = &self.content.output;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
+        let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
         let mut steps = Vec::with_capacity(frame.steps.len());
-        for step in &frame.steps {
+        for (n, step) in frame.steps.iter().chain(listed).enumerate() {
             let object = &plan.objects[step.object as usize];
             let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
-            let derived = entry.derived.as_ref().ok_or_else(gone)?;
+            let (_, derived) = entry.resources().ok_or_else(gone)?;
             let part = match step.kind {
                 Kind::TileLists | Kind::TilePatches => Part::Patches,
                 _ => Part::Tables,
@@ -193,8 +182,10 @@ impl Renderer {
                     slot.map_or(0, Slot::begin)
                 }
             };
+            // What draws crowds needs their lists.
+            let hides = self.hides && n < frame.steps.len();
             steps.push(BoundStep {
-                pipeline: match self.hides {
+                pipeline: match hides {
                     true => pipelines.known(variant, step.kind, output, &self.owner)?,
                     false => Some(pipelines.get(variant, step.kind, output, &self.owner)?),
                 },
@@ -202,37 +193,42 @@ impl Renderer {
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
         }
-        let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
-        let crowd_pipelines = listed
-            .map(|step| pipelines.get(step.variant, step.kind, output, &self.owner))
-            .collect::<Result<_>>()?;
         Ok(BoundPlan {
             plan: plan.clone(),
             steps,
-            crowd_pipelines,
             buffers,
         })
     }
 
     /// Writes blocks of a slot that are older than the renderer, or of another view.
-    fn write(&mut self, slot: usize, view: &View, plan: &ViewPlan) -> Result<()> {
-        let shades = !matches!(self.content.output.planes(), Planes::Depth { .. });
-        let shadowed = shades && self.content.casts();
+    fn write(&mut self, slot: usize, plan: &ViewPlan) -> Result<()> {
+        let planes = self.content.output.planes();
+        let (view, motion) = (&plan.view, planes.has_motion());
+        let shadowed = !matches!(planes, Planes::Depth { .. }) && self.content.casts();
         let hierarchy = shadowed.then(|| self.content.hierarchy(plan));
         let to = &mut self.slots[slot];
-        let motion = self.content.output.planes().has_motion();
-        let instances = self.content.objects.instances();
-        to.fit(
-            plan.blocks as usize,
-            u64::from(instances) * if motion { 2 } else { 1 },
-        )?;
-        if to.last_record != instances {
-            (to.last_record, to.written) = (instances, None);
-        }
+        let records = u64::from(plan.instances) * if motion { 2 } else { 1 };
+        let bytes = u64::from(plan.blocks) * u64::from(OBJECT_STRIDE);
+        let grown = to.fit(SlotBuffer::Objects, bytes)?
+            | to.fit(
+                SlotBuffer::Instances,
+                records * size_of::<InstanceBlock>() as u64,
+            )?;
         to.write_plan(&plan.frame)?;
+        let members = plan.frame.crowds.iter().flat_map(|crowds| &crowds.members);
+        let now = Written {
+            view: *view,
+            version: plan.version,
+            instances: plan.instances,
+            crowds: members.map(|&n| plan.objects[n as usize].number).collect(),
+        };
+        let before = to.written.take();
         // Instance blocks depend on the view.
-        let known = to.written.take().filter(|(before, _)| before == view);
-        let known = known.map_or(0, |(_, version)| version);
+        let same = |b: &&Written| !grown && (b.view, b.instances) == (now.view, now.instances);
+        let known = before
+            .as_ref()
+            .filter(same)
+            .map_or(0, |before| before.version);
         let parts = &plan.frame.parts;
         for ((object, copies), parts) in plan.objects.iter().zip(&plan.frame.copies).zip(parts) {
             let number = object.number;
@@ -245,9 +241,9 @@ impl Renderer {
             let all = iter::once((number, object.surface.as_ref()));
             let window = object.window(parts).start;
             for (at, surface) in all.chain(coarser.into_iter().flatten()) {
-                let surface = surface.map(Arc::as_ref);
-                if let Some(block) = entry.block(surface, window, &self.content.settings) {
-                    to.write_object(at, &block)?;
+                if let Some(block) = entry.block(surface.map(Arc::as_ref), window) {
+                    let at = at as usize * OBJECT_STRIDE as usize;
+                    to.write(SlotBuffer::Objects, at, &block)?;
                 }
             }
             let shown: Cow<[u32]> = match copies {
@@ -269,20 +265,26 @@ impl Renderer {
             })?;
             if motion {
                 let last = |copy| last_block(entry, copy as usize, view);
-                to.write_instances(instances + first, &shown, last)?;
+                to.write_instances(plan.instances + first, &shown, last)?;
             }
         }
         if let Some(crowds) = &plan.frame.crowds {
-            let numbers = || (crowds.members.iter()).map(|&n| plan.objects[n as usize].number);
-            let entries = || numbers().filter_map(|number| self.content.objects.at(number));
-            let versions = numbers().zip(entries().map(|entry| entry.version));
-            let placements = entries().flat_map(|entry| entry.drawn().placements());
-            to.write_crowds(crowds, versions.collect(), placements)?;
+            let entries = now
+                .crowds
+                .iter()
+                .filter_map(|n| self.content.objects.at(*n));
+            let entries: Vec<_> = entries.collect();
+            let placed = before.is_some_and(|before| {
+                let known = entries.iter().all(|entry| entry.version <= before.version);
+                known && before.crowds == now.crowds
+            });
+            let placements = entries.iter().flat_map(|entry| entry.drawn().placements());
+            to.write_crowds(crowds, (!placed).then_some(placements))?;
         }
+        to.written = Some(now);
         if let Some(hierarchy) = hierarchy {
             to.write_casters(&hierarchy)?;
         }
-        to.written = Some((*view, plan.version));
         Ok(())
     }
 }

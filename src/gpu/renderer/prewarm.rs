@@ -4,6 +4,7 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
+use crate::gpu::content::entry::Entry;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
@@ -11,9 +12,7 @@ use crate::gpu::vk::output::Output;
 use crate::gpu::vk::pipelines::Owner;
 use crate::plan::levels::LevelledCopies;
 use crate::plan::{PlanObject, variants};
-use crate::settings::Solver;
-use crate::shader::Pushed;
-use crate::shader::{Kind, Variant};
+use crate::shader::{Kind, Pushed, Variant};
 use ash::vk;
 use std::sync::Arc;
 
@@ -62,13 +61,9 @@ impl Renderer {
         let view = self.content.plan.as_ref().map(|p| p.view);
         self.content.refresh()?;
         self.content.with_surfaces(view.as_ref())?;
+        let reachable = self.content.reachable();
         Ok(Prewarm {
-            wanted: self
-                .content
-                .reachable()
-                .into_iter()
-                .map(|(v, k, _)| (v, k))
-                .collect(),
+            wanted: reachable.into_iter().map(|(key, _)| key).collect(),
             output: self.content.output.clone(),
             owner: self.owner.clone(),
             device: self.device.clone(),
@@ -96,21 +91,19 @@ impl Renderer {
         let (slot, _) = self.frame(frame)?;
         let pipelines = self.device.pipelines()?;
         let raw = &self.device.raw;
-        let compute = self.content.is_compute();
+        let (compute, point) = match self.content.is_compute() {
+            true => (true, vk::PipelineBindPoint::COMPUTE),
+            false => (false, vk::PipelineBindPoint::GRAPHICS),
+        };
         if !compute {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for (variant, kind, textures) in self.content.reachable() {
+        for ((variant, kind), textures) in self.content.reachable() {
             if !compute && kind.makes_lists() {
                 continue;
             }
             let pipeline = pipelines.get(variant, kind, &self.content.output, &self.owner)?;
-            let point = if compute {
-                vk::PipelineBindPoint::COMPUTE
-            } else {
-                vk::PipelineBindPoint::GRAPHICS
-            };
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
                 self.push(cmd, &Pushed::default());
@@ -130,56 +123,52 @@ impl Renderer {
 
 impl Content {
     /// Pipelines, each with a set of textures that may be bound with it.
-    fn reachable(&self) -> Vec<(Variant, Kind, vk::DescriptorSet)> {
-        let with = self.conditions();
-        let solver = self.settings.solver;
-        let derived: Vec<_> = (self.objects.ordered())
-            .filter_map(|(number, entry)| {
-                let derived = entry.derived.as_ref()?;
-                let planned = PlannedObject {
-                    number,
-                    level: 0,
-                    surface: derived.levels.first().map(|l| l.1.clone()),
-                    levelled: (self.levels_copies(entry, derived)).then(LevelledCopies::default),
-                };
-                Some((entry, derived.textures.set, planned))
-            })
-            .collect();
+    fn reachable(&self) -> Vec<((Variant, Kind), vk::DescriptorSet)> {
+        let (with, solver) = (self.conditions(), self.settings.solver);
+        let planned = self.objects.ordered().filter_map(|(number, entry)| {
+            let (boundary, derived) = entry.resources()?;
+            let planned = PlannedObject {
+                number,
+                level: 0,
+                surface: boundary.levels.first().map(|l| l.1.clone()),
+                levelled: (self.levels_copies(entry, derived)).then(LevelledCopies::default),
+            };
+            Some((entry, derived.textures.set, planned))
+        });
+        let planned: Vec<_> = planned.collect();
+        let drawn_by =
+            |entry: &Entry, solver| self.variant(solver, entry.drawn(), &entry.values.images);
         // The list includes objects that fall back, because their contour may close again.
-        let own: Vec<PlanObject> = derived
-            .iter()
-            .filter_map(|(entry, _, planned)| {
-                Some(PlanObject {
-                    variant: self.variant(solver, entry.drawn(), entry.latest_images()),
-                    ..entry.plan_object(planned, &self.settings)?
-                })
+        let own = planned.iter().filter_map(|(entry, _, planned)| {
+            Some(PlanObject {
+                variant: drawn_by(entry, solver),
+                ..entry.plan_object(planned)?
             })
-            .collect();
-        let falls_back = matches!(solver, Solver::Quadric | Solver::Exact);
-        let mut all: Vec<(Variant, Kind, vk::DescriptorSet)> = Vec::new();
-        for ((entry, set, _), (object, variant)) in
-            derived.iter().zip(own.iter().zip(variants(&own, &with)))
-        {
-            let fallback = falls_back.then(|| PlanObject {
-                variant: self.variant(FALLBACK, entry.drawn(), entry.latest_images()),
-                surface: None,
-                takes_patches: false,
-                ..*object
-            });
+        });
+        let own: Vec<_> = own.collect();
+        let mut all: Vec<((Variant, Kind), vk::DescriptorSet)> = Vec::new();
+        let objects = own.iter().zip(variants(&own, &with));
+        for ((entry, set, _), (object, variant)) in planned.iter().zip(objects) {
             let mut reachable = with.reachable(object, variant);
-            for object in fallback.iter() {
-                let variant = Variant {
+            if solver.follows_tolerance() {
+                let fallback = Variant {
                     one_object: variant.one_object,
                     one_instance: variant.one_instance,
-                    ..object.variant
+                    ..drawn_by(entry, FALLBACK)
+                };
+                let object = PlanObject {
+                    variant: fallback,
+                    surface: None,
+                    takes_patches: false,
+                    ..*object
                 };
                 // The fallback has one form only, the general one.
-                let general = |(v, _): &(Variant, Kind)| v.beveled != 0;
-                reachable.extend(with.reachable(object, variant).into_iter().filter(general));
+                let general = with.reachable(&object, fallback).into_iter();
+                reachable.extend(general.filter(|(v, _)| v.beveled != 0));
             }
-            for (variant, kind) in reachable {
-                if !all.iter().any(|(v, k, _)| (*v, *k) == (variant, kind)) {
-                    all.push((variant, kind, *set));
+            for key in reachable {
+                if !all.iter().any(|(known, _)| *known == key) {
+                    all.push((key, *set));
                 }
             }
         }

@@ -3,12 +3,13 @@
 
 use super::Renderer;
 use super::prepare::PreparedFrame;
-use super::slot::{BoundPlan, BoundStep, FrameSlot};
+use super::slot::{BoundPlan, BoundStep, FrameSlot, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::usage::Usage;
 use crate::plan::{Call, IndexedDraw, Step};
 use crate::shader::Pushed;
 use ash::vk;
+use std::ops::Range;
 
 /// Bytes of one indirect draw.
 const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
@@ -31,39 +32,15 @@ impl Renderer {
     ///   before that.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer, frame: &PreparedFrame) -> Result<()> {
         let (slot, bound) = self.frame(frame)?;
-        let raw = &self.device.raw;
-        let point = vk::PipelineBindPoint::GRAPHICS;
-        let large_points = self.device.chosen.constants().large_points;
-        let vertices = if large_points { 1 } else { 6 };
-        // SAFETY: `cmd` is recording within a render pass; all bound objects live as long as the
-        // caller promised.
+        // SAFETY: `cmd` is recording within a render pass; the buffer lives as long as the caller
+        // promised.
         unsafe {
             let indices = bound.buffers.indices.raw;
-            raw.cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
+            (self.device.raw).cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
         }
-        for (n, step) in bound.plan.frame.steps.iter().enumerate() {
-            self.with_step(cmd, point, slot, bound, n, || match &step.call {
-                // SAFETY: as the caller promised.
-                Call::Draws(range) => unsafe {
-                    self.draw(cmd, slot, bound, range.start, range.end);
-                },
-                Call::Quads(range) => {
-                    let count = vertices * (range.end - range.start);
-                    // SAFETY: as the caller promised.
-                    unsafe { raw.cmd_draw(cmd, count, 1, vertices * range.start, 0) };
-                }
-                Call::Tiles(range) => {
-                    let count = 6 * (range.end - range.start);
-                    // SAFETY: as the caller promised.
-                    unsafe { raw.cmd_draw(cmd, count, 1, 6 * range.start, 0) };
-                }
-                Call::IndirectTiles(word) => {
-                    let at = 4 * u64::from(*word);
-                    // SAFETY: as the caller promised; the draw is within the buffer.
-                    unsafe { raw.cmd_draw_indirect(cmd, slot.bins.raw, at, 1, 0) };
-                }
-                Call::Dispatch(..) | Call::Indirect(..) | Call::Groups(..) => {}
-            })?;
+        for (step, own) in bound.plan.frame.steps.iter().zip(&bound.steps) {
+            // SAFETY: as the caller promised.
+            unsafe { self.step(cmd, slot, bound, step, own)? };
         }
         Ok(())
     }
@@ -89,30 +66,26 @@ impl Renderer {
         frame: &PreparedFrame,
     ) -> Result<()> {
         let (slot, bound) = self.frame(frame)?;
-        let raw = &self.device.raw;
         let plan = &bound.plan.frame;
-        let barrier = |from, to| slot.bins.barrier(cmd, from, to);
+        let bins = slot.buffer(SlotBuffer::Bins);
         if plan.bin_head_words > 0 {
             let bytes = 4 * u64::from(plan.bin_head_words);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
-            unsafe { raw.cmd_fill_buffer(cmd, slot.bins.raw, 0, bytes, 0) };
-            barrier(Usage::TransferWrite, Usage::ComputeWrite);
+            unsafe { self.device.raw.cmd_fill_buffer(cmd, bins.raw, 0, bytes, 0) };
+            bins.barrier(cmd, Usage::TransferWrite, Usage::ComputeWrite);
         }
         let mut phase = plan.steps.first().map_or(0, |step| step.phase);
-        for (n, step) in plan.steps.iter().enumerate() {
+        for (step, own) in plan.steps.iter().zip(&bound.steps) {
             if step.phase != phase {
                 match phase {
-                    0 => barrier(Usage::ComputeWrite, Usage::TileRead),
+                    0 => bins.barrier(cmd, Usage::ComputeWrite, Usage::TileRead),
                     // The next phase reads the depths that were written before.
                     _ => self.wait_for_writes(cmd),
                 }
                 phase = step.phase;
             }
-            self.with_step(cmd, vk::PipelineBindPoint::COMPUTE, slot, bound, n, || {
-                // SAFETY: `cmd` is recording, outside a render pass; all bound objects live as long
-                // as the caller promised.
-                unsafe { self.dispatch(cmd, slot, step) };
-            })?;
+            // SAFETY: as the caller promised.
+            unsafe { self.step(cmd, slot, bound, step, own)? };
         }
         Ok(())
     }
@@ -130,23 +103,17 @@ impl Renderer {
             return Ok(());
         };
         let [first, words] = crowds.zeroed.map(|words| 4 * u64::from(words));
-        let raw = &self.device.raw;
+        let bins = slot.buffer(SlotBuffer::Bins).raw;
         // The slot may have been prepared in the same commands before.
         self.wait_for_lists(cmd);
         // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
-        unsafe { raw.cmd_fill_buffer(cmd, slot.bins.raw, first, words, 0) };
+        unsafe { self.device.raw.cmd_fill_buffer(cmd, bins, first, words, 0) };
         self.wait_for_lists(cmd);
-        let textures = bound.steps.last().map(|step| &step.textures);
-        let textures = textures.map_or(vk::DescriptorSet::null(), |t| t.set);
-        for (step, pipeline) in crowds.steps.iter().zip(&bound.crowd_pipelines) {
-            self.device.labelled(cmd, step.kind.label(), || {
-                let point = vk::PipelineBindPoint::COMPUTE;
-                self.bind_sets(cmd, point, slot, *pipeline, textures, &[0; 2])?;
-                // SAFETY: as the caller promised.
-                unsafe { self.dispatch(cmd, slot, step) };
-                self.wait_for_lists(cmd);
-                Ok(())
-            })?;
+        let own = &bound.steps[bound.plan.frame.steps.len()..];
+        for (step, own) in crowds.steps.iter().zip(own) {
+            // SAFETY: as the caller promised.
+            unsafe { self.step(cmd, slot, bound, step, own)? };
+            self.wait_for_lists(cmd);
         }
         Ok(())
     }
@@ -155,36 +122,90 @@ impl Renderer {
     /// them.
     fn wait_for_lists(&self, cmd: vk::CommandBuffer) {
         use vk::{AccessFlags as A, PipelineStageFlags as S};
-        let barrier = vk::MemoryBarrier::default()
-            .src_access_mask(A::SHADER_WRITE | A::TRANSFER_WRITE)
-            .dst_access_mask(
-                A::SHADER_READ | A::SHADER_WRITE | A::TRANSFER_WRITE | A::INDIRECT_COMMAND_READ,
-            );
-        let stages = S::COMPUTE_SHADER
-            | S::TRANSFER
-            | S::DRAW_INDIRECT
-            | S::VERTEX_SHADER
-            | S::FRAGMENT_SHADER;
+        let from = A::SHADER_WRITE | A::TRANSFER_WRITE;
+        let to = from | A::SHADER_READ | A::INDIRECT_COMMAND_READ;
+        let draw = S::DRAW_INDIRECT | S::VERTEX_SHADER | S::FRAGMENT_SHADER;
+        self.wait(cmd, S::COMPUTE_SHADER | S::TRANSFER | draw, (from, to));
+    }
+
+    /// Records a barrier between two dispatches. The second dispatch reads, or writes again, the
+    /// results of the first.
+    pub(super) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
+        let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
+        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
+        self.wait(cmd, stage, (write, read | write));
+    }
+
+    fn wait(
+        &self,
+        cmd: vk::CommandBuffer,
+        stages: vk::PipelineStageFlags,
+        (from, to): (vk::AccessFlags, vk::AccessFlags),
+    ) {
+        let barrier = vk::MemoryBarrier::default();
+        let barrier = [barrier.src_access_mask(from).dst_access_mask(to)];
         let none = vk::DependencyFlags::empty();
         let raw = &self.device.raw;
         // SAFETY: `cmd` is recording, outside a render pass.
-        unsafe { raw.cmd_pipeline_barrier(cmd, stages, stages, none, &[barrier], &[], &[]) };
+        unsafe { raw.cmd_pipeline_barrier(cmd, stages, stages, none, &barrier, &[], &[]) };
     }
 
     /// The slot of a frame, and its bindings.
-    pub(in crate::gpu) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &BoundPlan)> {
-        let slot = self.slots.get(frame.slot);
-        let own = |slot: &&FrameSlot| {
-            frame.renderer == self.content.objects.renderer && slot.serial == frame.serial
+    pub(super) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &BoundPlan)> {
+        let slot = self.slots.get(frame.slot).filter(|slot| {
+            (frame.renderer, frame.serial) == (self.content.objects.renderer, slot.serial)
+        });
+        let found = slot.and_then(|slot| Some((slot, slot.bound.as_ref()?)));
+        found.ok_or_else(|| {
+            let message = "the frame is another renderer's, or its slot was prepared again; record what prepare returned last";
+            Error::new(ErrorKind::Usage, message)
+        })
+    }
+
+    /// Records the command of a step.
+    ///
+    /// # Safety
+    /// As for [`Renderer::record`] or [`Renderer::record_compute`], whichever takes the call.
+    unsafe fn call(
+        &self,
+        cmd: vk::CommandBuffer,
+        slot: &FrameSlot,
+        bound: &BoundPlan,
+        call: &Call,
+    ) {
+        let raw = &self.device.raw;
+        let bins = slot.buffer(SlotBuffer::Bins).raw;
+        let corners = |per_record: u32, range: &Range<u32>| {
+            let [count, first] = [range.end - range.start, range.start].map(|n| per_record * n);
+            // SAFETY: as the caller promised.
+            unsafe { raw.cmd_draw(cmd, count, 1, first, 0) };
         };
-        slot.filter(own)
-            .and_then(|slot| Some((slot, slot.bound.as_ref()?)))
-            .ok_or_else(|| {
-                Error::new(
-                    ErrorKind::Usage,
-                    "the frame is another renderer's, or its slot was prepared again; record what prepare returned last",
-                )
-            })
+        // SAFETY: as the caller promised; draws and heads are within their buffers.
+        unsafe {
+            match call {
+                Call::Draws(range) => self.draw(cmd, slot, bound, range.clone()),
+                Call::Quads(range) => {
+                    let large_points = self.device.chosen.constants().large_points;
+                    corners(if large_points { 1 } else { 6 }, range);
+                }
+                Call::Tiles(range) => corners(6, range),
+                Call::IndirectTiles(word) => {
+                    raw.cmd_draw_indirect(cmd, bins, 4 * u64::from(*word), 1, 0);
+                }
+                Call::Dispatch(groups, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch(cmd, *groups, 1, 1);
+                }
+                Call::Indirect(head, pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch_indirect(cmd, bins, 4 * u64::from(*head));
+                }
+                Call::Groups([x, y, z], pushed) => {
+                    self.push(cmd, pushed);
+                    raw.cmd_dispatch(cmd, *x, *y, *z);
+                }
+            }
+        }
     }
 
     /// Records draws of a plan, many by one indirect command if the device supports that.
@@ -193,66 +214,28 @@ impl Renderer {
         cmd: vk::CommandBuffer,
         slot: &FrameSlot,
         bound: &BoundPlan,
-        first: u32,
-        end: u32,
+        range: Range<u32>,
     ) {
         let raw = &self.device.raw;
         let most = self.device.chosen.most_draws();
         if most == 0 {
-            let draws = &bound.plan.frame.draws[first as usize..end as usize];
+            let draws = &bound.plan.frame.draws[range.start as usize..range.end as usize];
             for &[indices, instances, first, _, instance] in draws {
                 // SAFETY: as the caller promised.
                 unsafe { raw.cmd_draw_indexed(cmd, indices, instances, first, 0, instance) };
             }
             return;
         }
-        for start in (first..end).step_by(most as usize) {
-            let count = most.min(end - start);
+        let draws = slot.buffer(SlotBuffer::Draws).raw;
+        for start in range.clone().step_by(most as usize) {
+            let count = most.min(range.end - start);
             let at = u64::from(start * DRAW_BYTES);
             // SAFETY: as the caller promised; the draws are within the buffer.
-            unsafe {
-                raw.cmd_draw_indexed_indirect(cmd, slot.draws.raw, at, count, DRAW_BYTES);
-            }
+            unsafe { raw.cmd_draw_indexed_indirect(cmd, draws, at, count, DRAW_BYTES) };
         }
     }
 
-    unsafe fn dispatch(&self, cmd: vk::CommandBuffer, slot: &FrameSlot, step: &Step) {
-        let raw = &self.device.raw;
-        // SAFETY: as the caller promised; heads are within the buffer.
-        unsafe {
-            match &step.call {
-                Call::Dispatch(groups, pushed) => {
-                    self.push(cmd, pushed);
-                    raw.cmd_dispatch(cmd, *groups, 1, 1);
-                }
-                Call::Indirect(head, pushed) => {
-                    self.push(cmd, pushed);
-                    raw.cmd_dispatch_indirect(cmd, slot.bins.raw, 4 * u64::from(*head));
-                }
-                Call::Groups([x, y, z], pushed) => {
-                    self.push(cmd, pushed);
-                    raw.cmd_dispatch(cmd, *x, *y, *z);
-                }
-                Call::Draws(_) | Call::Quads(_) | Call::Tiles(_) | Call::IndirectTiles(_) => {}
-            }
-        }
-    }
-
-    /// Records a barrier between two dispatches. The second dispatch reads, or writes again, the
-    /// results of the first.
-    pub(in crate::gpu) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
-        let access = vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE;
-        let barrier = vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-            .dst_access_mask(access);
-        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
-        let none = vk::DependencyFlags::empty();
-        let raw = &self.device.raw;
-        // SAFETY: `cmd` is recording, outside a render pass.
-        unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &[barrier], &[], &[]) };
-    }
-
-    pub(in crate::gpu) fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
+    pub(super) fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
         let stage = vk::ShaderStageFlags::COMPUTE;
         let bytes = bytemuck::bytes_of(pushed);
         let raw = &self.device.raw;
@@ -261,34 +244,39 @@ impl Renderer {
         unsafe { raw.cmd_push_constants(cmd, layout, stage, 0, bytes) };
     }
 
-    /// Binds the pipeline and the sets of a step and records its commands under a label. A step
+    /// Binds the pipeline and the sets of a step and records its command under a label. A step
     /// whose pipeline is not compiled is left out.
-    fn with_step(
+    ///
+    /// # Safety
+    /// As for [`Renderer::record`] or [`Renderer::record_compute`].
+    unsafe fn step(
         &self,
         cmd: vk::CommandBuffer,
-        point: vk::PipelineBindPoint,
         slot: &FrameSlot,
         bound: &BoundPlan,
-        step: usize,
-        commands: impl FnOnce(),
+        step: &Step,
+        own: &BoundStep,
     ) -> Result<()> {
-        let BoundStep {
-            pipeline: Some(pipeline),
-            textures,
-            offsets,
-        } = &bound.steps[step]
-        else {
+        let Some(pipeline) = own.pipeline else {
             return Ok(());
         };
-        let label = bound.plan.frame.steps[step].kind.label();
-        self.device.labelled(cmd, label, || {
-            self.bind_sets(cmd, point, slot, *pipeline, textures.set, offsets)?;
-            commands();
+        let point = match step.call {
+            Call::Draws(_) | Call::Quads(_) | Call::Tiles(_) | Call::IndirectTiles(_) => {
+                vk::PipelineBindPoint::GRAPHICS
+            }
+            Call::Dispatch(..) | Call::Indirect(..) | Call::Groups(..) => {
+                vk::PipelineBindPoint::COMPUTE
+            }
+        };
+        self.device.labelled(cmd, step.kind.label(), || {
+            self.bind_sets(cmd, point, slot, pipeline, own.textures.set, &own.offsets)?;
+            // SAFETY: as the caller promised.
+            unsafe { self.call(cmd, slot, bound, &step.call) };
             Ok(())
         })
     }
 
-    pub(in crate::gpu) fn bind_sets(
+    pub(super) fn bind_sets(
         &self,
         cmd: vk::CommandBuffer,
         point: vk::PipelineBindPoint,

@@ -22,48 +22,72 @@ use crate::shader::{
 use ash::vk;
 use std::sync::Arc;
 
+/// A buffer of a slot.
+#[derive(Clone, Copy)]
+pub(crate) enum SlotBuffer {
+    Frame,
+    Objects,
+    Instances,
+    Casters,
+    Tiles,
+    Bins,
+    Draws,
+    /// Placements of the copies of crowds.
+    Placements,
+    Crowds,
+}
+
+/// The use, the name and the least bytes of each [`SlotBuffer`], in order.
+const BUFFERS: [(Use, &str, usize); 9] = [
+    (Use::Uniform, "frame block", size_of::<FrameBlock>()),
+    (Use::Storage, "objects", OBJECT_STRIDE as usize),
+    (Use::Storage, "instances", 0),
+    (Use::Storage, "casters", size_of::<CasterNode>()),
+    (Use::Storage, "tiles", 0),
+    (Use::Bins, "bins of tiles", 0),
+    (Use::Draws, "draws", 0),
+    (Use::Storage, "placements of crowds", 0),
+    (Use::Storage, "crowds", 0),
+];
+
 /// The buffers and descriptor sets of one prepared frame.
 pub(crate) struct FrameSlot {
     pub frame_set: vk::DescriptorSet,
     pub target_set: vk::DescriptorSet,
-    frame: Buffer,
-    objects: Buffer,
-    instances: Buffer,
-    casters: Buffer,
-    tiles: Buffer,
-    pub bins: Buffer,
-    pub draws: Buffer,
-    /// Placements of the copies of crowds.
-    placements: Buffer,
-    crowds: Buffer,
-    /// The objects in `placements`, each with the version of its values.
-    placed: Vec<(u32, u64)>,
-    /// The plan and bindings to record; `None` before the slot is derived.
+    /// One per [`SlotBuffer`].
+    buffers: Vec<Buffer>,
+    /// The plan and bindings to record; `None` before the slot is prepared.
     pub bound: Option<BoundPlan>,
+    /// `None` if all must be written.
+    pub written: Option<Written>,
     /// Counts the slot's frames. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The view and the renderer's version that objects and instances were written for. `None` if
-    /// all must be written.
-    pub written: Option<(View, u64)>,
-    /// First of the records of the last frame's placements, when they were written.
-    pub last_record: u32,
-    /// The copies in `casters`.
+    /// The copies in [`SlotBuffer::Casters`].
     pub hierarchy: Option<Arc<Hierarchy>>,
     /// Copies that the frame's commands make.
     pub staging: Vec<Upload>,
-    /// The buffer of tables that the sets name, and how often the target was set.
-    named: Option<(vk::Buffer, u64)>,
+    /// The buffer of tables that the sets name; `None` if they must be written.
+    pub named: Option<Arc<Buffer>>,
     pool: vk::DescriptorPool,
     device: Arc<Shared>,
+}
+
+/// What the blocks of a slot were written for.
+pub(crate) struct Written {
+    pub view: View,
+    /// The renderer's version.
+    pub version: u64,
+    /// [`ViewPlan::instances`].
+    pub instances: u32,
+    /// The objects whose placements are in [`SlotBuffer::Placements`].
+    pub crowds: Vec<u32>,
 }
 
 /// A plan with all objects that its commands bind.
 pub(crate) struct BoundPlan {
     pub plan: Arc<ViewPlan>,
-    /// One per step.
+    /// One per step, then one per step that lists crowds.
     pub steps: Vec<BoundStep>,
-    /// Pipelines of the steps that list crowds.
-    pub crowd_pipelines: Vec<vk::Pipeline>,
     pub buffers: TableBuffers,
 }
 
@@ -87,71 +111,52 @@ pub(crate) struct BoundStep {
 
 impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
-        let buffer = |to, name, bytes| Buffer::for_use(device, to, name, bytes);
-        let mut slot = Self {
-            frame_set: vk::DescriptorSet::null(),
-            target_set: vk::DescriptorSet::null(),
-            frame: buffer(Use::Uniform, "frame block", size_of::<FrameBlock>() as u64)?,
-            objects: buffer(Use::Storage, "objects", u64::from(OBJECT_STRIDE))?,
-            instances: buffer(Use::Storage, "instances", 0)?,
-            casters: buffer(Use::Storage, "casters", size_of::<CasterNode>() as u64)?,
-            tiles: buffer(Use::Storage, "tiles", 0)?,
-            bins: buffer(Use::Bins, "bins of tiles", 0)?,
-            draws: buffer(Use::Draws, "draws", 0)?,
-            placements: buffer(Use::Storage, "placements of crowds", 0)?,
-            crowds: buffer(Use::Storage, "crowds", 0)?,
-            placed: Vec::new(),
-            bound: None,
-            serial: 0,
-            written: None,
-            last_record: 0,
-            hierarchy: None,
-            staging: Vec::new(),
-            named: None,
-            pool: vk::DescriptorPool::null(),
-            device: device.clone(),
-        };
+        let buffer = |&(to, name, bytes): &_| Buffer::for_use(device, to, name, bytes as u64);
+        let buffers = BUFFERS.iter().map(buffer).collect::<Result<_>>()?;
         let layouts = &device.pipelines()?.set_layouts;
         let sets = [FRAME_SET, TARGET_SET];
         let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
-        slot.pool = pool;
-        slot.frame_set = sets.first().copied().unwrap_or_default();
-        slot.target_set = sets.get(1).copied().unwrap_or_default();
-        Ok(slot)
+        Ok(Self {
+            frame_set: sets.first().copied().unwrap_or_default(),
+            target_set: sets.get(1).copied().unwrap_or_default(),
+            buffers,
+            bound: None,
+            written: None,
+            serial: 0,
+            hierarchy: None,
+            staging: Vec::new(),
+            named: None,
+            pool,
+            device: device.clone(),
+        })
     }
 
-    /// Makes room for this many objects and instances. The caller must ensure that no frame reads
-    /// the buffers.
-    pub fn fit(&mut self, objects: usize, instances: u64) -> Result<()> {
-        let objects = objects as u64 * u64::from(OBJECT_STRIDE);
-        let instances = instances * size_of::<InstanceBlock>() as u64;
-        for (buffer, bytes, name) in [
-            (&mut self.objects, objects, "objects"),
-            (&mut self.instances, instances, "instances"),
-        ] {
-            if buffer.bytes < bytes {
-                *buffer = roomy(&self.device, name, bytes)?;
-                self.written = None;
-                self.named = None;
-            }
+    pub fn buffer(&self, buffer: SlotBuffer) -> &Buffer {
+        &self.buffers[buffer as usize]
+    }
+
+    fn buffer_mut(&mut self, buffer: SlotBuffer) -> &mut Buffer {
+        &mut self.buffers[buffer as usize]
+    }
+
+    /// Makes room for this many bytes. Returns true if the buffer is another one, without contents.
+    /// The caller must ensure that no frame reads the buffer.
+    pub fn fit(&mut self, buffer: SlotBuffer, bytes: u64) -> Result<bool> {
+        if self.buffer(buffer).bytes >= bytes {
+            return Ok(false);
         }
-        Ok(())
+        // Half as much again to spare, because moving objects grow buffers in small steps.
+        let limit = u64::from(self.device.limits().max_storage_buffer_range);
+        let bytes = bytes.max((bytes + bytes / 2).min(limit));
+        let (to, name, _) = BUFFERS[buffer as usize];
+        *self.buffer_mut(buffer) = Buffer::for_use(&self.device, to, name, bytes)?;
+        self.named = None;
+        Ok(true)
     }
 
     /// Bytes of all buffers of the slot.
     pub fn bytes(&self) -> u64 {
-        let all = [
-            &self.frame,
-            &self.objects,
-            &self.instances,
-            &self.casters,
-            &self.tiles,
-            &self.bins,
-            &self.draws,
-            &self.placements,
-            &self.crowds,
-        ];
-        all.iter().map(|buffer| buffer.bytes).sum()
+        self.buffers.iter().map(|buffer| buffer.bytes).sum()
     }
 
     /// The number of commands and bytes of the slot's frame.
@@ -160,12 +165,9 @@ impl FrameSlot {
             return FrameStatistics::default();
         };
         let frame = &bound.plan.frame;
+        let paths = frame.paths.iter();
         let mut all = FrameStatistics {
-            objects: frame
-                .paths
-                .iter()
-                .filter(|p| **p != DrawPath::Nothing)
-                .count() as u32,
+            objects: paths.filter(|p| **p != DrawPath::Nothing).count() as u32,
             hidden: bound.hidden() as u32,
             slot_bytes: self.bytes(),
             ..FrameStatistics::default()
@@ -190,13 +192,14 @@ impl FrameSlot {
         all
     }
 
-    pub fn write_frame(&mut self, block: &FrameBlock) -> Result<()> {
-        write(&mut self.frame, 0, block)
-    }
-
-    pub fn write_object(&mut self, number: u32, block: &ObjectBlock) -> Result<()> {
-        let at = number as usize * OBJECT_STRIDE as usize;
-        write(&mut self.objects, at, block)
+    /// Writes a block `at` bytes into a buffer.
+    pub fn write<T: bytemuck::Pod>(
+        &mut self,
+        buffer: SlotBuffer,
+        at: usize,
+        block: &T,
+    ) -> Result<()> {
+        write(self.buffer_mut(buffer), at, block)
     }
 
     /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of the
@@ -208,8 +211,8 @@ impl FrameSlot {
         block: impl Fn(u32) -> InstanceBlock + Sync,
     ) -> Result<()> {
         let from = first as usize * size_of::<InstanceBlock>();
-        let (blocks, _) = self.instances.mapped()?[from..].as_chunks_mut();
-        fill(blocks, 0, copies, &block);
+        let instances = self.buffer_mut(SlotBuffer::Instances).mapped()?;
+        fill(instances[from..].as_chunks_mut().0, 0, copies, &block);
         Ok(())
     }
 
@@ -219,100 +222,78 @@ impl FrameSlot {
         if known.is_some_and(|known| Arc::ptr_eq(known, hierarchy)) {
             return Ok(());
         }
-        let bytes = size_of_val(hierarchy.nodes.as_slice()) as u64;
-        if self.casters.bytes < bytes {
-            self.casters = roomy(&self.device, "casters", bytes)?;
-            self.named = None;
-        }
+        let nodes = hierarchy.nodes.as_slice();
+        self.fit(SlotBuffer::Casters, size_of_val(nodes) as u64)?;
         self.hierarchy = Some(hierarchy.clone());
-        write_slice(&mut self.casters, &hierarchy.nodes)
+        write_slice(self.buffer_mut(SlotBuffer::Casters), nodes)
     }
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
         let crowds = plan.crowds.as_ref();
         let [tiles, bins] = crowds.map_or([0; 2], |c| [c.tile_words, c.bin_words]);
-        let words = 4 * u64::from(tiles.max(plan.words.len() as u32));
-        if self.tiles.bytes < words {
-            self.tiles = roomy(&self.device, "tiles", words)?;
-            self.named = None;
-        }
-        let bins_bytes = 4 * u64::from(bins.max(plan.bin_words));
-        if self.bins.bytes < bins_bytes {
-            let bytes = bins_bytes + bins_bytes / 2;
-            self.bins = Buffer::for_use(&self.device, Use::Bins, "bins of tiles", bytes)?;
-            self.named = None;
-        }
-        let draws = size_of_val(plan.draws.as_slice()) as u64;
-        if self.draws.bytes < draws {
-            let bytes = draws.next_power_of_two();
-            self.draws = Buffer::for_use(&self.device, Use::Draws, "draws", bytes)?;
-        }
-        write_slice(&mut self.tiles, &plan.words)?;
-        write_slice(&mut self.draws, &plan.draws)
+        let tiles = tiles.max(plan.words.len() as u32);
+        self.fit(SlotBuffer::Tiles, 4 * u64::from(tiles))?;
+        self.fit(SlotBuffer::Bins, 4 * u64::from(bins.max(plan.bin_words)))?;
+        self.fit(SlotBuffer::Draws, size_of_val(plan.draws.as_slice()) as u64)?;
+        write_slice(self.buffer_mut(SlotBuffer::Tiles), &plan.words)?;
+        write_slice(self.buffer_mut(SlotBuffer::Draws), &plan.draws)
     }
 
-    /// Writes the blocks of a plan's crowds, and the placements of their copies unless they are
-    /// those of `placed`: an object and the version of its values each.
+    /// Writes the blocks of a plan's crowds, and the placements of their copies if there are any.
     pub fn write_crowds<'a>(
         &mut self,
         crowds: &Crowds,
-        placed: Vec<(u32, u64)>,
-        placements: impl Iterator<Item = &'a Placement>,
+        placements: Option<impl Iterator<Item = &'a Placement>>,
     ) -> Result<()> {
-        let objects = size_of_val(crowds.objects.as_slice()) as u64;
-        let bytes = size_of::<CrowdBlock>() as u64 + objects;
-        if self.crowds.bytes < bytes {
-            self.crowds = roomy(&self.device, "crowds", bytes)?;
-            self.named = None;
-        }
-        write(&mut self.crowds, 0, &crowds.block)?;
-        let (_, rest) = self.crowds.mapped()?.split_at_mut(size_of::<CrowdBlock>());
-        rest[..objects as usize].copy_from_slice(bytemuck::cast_slice(&crowds.objects));
-        if self.placed == placed {
+        let objects: &[u8] = bytemuck::cast_slice(&crowds.objects);
+        self.fit(
+            SlotBuffer::Crowds,
+            (size_of::<CrowdBlock>() + objects.len()) as u64,
+        )?;
+        self.write(SlotBuffer::Crowds, 0, &crowds.block)?;
+        let to = self.buffer_mut(SlotBuffer::Crowds).mapped()?;
+        to[size_of::<CrowdBlock>()..][..objects.len()].copy_from_slice(objects);
+        let Some(placements) = placements else {
             return Ok(());
-        }
-        let bytes = u64::from(crowds.block.counts[0]) * size_of::<[[u32; 2]; 10]>() as u64;
-        if self.placements.bytes < bytes {
-            self.placements = roomy(&self.device, "placements of crowds", bytes)?;
-            self.named = None;
-        }
-        let to = self
-            .placements
-            .mapped()?
-            .chunks_exact_mut(size_of::<[[u32; 2]; 10]>());
-        for (to, placement) in to.zip(placements) {
+        };
+        const BYTES: usize = size_of::<[[u32; 2]; 10]>();
+        let bytes = u64::from(crowds.block.counts[0]) * BYTES as u64;
+        self.fit(SlotBuffer::Placements, bytes)?;
+        let to = self.buffer_mut(SlotBuffer::Placements).mapped()?;
+        for (to, placement) in to.chunks_exact_mut(BYTES).zip(placements) {
             to.copy_from_slice(bytemuck::cast_slice(&placement_words(placement)));
         }
-        self.placed = placed;
         Ok(())
     }
 
     /// Points the sets to their buffers, if those have changed.
-    pub fn name(&mut self, tables: &Buffer, target: Option<(&ComputeTarget, u64)>) {
-        let now = (tables.raw, target.map_or(0, |t| t.1));
-        if self.named == Some(now) {
+    pub fn name(&mut self, tables: &Arc<Buffer>, target: Option<&ComputeTarget>) {
+        let known = self.named.as_ref();
+        if known.is_some_and(|known| Arc::ptr_eq(known, tables)) {
             return;
         }
         let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
+        let own = |buffer| whole(self.buffer(buffer));
         let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
+        let object = size_of::<ObjectBlock>() as u64;
         let frame = [
-            whole(&self.frame),
-            whole(&self.objects),
-            whole(&self.instances),
-            whole(&self.casters),
+            own(SlotBuffer::Frame),
+            own(SlotBuffer::Objects),
+            own(SlotBuffer::Instances),
+            own(SlotBuffer::Casters),
             whole(tables),
             Resource::Buffer(tables.raw, window),
-            Resource::Buffer(self.objects.raw, size_of::<ObjectBlock>() as u64),
+            Resource::Buffer(self.buffer(SlotBuffer::Objects).raw, object),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
         let mut of_target = vec![
-            (1, whole(&self.tiles)),
-            (6, whole(&self.bins)),
-            (7, whole(&self.placements)),
-            (8, whole(&self.crowds)),
+            (1, own(SlotBuffer::Tiles)),
+            (6, own(SlotBuffer::Bins)),
+            (7, own(SlotBuffer::Placements)),
+            (8, own(SlotBuffer::Crowds)),
         ];
-        if let Some((target, _)) = target {
+        if let Some(target) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));
             of_target.extend((2u32..).zip(images));
@@ -324,7 +305,7 @@ impl FrameSlot {
             descriptors::write(raw, self.frame_set, FRAME_SET, &frame);
             descriptors::write(raw, self.target_set, TARGET_SET, &of_target);
         }
-        self.named = Some(now);
+        self.named = Some(tables.clone());
     }
 }
 
@@ -348,14 +329,6 @@ fn fill(
         || fill(a, first, near, block),
         || fill(b, far[0], far, block),
     );
-}
-
-/// Makes a storage buffer with half as much again to spare, because moving objects grow it in small
-/// steps.
-fn roomy(device: &Arc<Shared>, name: &str, bytes: u64) -> Result<Buffer> {
-    let limit = u64::from(device.limits().max_storage_buffer_range);
-    let bytes = bytes.max((bytes + bytes / 2).min(limit));
-    Buffer::for_use(device, Use::Storage, name, bytes)
 }
 
 impl Drop for FrameSlot {

@@ -1,6 +1,6 @@
 //! The place of a copy in the last frame, for motion vectors.
 
-use crate::gpu::content::entry::{Entry, History};
+use crate::gpu::content::entry::Entry;
 use crate::plan::View;
 use crate::shader::InstanceBlock;
 use glam::{DVec3, DVec4};
@@ -13,12 +13,10 @@ use glam::{DVec3, DVec4};
 /// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn last_block(entry: &Entry, copy: usize, view: &View) -> InstanceBlock {
-    let (object, growth) = (&entry.object, entry.growth());
+    let (object, growth) = (&entry.values.object, entry.values.growth());
     let all = object.placements();
-    let last = match &entry.history {
-        History::Moved(last) => last.placements(all.len()).map(|p| (&p[copy], last.extend)),
-        History::New | History::Still => None,
-    };
+    let last = entry.last.as_ref();
+    let last = last.and_then(|last| Some((&last.placements(all.len())?[copy], last.extend)));
     let (placement, extend) = last.unwrap_or((&all[copy], object.offset.extend));
     let rows = view
         .last
