@@ -43,9 +43,8 @@ pub struct RayCaster {
     patches: Vec<QuadricPatch>,
     /// Least and largest `r^2` of each row of height `1 / ROWS`.
     squares: Vec<[f32; 2]>,
-    /// The members of row `i` are `starts[i]..starts[i + 1]`.
-    starts: Vec<u32>,
-    members: Vec<u32>,
+    /// Numbers of the patches that reach into each row.
+    rows: Vec<Vec<u32>>,
 }
 
 /// Crossings this near to a border of a cell count as the border, units of length of the ray in
@@ -66,22 +65,15 @@ impl RayCaster {
         let source = ContourSource::new(&object.profile.outline)?;
         let contour = source.contour(&object.offset)?;
         let patches = fit_patches(&contour, &FitOptions::default());
-        let rows = ROWS as usize;
-        let mut of_rows = vec![Vec::new(); rows];
-        for (n, patch) in patches.iter().enumerate() {
-            for row in touched(patch, rows) {
-                of_rows[row].push(n as u32);
-            }
+        let mut rows = vec![Vec::new(); ROWS as usize];
+        for (n, patch) in (0..).zip(&patches) {
+            rows[touched(patch, ROWS as usize)]
+                .iter_mut()
+                .for_each(|row| row.push(n));
         }
-        let mut starts = vec![0];
-        starts.extend(of_rows.iter().scan(0, |sum, row| {
-            *sum += row.len() as u32;
-            Some(*sum)
-        }));
         Ok(Self {
-            squares: extents(&patches, rows),
-            starts,
-            members: of_rows.concat(),
+            squares: extents(&patches, ROWS as usize),
+            rows,
             patches,
             object,
         })
@@ -94,12 +86,12 @@ impl RayCaster {
     pub fn cast(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
         let valid = origin.is_finite() && direction.length_squared().is_normal();
         let mut best: Option<RayHit> = None;
+        let mut most = f64::INFINITY;
         let mut try_copy = |copy: usize, placement: &Placement| {
-            let most = best.map_or(f64::INFINITY, |hit| hit.t);
             if let Some(hit) = self.cast_copy(placement, origin, direction, most) {
-                best = Some(RayHit { copy, ..hit });
+                (best, most) = (Some(RayHit { copy, ..hit }), hit.t);
             }
-            best.map_or(f64::INFINITY, |hit| hit.t)
+            most
         };
         if self.object.instances.is_empty() {
             valid.then(|| try_copy(0, &self.object.placement));
@@ -107,19 +99,19 @@ impl RayCaster {
         }
         let clusters = self.object.instances.clusters();
         let reach = [SQRT_2 * self.object.profile.radius, 1.0];
-        let mut near: Vec<(f64, &Cluster)> = (clusters.all().iter())
-            .filter(|_| valid)
+        let all = clusters.all().iter().filter(|_| valid);
+        let mut near: Vec<(f64, &Cluster)> = all
             .filter_map(|cluster| Some((entry(cluster, reach, origin, direction)?, cluster)))
             .collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut most = f64::INFINITY;
+        let mut nearest = f64::INFINITY;
         for (entry, cluster) in near {
-            if entry > most {
+            if entry > nearest {
                 break;
             }
             for place in cluster.range.clone() {
                 let (copy, placement) = clusters.at(place);
-                most = try_copy(copy as usize, placement);
+                nearest = try_copy(copy as usize, placement);
             }
         }
         best
@@ -203,13 +195,13 @@ impl RayCaster {
             if a >= b {
                 continue;
             }
-            let cell = Cell::new(self, start, direction, 0.5 * (a + b), a);
-            let within = self.contains(cell.origin);
+            let ray = Meridian::new(self, start, direction, 0.5 * (a + b), a);
+            let within = self.contains(ray.o);
             if before.is_some_and(|before| before != within) {
                 return Some(face(low, axis, !within && !first));
             }
-            if let Some((t, gradient)) = self.search(&cell, b - a, within) {
-                return Some(hit(a + t, gradient * cell.factor, within));
+            if let Some((t, gradient)) = self.search(&ray, b - a, within) {
+                return Some(hit(a + t, gradient * ray.factor, within));
             }
             (before, first) = (Some(within), false);
         }
@@ -231,28 +223,23 @@ impl RayCaster {
     }
 
     fn row(&self, row: usize) -> impl Iterator<Item = &QuadricPatch> {
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        (self.members[range].iter()).map(|&n| &self.patches[n as usize])
+        self.rows[row].iter().map(|&n| &self.patches[n as usize])
     }
 
-    /// The first root in `0..end` at which the ray of a cell enters the solid, or leaves it if it
+    /// The first root in `0..end` at which the ray of a replica enters the solid, or leaves it if it
     /// starts `within`, and the gradient there. Rows come in the order of the ray.
-    fn search(&self, cell: &Cell, end: f64, within: bool) -> Option<(f64, DVec3)> {
-        let ray = Meridian::new(cell);
-        let rows = f64::from(ROWS);
-        let up = cell.direction.z >= 0.0;
-        let [low, high] = [0.0, end].map(|t| cell.origin.z + t * cell.direction.z);
-        let mut range = rows_of(low.min(high), low.max(high));
+    fn search(&self, ray: &Meridian, end: f64, within: bool) -> Option<(f64, DVec3)> {
+        let (start, slope) = (ray.o.z, ray.v.z);
+        let up = slope >= 0.0;
+        let last = start + end * slope;
+        let mut range = rows_of(start.min(last), start.max(last));
         let mut from = 0.0;
         loop {
             let row = if up { range.next() } else { range.next_back() }?;
-            let border = (row + usize::from(up)) as f64 / rows;
-            let leave = (border - cell.origin.z) / cell.direction.z;
-            let leave = if leave.is_finite() {
-                leave.clamp(from, end)
-            } else {
-                end
-            };
+            let border = (row + usize::from(up)) as f64 / f64::from(ROWS);
+            let leave = (border - start) / slope;
+            let leave = Some(leave).filter(|t| t.is_finite());
+            let leave = leave.map_or(end, |leave| leave.clamp(from, end));
             let [least, most] = ray.squares(from, leave);
             let [inner, outer] = self.squares[row].map(f64::from);
             if least <= outer && most >= inner {
@@ -352,20 +339,23 @@ impl Clip {
     }
 }
 
-/// A ray in the space of one replica: the axis of revolution is x = y = 0.
-struct Cell {
-    origin: DVec3,
-    direction: DVec3,
-    /// Units of the cell for each object unit; negative along an axis that is reflected.
+/// A ray in the space of one replica, whose axis of revolution is x = y = 0. In the half-plane it is
+/// `r^2 = a t^2 + 2 b t + c`, `z = o_z + t v_z`.
+struct Meridian {
+    o: DVec3,
+    v: DVec3,
+    a: f64,
+    b: f64,
+    c: f64,
+    /// Units of the replica for each object unit; negative along an axis that is reflected.
     factor: DVec3,
 }
 
-impl Cell {
-    /// The cell at `middle` of a ray, and the ray from `begin` on.
+impl Meridian {
+    /// A ray from `begin` on, in the replica that it is in at `middle`.
     fn new(of: &RayCaster, start: DVec3, direction: DVec3, middle: f64, begin: f64) -> Self {
         let point = start + direction * begin;
-        let mut factor = DVec3::ZERO;
-        let mut origin = DVec3::ZERO;
+        let (mut factor, mut o) = (DVec3::ZERO, DVec3::ZERO);
         for axis in 0..3 {
             let n = f64::from(of.object.repeat[axis].max(1));
             let (low, size) = of.side(axis);
@@ -375,28 +365,10 @@ impl Cell {
             let reflected = of.object.mirror[axis] && index % 2.0 == 1.0;
             let fraction = place(point[axis]) - index;
             factor[axis] = if reflected { -n } else { n };
-            origin[axis] = low + size * if reflected { 1.0 - fraction } else { fraction };
+            o[axis] = low + size * if reflected { 1.0 - fraction } else { fraction };
         }
-        Self {
-            origin: origin - DVec2::from(of.object.axis_offset()).extend(0.0),
-            direction: direction * factor,
-            factor,
-        }
-    }
-}
-
-/// A ray in the half-plane: `r^2 = a t^2 + 2 b t + c`, `z = z0 + t vz`.
-struct Meridian {
-    o: DVec3,
-    v: DVec3,
-    a: f64,
-    b: f64,
-    c: f64,
-}
-
-impl Meridian {
-    fn new(cell: &Cell) -> Self {
-        let (o, v) = (cell.origin, cell.direction);
+        o -= DVec2::from(of.object.axis_offset()).extend(0.0);
+        let v = direction * factor;
         let (flat, way) = (o.truncate(), v.truncate());
         Self {
             o,
@@ -404,6 +376,7 @@ impl Meridian {
             a: way.length_squared(),
             b: flat.dot(way),
             c: flat.length_squared(),
+            factor,
         }
     }
 

@@ -77,26 +77,22 @@ impl Object {
     /// Returns true if both look the same in their own space: all values except placement and
     /// instances are equal, and shared data is identical.
     pub(crate) fn same_look(&self, other: &Self) -> bool {
-        fn one<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
-            match (a, b) {
-                (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-                (a, b) => a.is_none() && b.is_none(),
-            }
-        }
-        let (a, b) = (&self.texturing, &other.texturing);
-        let look = (self.color, self.specular, self.material);
-        let form = (self.offset, self.axis);
-        let shape = (self.map_rows, self.repeat, self.mirror, self.clip);
-        let covering = (a.bump, a.bump_form, a.projection, a.repeat);
-        Arc::ptr_eq(&self.profile, &other.profile)
-            && self.name == other.name
-            && self.file == other.file
-            && look == (other.color, other.specular, other.material)
-            && form == (other.offset, other.axis)
-            && shape == (other.map_rows, other.repeat, other.mirror, other.clip)
-            && covering == (b.bump, b.bump_form, b.projection, b.repeat)
-            && one(&a.color_map, &b.color_map)
-            && one(&a.displacement_map, &b.displacement_map)
+        let shared = |of: &Self| {
+            let look = &of.texturing;
+            let color = look.color_map.as_ref().map(Arc::as_ptr);
+            let slopes = look.displacement_map.as_ref().map(Arc::as_ptr);
+            (Arc::as_ptr(&of.profile), color, slopes)
+        };
+        let values = |of: &Self| {
+            let look = &of.texturing;
+            (
+                (of.color, of.specular, of.material, of.offset, of.axis),
+                (of.map_rows, of.repeat, of.mirror, of.clip),
+                (look.bump, look.bump_form, look.projection, look.repeat),
+            )
+        };
+        let named = (&self.name, &self.file) == (&other.name, &other.file);
+        named && shared(self) == shared(other) && values(self) == values(other)
     }
 
     /// Returns true if all values are equal and shared data is identical.

@@ -135,21 +135,15 @@ impl Shading {
         let own = module.covered_by(|known| self.modules.iter().any(|(own, _)| own == known));
         let own = own.and_then(|own| self.modules.iter().find(|(known, _)| *known == own));
         let (own, words) = own.ok_or_else(none)?;
-        let words = words.get_or_init(|| self.compiled(own));
+        let words = words.get_or_init(|| {
+            #[cfg(feature = "shaderc")]
+            if let Some(source) = &self.source {
+                return source.words(own);
+            }
+            let message = format!("a shading of bytes lacks {}", own.name());
+            Err(Error::new(ErrorKind::Other, message))
+        });
         words.as_deref().map_err(Clone::clone)
-    }
-
-    #[cfg(feature = "shaderc")]
-    fn compiled(&self, module: &Module) -> Result<Vec<u32>> {
-        let gone = || Error::new(ErrorKind::Other, "a shading of bytes lacks a module");
-        self.source.as_ref().ok_or_else(gone)?.words(module)
-    }
-
-    #[cfg(not(feature = "shaderc"))]
-    #[allow(clippy::unused_self)] // with the feature it is used
-    fn compiled(&self, _: &Module) -> Result<Vec<u32>> {
-        let message = "a shading of bytes lacks a module";
-        Err(Error::new(ErrorKind::Other, message))
     }
 
     /// `(set, binding)` of all descriptors that its compiled modules read.
@@ -183,8 +177,8 @@ fn bindings(words: &[u32]) -> Vec<(u32, u32)> {
     const DESCRIPTOR_SET: u32 = 34;
     let of = |what: u32| {
         let all = instructions(words).filter(|(code, _)| *code == DECORATE);
-        all.filter(move |(_, one)| one[2] == what)
-            .map(|(_, one)| (one[1], one[3]))
+        let all = all.filter(move |(_, one)| one[2] == what);
+        all.map(|(_, one)| (one[1], one[3]))
     };
     let set = |id: u32| of(DESCRIPTOR_SET).find(|(known, _)| *known == id);
     of(BINDING)

@@ -66,43 +66,34 @@ mod compiled {
 
     const PLAIN: &str = "vec4 host_shade(Surface s) { return vec4(s.base_color, 1.0); }\n";
 
-    fn refused(files: &[(&str, &str)]) -> String {
-        let error = Shading::compile(DrawStage::Fragment, files).unwrap_err();
-        error.to_string()
-    }
-
     #[test]
     fn faults_have_the_line_of_the_hosts_text() {
-        let wrong = format!("// a comment\n{PLAIN}float f() {{ return g(); }}\n");
-        let error = refused(&[("a.glsl", &wrong)]);
-        assert!(error.starts_with("a.glsl:3: 'g' : no matching"), "{error}");
-        assert!(!error.contains('\n'), "{error}");
+        let late = format!("// a comment\n{PLAIN}float f() {{ return g(); }}\n");
         let twice = format!("struct Light {{ vec3 c; }};\n{PLAIN}");
-        let error = refused(&[("b.glsl", &twice)]);
-        assert!(error.starts_with("b.glsl:1: 'Light' : redef"), "{error}");
-        let included = ("c.glsl", "\nvoid h( {}\n");
-        let error = refused(&[("d.glsl", "#include \"c.glsl\"\n"), included]);
-        assert!(error.starts_with("c.glsl:2: "), "{error}");
         let kind = PLAIN.replace("vec4 host", "vec3 host");
-        let error = refused(&[("e.glsl", &kind)]);
-        assert!(error.starts_with("e.glsl:1: "), "{error}");
-    }
-
-    #[test]
-    fn a_missing_function_and_a_missing_file_are_named() {
-        let error = refused(&[("a.glsl", "float f() { return 1.0; }\n")]);
-        assert!(
-            error.contains("a.glsl: does not define `vec4 host_shade(Surface"),
-            "{error}"
-        );
-        let error = refused(&[("a.glsl", "#include \"none.glsl\"\n")]);
-        assert!(
-            error.contains("a.glsl:1: ") && error.contains("none.glsl"),
-            "{error}"
-        );
-        assert!(refused(&[]).contains("no files"));
-        let error = refused(&[("core/shade.glsl", PLAIN)]);
-        assert!(error.contains("rename"), "{error}");
+        let parts = [
+            ("a.glsl", "#include \"c.glsl\"\n"),
+            ("c.glsl", "\nvoid h( {}\n"),
+        ];
+        let cases: [(&[(&str, &str)], &str); 9] = [
+            (&[("a.glsl", &late)], "a.glsl:3: 'g' : no matching"),
+            (&[("b.glsl", &twice)], "b.glsl:1: 'Light' : redef"),
+            (&parts, "c.glsl:2: "),
+            (&[("e.glsl", &kind)], "e.glsl:1: "),
+            (
+                &[("a.glsl", "float f() { return 1.0; }\n")],
+                "a.glsl: does not define `vec4 host_shade(Surface",
+            ),
+            (&[("a.glsl", "#include \"none.glsl\"\n")], "a.glsl:1: "),
+            (&[("a.glsl", "#include \"none.glsl\"\n")], "none.glsl"),
+            (&[], "no files"),
+            (&[("core/shade.glsl", PLAIN)], "rename"),
+        ];
+        for (files, wanted) in cases {
+            let error = Shading::compile(DrawStage::Fragment, files).unwrap_err();
+            let error = error.to_string();
+            assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
+        }
     }
 
     #[test]
