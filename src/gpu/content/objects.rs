@@ -221,18 +221,17 @@ impl Content {
         Ok(entry)
     }
 
-    /// Returns the values that the next refresh gives to an object. A change of the object must
-    /// remove the boundary.
+    /// Returns the values that the next refresh gives to an object.
     pub fn want(&mut self, id: ObjectId) -> Result<&mut Values> {
         self.change(id)?;
         let values = &self.objects.get(id).ok_or_else(gone)?.values;
         Ok((self.wanted.entry(id.number())).or_insert_with(|| values.clone()))
     }
 
-    /// Returns the object that the next refresh gives, for a change of its form or look.
+    /// Returns the object that the next refresh makes anew, with its boundary.
     pub fn reshape(&mut self, id: ObjectId) -> Result<&mut Object> {
         let values = self.want(id)?;
-        values.boundary = None;
+        (values.grown, values.boundary) = (None, None);
         Ok(&mut values.object)
     }
 
