@@ -126,17 +126,6 @@ impl Content {
         let fails = distinct(&mut contours).par_iter();
         self.rebuilds += fails.filter(|c| c.get().is_err()).count() as u64;
         self.make_surfaces(&mut tables);
-        for (&number, values) in wanted.iter() {
-            let Some(boundary) = &values.boundary else {
-                continue;
-            };
-            if let Some(error) = boundary.levels.first().and_then(|(_, s)| s.failure()) {
-                return Err(self.named(error.clone(), number, values));
-            }
-            if let Some(Err(error)) = boundary.contour.as_ref().map(|c| c.get()) {
-                self.note_fallback(number, &values.object, error);
-            }
-        }
         Ok(())
     }
 
@@ -228,6 +217,13 @@ impl Content {
         let Some(boundary) = &values.boundary else {
             return Ok(());
         };
+        let table = boundary.levels.first().map(|(_, surface)| surface);
+        if let Some(error) = table.and_then(|table| table.failure()) {
+            return Err(error.clone());
+        }
+        if let Some(Err(error)) = boundary.contour.as_ref().map(|c| c.get()) {
+            self.note_fallback(number, &values.object, error);
+        }
         let (object, map) = (values.drawn(), &boundary.map);
         let solver = self.solver_of(boundary);
         check_format(&values.object, solver, &self.settings).map_err(|mut e| {
