@@ -99,13 +99,6 @@ impl Object {
             && one(&a.displacement_map, &b.displacement_map)
     }
 
-    /// Returns true if all values are equal and shared data is identical.
-    pub(crate) fn equals(&self, other: &Self) -> bool {
-        self.placement == other.placement
-            && self.same_look(other)
-            && self.instances == other.instances
-    }
-
     /// The least `value` of any of its copies. `bound` must not exceed the `value` of any copy in a
     /// cluster.
     pub(crate) fn least_of_copies(
@@ -144,6 +137,15 @@ impl Object {
         } else {
             &self.instances
         }
+    }
+}
+
+impl PartialEq for Object {
+    /// Returns true if all values are equal and shared data is identical.
+    fn eq(&self, other: &Self) -> bool {
+        self.placement == other.placement
+            && self.same_look(other)
+            && self.instances == other.instances
     }
 }
 

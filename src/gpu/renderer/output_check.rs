@@ -4,7 +4,6 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::attachments;
 use crate::maps::MapFormat;
 use crate::settings::{Plane, Planes, SearchSettings, Solver};
 use ash::vk;
@@ -39,7 +38,7 @@ impl Output {
         }
         pass.check_samples(device)?;
         let (planes, most) = (
-            attachments(pass.planes),
+            pass.planes.attachments(),
             device.limits().max_color_attachments,
         );
         if planes > most as usize {
@@ -48,6 +47,9 @@ impl Output {
         }
         match &pass.begun {
             PassKind::RenderPass { pass: raw, .. } => pass.check_render_pass(device, *raw),
+            PassKind::SingleSubpass { color, depth } => {
+                pass.check_formats(device, color, *depth, vk::Format::UNDEFINED)
+            }
             PassKind::Dynamic {
                 color,
                 depth,
@@ -100,6 +102,10 @@ impl PassFormats {
             let message = "only depths alone have a bias for slopes; draw Planes::Depth";
             return Err(usage("slope_bias", message.into()));
         }
+        if self.views > 1 && matches!(self.begun, PassKind::SingleSubpass { .. }) {
+            let message = "a pass known by its formats has one view; give the render pass";
+            return Err(usage("views", message.into()));
+        }
         if self.views > 1 && self.planes == Planes::All {
             let message = "all planes are drawn for one view; give a list of planes";
             return Err(usage("views", message.into()));
@@ -128,7 +134,7 @@ impl PassFormats {
         depth: vk::Format,
         stencil: vk::Format,
     ) -> Result<()> {
-        let wanted = attachments(self.planes);
+        let wanted = self.planes.attachments();
         if color.len() != wanted {
             let (planes, count) = (self.planes, color.len());
             let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
