@@ -13,7 +13,7 @@ mod method;
 use image::{RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
-use revmap::gpu::{self, Device};
+use revmap::gpu::Device;
 use revmap::settings::{Planes, Settings};
 use revmap_files::{ProfileAxis, SceneFile, write_png};
 use std::path::{Path, PathBuf};
@@ -93,7 +93,7 @@ fn draw(device: &Device, scene: &Path, target: &Path) -> Result<[u64; 2]> {
             planes: Planes::Color,
             ..Settings::default()
         };
-        let drawn = gpu::draw(device, &scene, &settings)?;
+        let drawn = revmap_offscreen::draw(device, &scene, &settings)?;
         bytes = drawn.map_bytes;
         shrink(&drawn.frame, &mut picture, place as u32 * across);
     }

@@ -1,6 +1,6 @@
 //! The smallest program: a pawn into a PNG file. `cargo run --release --example smallest`
 use glam::DVec3;
-use revmap::{gpu, scene::*, settings::Settings};
+use revmap::{gpu::Device, scene::*, settings::Settings};
 use revmap_files::ProfileAxis;
 
 /// Draws a pawn into a PNG file.
@@ -11,7 +11,7 @@ pub fn picture(file: &str) -> revmap::Result<()> {
         DVec3::new(0.0, 0.0, 0.5),
     ));
     scene.objects.push(Object::new("pawn", profile.into()));
-    let drawn = gpu::draw(&gpu::Device::open(None)?, &scene, &Settings::default())?;
+    let drawn = revmap_offscreen::draw(&Device::open(None)?, &scene, &Settings::default())?;
     revmap_files::write_png(&drawn.frame, file)
 }
 

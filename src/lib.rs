@@ -54,15 +54,15 @@
 //!
 //! ```no_run
 //! use glam::DVec3;
-//! use revmap::{gpu, profile::Profile, scene::{Camera, Object, Scene}, settings::Settings};
+//! use revmap::{gpu::Device, profile::Profile, scene::{Camera, Object, Scene}, settings::Settings};
 //! use std::sync::Arc;
 //!
 //! let spindle = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5)?;
 //! let mut scene = Scene::new(Camera::new(DVec3::new(2.0, 0.0, 1.0), DVec3::new(0.0, 0.0, 0.5)));
 //! scene.objects.push(Object::new("spindle", Arc::new(spindle)));
 //!
-//! let device = gpu::Device::open(None)?;
-//! let drawn = gpu::draw(&device, &scene, &Settings::default())?;
+//! let device = Device::open(None)?;
+//! let drawn = revmap_offscreen::draw(&device, &scene, &Settings::default())?;
 //! revmap_files::write_png(&drawn.frame, "spindle.png")?;
 //! # Ok::<(), revmap::Error>(())
 //! ```
@@ -123,8 +123,7 @@
 //! | `solid` | all that is made from one outline under an offset, without Vulkan |
 //! | [`cast`] | rays on the CPU, for picking and physics |
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
-//! | [`antialias`] | smoothed silhouettes of a frame of one ray per pixel |
-//! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands; [`gpu::Offscreen`], which needs no host |
+//! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands |
 //!
 //! # Features
 //!
@@ -135,11 +134,11 @@
 //!
 //! # Other crates
 //!
+//! `revmap-offscreen` draws a scene without a host and smooths silhouettes, a client of [`gpu`].
 //! `revmap-files` reads profiles from SVG drawings and pictures, and scenes from TOML; it writes
 //! frames as PNG and EXR. Ground truth is `revmap-reference`; comparison, benchmarks and reports
 //! are in `revmap-lab`; the program is `revmap-cli`.
 
-pub mod antialias;
 pub mod cast;
 pub mod error;
 pub mod frame;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{self, Device};
+use revmap::gpu::Device;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, CameraFrame, Object, Offset, Scene};
@@ -184,7 +184,7 @@ fn solid_panel(device: &Device, profile: Profile, ray: &Ray) -> Result<Canvas> {
         planes: Planes::All,
         ..Settings::default()
     };
-    let drawn = gpu::draw(device, &scene, &settings)?.frame;
+    let drawn = revmap_offscreen::draw(device, &scene, &settings)?.frame;
     let mut canvas = Canvas::of(|x, y| mean(&drawn, [x, y].map(|v| v * RAYS), RAYS));
     let seen = |t: f64| {
         let from_eye = point(t) - frame.eye;

@@ -15,7 +15,7 @@ use crate::gpu::vk::pipelines::{Owner, Pipelines};
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
-use crate::settings::{DrawStage, Planes, SearchSettings, Solver};
+use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::{HostLook, Kind, ShadowCasters, Variant, catalogued};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
@@ -211,17 +211,17 @@ impl PipelineCompiler {
     }
 
     /// The output that a stage draws into.
-    fn output(&self, stage: DrawStage, planes: Planes) -> Result<Output> {
-        Ok(match stage {
+    fn output(stage: DrawStage, planes: Planes) -> Output {
+        match stage {
             DrawStage::Compute => Output::Compute(planes),
             DrawStage::Fragment => Output::Pass(PassFormats::new(
-                PassKind::RenderPass {
-                    pass: self.pipelines.own_pass(planes, false, 1, false)?,
-                    subpass: 0,
+                PassKind::SingleSubpass {
+                    color: color_formats(planes),
+                    depth: vk::Format::D32_SFLOAT,
                 },
                 planes,
             )),
-        })
+        }
     }
 
     /// Compiles a pipeline, and queries the driver's statistics of its shaders.
@@ -235,7 +235,7 @@ impl PipelineCompiler {
         planes: Planes,
     ) -> Result<Vec<Executable>> {
         let PipelineChoice(variant, kind) = choice;
-        let output = self.output(stage, planes)?;
+        let output = Self::output(stage, planes);
         let pipeline = self
             .pipelines
             .get(variant, kind, &output, &Owner::default())?;
@@ -267,6 +267,24 @@ impl PipelineCompiler {
             });
         }
         Ok(shaders)
+    }
+}
+
+/// Formats of colour attachments, in order of location.
+fn color_formats(planes: Planes) -> Vec<vk::Format> {
+    use vk::Format as F;
+    match planes {
+        Planes::Color => vec![F::R8G8B8A8_SRGB],
+        Planes::Depth { .. } => Vec::new(),
+        Planes::All => vec![F::R32G32B32A32_SFLOAT; 4],
+        Planes::List(list) => {
+            let format = |plane: &Plane| match plane {
+                Plane::Color | Plane::BaseColor | Plane::Normal => F::R16G16B16A16_SFLOAT,
+                Plane::OctahedralNormal | Plane::Material | Plane::Motion => F::R16G16_SFLOAT,
+                Plane::Identity => F::R32G32_UINT,
+            };
+            list.planes().iter().map(format).collect()
+        }
     }
 }
 

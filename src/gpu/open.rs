@@ -7,8 +7,9 @@ use crate::gpu::device::budget::MemoryUse;
 use crate::gpu::device::instance::{API_VERSION, Instance, Messages};
 use crate::gpu::device::report::{DeviceReport, candidates, choose, inspect, refuse, variable};
 use crate::gpu::device::{Shared, create};
-use crate::gpu::memory::Buffer;
+use crate::gpu::memory::{Buffer, Image, ImageKind};
 use crate::gpu::resources::geometry::Geometry;
+use crate::gpu::vk::call::Call;
 #[cfg(feature = "other-shaders")]
 use crate::gpu::vk::debug::DebugLabels;
 use crate::gpu::vk::pipelines::Pipelines;
@@ -47,7 +48,7 @@ pub struct HostDevice<'a> {
     pub device: &'a ash::Device,
     /// The family of the queues to which recorded commands are submitted.
     pub queue_family: u32,
-    /// A queue for [`Offscreen`](crate::gpu::Offscreen), which submits by itself; renderers need none.
+    /// A queue for [`Device::submit`]; renderers need none.
     pub queue: Option<vk::Queue>,
     /// The features that the device was opened with.
     pub features: vk::PhysicalDeviceFeatures,
@@ -91,7 +92,7 @@ impl Device {
     /// * all handles belong together and stay valid until that destruction;
     /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or
     ///   later;
-    /// * `host.queue`, if given, is used by nothing else while an `Offscreen` submits.
+    /// * `host.queue`, if given, is used by nothing else during [`Device::submit`].
     pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
         let mut candidate = inspect(host.instance, 0, host.physical);
         refuse(&candidate)?;
@@ -256,6 +257,48 @@ impl Device {
         &self.shared.raw
     }
 
+    /// The functions of the device's instance, for other drawing on the device.
+    #[must_use]
+    pub fn instance(&self) -> &ash::Instance {
+        &self.shared.functions
+    }
+
+    /// The physical device.
+    #[must_use]
+    pub fn physical(&self) -> vk::PhysicalDevice {
+        self.shared.chosen.physical
+    }
+
+    /// The family of the queues to which recorded commands are submitted.
+    #[must_use]
+    pub fn queue_family(&self) -> u32 {
+        self.shared.chosen.family
+    }
+
+    /// Submits commands to the device's queue, one call after the other: threads may share it.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] if the device was borrowed without a queue; errors of Vulkan calls.
+    ///
+    /// # Safety
+    /// The call submits `cmd`, which signals `fence` at its end.
+    ///
+    /// The caller must ensure that
+    /// * `cmd` is of the device's family, recorded, and may be submitted; all that it uses lives until
+    ///   it has run;
+    /// * `fence` is null, or unsignaled and in no other submission.
+    pub unsafe fn submit(&self, cmd: vk::CommandBuffer, fence: vk::Fence) -> Result<()> {
+        let queue = self.shared.queue.as_ref();
+        let queue = queue.and_then(|queue| queue.lock().ok()).ok_or_else(|| {
+            let message = "the device has no queue to submit to; borrow it with one";
+            Error::new(ErrorKind::Usage, message)
+        })?;
+        let buffers = [cmd];
+        let submit = vk::SubmitInfo::default().command_buffers(&buffers);
+        // SAFETY: as the caller promised; access to the queue is serialised by the lock.
+        unsafe { self.raw().queue_submit(*queue, &[submit], fence) }.call("vkQueueSubmit")
+    }
+
     /// The source of device memory, for other drawing on the device.
     ///
     /// # Errors
@@ -278,6 +321,15 @@ impl Device {
         location: MemoryLocation,
     ) -> Result<Buffer> {
         Buffer::new(&self.shared, name, bytes, usage, location, u32::MAX)
+    }
+
+    /// Makes an image for other drawing on the device, called `name` in messages. The image counts in
+    /// the memory budget.
+    ///
+    /// # Errors
+    /// Same as [`Device::buffer`].
+    pub fn image(&self, name: &str, kind: ImageKind) -> Result<Image> {
+        Image::new(&self.shared, name, kind)
     }
 
     /// Takes the validation layers' messages since the last call. The list is always empty without

@@ -3,6 +3,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Camera, CameraFrame, Cluster, Growth, Placement, Scene};
+use crate::shader::generated::GROUP_PIXELS;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -69,6 +70,9 @@ pub(crate) struct LastView {
 }
 
 impl View {
+    /// Rows of a tile.
+    pub const ROW_STEP: u32 = GROUP_PIXELS;
+
     /// The view of `camera` for pictures of `size` pixels. Depth is 0 at `near` and 1 at `far`,
     /// both measured along the view.
     ///
@@ -168,9 +172,12 @@ impl View {
         self
     }
 
-    /// The same view of some rows of the picture: tiles and copies beside them are left out.
-    pub(crate) fn with_rows(self, rows: Range<u32>) -> Self {
-        let rows = Some([rows.start, rows.end]);
+    /// The same view of some rows of the picture, for a picture that is drawn in several submissions:
+    /// tiles and copies beside them are left out. Give fragments a scissor of these rows. Each end is
+    /// the picture's or a multiple of [`View::ROW_STEP`]: compute draws whole tiles.
+    #[must_use]
+    pub fn with_rows(self, rows: Range<u32>) -> Self {
+        let rows = Some([rows.start, rows.end.max(rows.start)]);
         Self { rows, ..self }
     }
 
@@ -287,8 +294,12 @@ impl View {
         })
     }
 
-    /// The view of a scene's camera, with a depth range that contains every box.
-    pub(crate) fn of_scene(scene: &Scene, size: (u32, u32)) -> Result<Self> {
+    /// The view of a scene's camera for pictures of `size` pixels, with a depth range that contains
+    /// every solid before the eye. The near end is at least a ten-thousandth of the far one.
+    ///
+    /// # Errors
+    /// The errors of [`CameraFrame::new`].
+    pub fn of_scene(scene: &Scene, size: (u32, u32)) -> Result<Self> {
         let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
         Self::from_camera(&scene.camera, size, depth_range(scene, &camera))
     }
@@ -362,13 +373,14 @@ impl View {
         }
     }
 
-    /// Distance along the view for a value of the depth buffer; infinite where nothing is drawn.
-    /// Only for perspective and normal depths.
-    pub(crate) fn along_at(&self, depth: f32) -> f64 {
-        if depth < 1.0 {
-            self.depth[1] / (f64::from(depth) - self.depth[0])
+    /// The `t` of a depth-buffer value: the inverse of [`View::depth_at`].
+    #[must_use]
+    pub fn t_at(&self, depth: f64) -> f64 {
+        let by = depth - self.depth[0];
+        if self.parallel {
+            by / self.depth[1]
         } else {
-            f64::INFINITY
+            self.depth[1] / by
         }
     }
 

@@ -95,13 +95,6 @@ impl Object {
         named && shared(self) == shared(other) && values(self) == values(other)
     }
 
-    /// Returns true if all values are equal and shared data is identical.
-    pub(crate) fn equals(&self, other: &Self) -> bool {
-        self.placement == other.placement
-            && self.same_look(other)
-            && self.instances == other.instances
-    }
-
     /// The least `value` of any of its copies. `bound` must not exceed the `value` of any copy in a
     /// cluster.
     pub(crate) fn least_of_copies(
@@ -140,6 +133,15 @@ impl Object {
         } else {
             &self.instances
         }
+    }
+}
+
+impl PartialEq for Object {
+    /// Returns true if all values are equal and shared data is identical.
+    fn eq(&self, other: &Self) -> bool {
+        self.placement == other.placement
+            && self.same_look(other)
+            && self.instances == other.instances
     }
 }
 

@@ -271,7 +271,7 @@ pub struct Settings {
     /// the number of copies. It needs `shaderFloat64`; without it, and with motion, the host lists.
     /// Pixels are equal.
     pub device_lists: bool,
-    /// True to smooth silhouettes in frames that are read back ([`crate::antialias`]). Otherwise
+    /// True to smooth silhouettes in frames that the crate `revmap-offscreen` reads back. Otherwise
     /// every colour is that of the ray through the pixel's middle. Embedded renderers do not
     /// smooth.
     pub antialias: bool,

@@ -95,6 +95,17 @@ impl PlaneList {
 }
 
 impl Planes {
+    /// The number of colour attachments of a pass that draws them.
+    #[must_use]
+    pub fn attachments(&self) -> usize {
+        match self {
+            Self::Color => 1,
+            Self::Depth { .. } => 0,
+            Self::All => 4,
+            Self::List(list) => list.count,
+        }
+    }
+
     /// True if motion is drawn.
     pub(crate) fn has_motion(&self) -> bool {
         matches!(self, Self::List(list) if list.has(Plane::Motion))

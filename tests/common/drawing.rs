@@ -1,9 +1,10 @@
 //! Drawing on one validated device, and in the reference, and settings for it.
 
 use revmap::frame::Frame;
-use revmap::gpu::{self, Device, Offscreen};
+use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use std::sync::OnceLock;
 
 /// The device of this process's tests. Tests fail without a device or without the layers.
@@ -55,7 +56,7 @@ pub fn hits(frame: &Frame) -> usize {
 
 /// Draws in a GPU stage.
 pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
-    gpu::draw(device(), scene, settings)
+    revmap_offscreen::draw(device(), scene, settings)
         .unwrap_or_else(|e| panic!("{e}"))
         .frame
 }

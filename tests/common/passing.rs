@@ -4,9 +4,9 @@
 use super::{device, reference, updated};
 use rayon::prelude::*;
 use revmap::frame::Frame;
-use revmap::gpu::Offscreen;
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::Settings;
+use revmap_offscreen::Offscreen;
 use revmap_reference::{Ray, Reference};
 use std::iter::Sum;
 

@@ -2,7 +2,7 @@
 
 use super::device;
 use revmap::frame::Frame;
-use revmap::gpu::{self, DrawPath};
+use revmap::gpu::DrawPath;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings};
 
@@ -31,7 +31,7 @@ pub fn apart(a: &Frame, b: &Frame) -> (usize, usize, usize) {
 /// test nothing.
 #[track_caller]
 pub fn draw_by(name: &str, scene: &Scene, settings: &Settings, ways: Ways) -> Frame {
-    let drawn = gpu::draw(device(), scene, settings).unwrap();
+    let drawn = revmap_offscreen::draw(device(), scene, settings).unwrap();
     let stage = usize::from(settings.stage == DrawStage::Compute);
     // SwiftShader clips no triangles: tiles draw solids that the box cuts.
     let narrow = device().report().name.contains("SwiftShader");

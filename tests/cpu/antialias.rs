@@ -2,10 +2,10 @@
 
 use crate::common::samples;
 use glam::DVec3;
-use revmap::antialias::{coverage, silhouettes};
 use revmap::frame::Frame;
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, CameraFrame, Object, Placement, Scene};
+use revmap_offscreen::antialias::{coverage, silhouettes};
 use revmap_reference::{Ray, Reference};
 use std::sync::Arc;
 

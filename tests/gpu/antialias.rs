@@ -4,10 +4,10 @@
 use crate::common::ways::STAGES;
 use crate::common::{draw, drawn_by, eye, scene_of, shapes};
 use glam::DVec3;
-use revmap::antialias::silhouettes;
 use revmap::frame::Frame;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_offscreen::antialias::silhouettes;
 
 fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {
     Settings {

@@ -7,10 +7,10 @@ use crate::common::{
     updated,
 };
 use glam::DVec3;
-use revmap::gpu::Offscreen;
 use revmap::profile::{Profile, Raster};
 use revmap::scene::{Clip, Growth, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
     drawn_by((200, 150), stage, solver)

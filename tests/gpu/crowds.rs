@@ -4,10 +4,11 @@ use crate::common::ways::{STAGES, apart};
 use crate::common::{device, next_frame, shapes};
 use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
-use revmap::gpu::{DrawPath, Offscreen};
+use revmap::gpu::DrawPath;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Copies, Light, Object, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -83,7 +84,7 @@ pub fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
 pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
     let mut offscreen = Offscreen::new(device(), scene, settings).unwrap();
     offscreen.draw().unwrap();
-    let paths = offscreen.draw_paths();
+    let paths = offscreen.renderer().draw_paths();
     assert!(paths.iter().all(|p| *p == DrawPath::Tiles), "{paths:?}");
     offscreen.read().unwrap()
 }
@@ -261,7 +262,7 @@ fn what_is_out_of_view_is_nothing() {
     for stage in STAGES {
         let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
         offscreen.draw().unwrap();
-        assert_eq!(offscreen.draw_paths(), [DrawPath::Nothing; 3]);
+        assert_eq!(offscreen.renderer().draw_paths(), [DrawPath::Nothing; 3]);
         let frame = offscreen.read().unwrap();
         assert!(frame.distance.iter().all(|d| d.is_infinite()));
     }
@@ -293,7 +294,7 @@ fn one_copy_more_changes_no_path() {
         } else {
             DrawPath::Tiles
         };
-        assert_eq!(offscreen.draw_paths(), [path], "{count} copies");
+        assert_eq!(offscreen.renderer().draw_paths(), [path], "{count} copies");
     }
     device().check().unwrap();
 }

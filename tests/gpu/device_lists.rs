@@ -5,11 +5,11 @@ use crate::common::{device, placement, scene_of, shapes};
 use crate::crowds::{VIEWS, army, assert_same_bits, by_tree, draw};
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::gpu::Offscreen;
 use revmap::maps::ColorMap;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{Settings, Solver, Tolerance};
 use revmap_lab::compare::pixel_errors;
+use revmap_offscreen::Offscreen;
 use std::sync::Arc;
 
 fn map() -> Arc<ColorMap> {

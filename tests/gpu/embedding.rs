@@ -6,10 +6,11 @@ pub use crate::common::host::assert_silent;
 use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
 use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use revmap::gpu::{Device, Offscreen, Renderer, View};
+use revmap::gpu::{Device, Renderer, View};
 use revmap::scene::{Camera, CameraFrame, Lighting, Object, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
+use revmap_offscreen::Offscreen;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
@@ -191,6 +192,8 @@ fn meshes_meet_solids_where_they_should() {
             if found == truth[n].0 {
                 if found == 1 {
                     let wanted = seen.depth_at(truth[n].1);
+                    let inverse = seen.t_at(wanted) / truth[n].1;
+                    assert!((inverse - 1.0).abs() < 1e-9, "{inverse}");
                     worst = worst.max((f64::from(depths[n]) - wanted).abs());
                 }
                 continue;

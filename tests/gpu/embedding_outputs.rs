@@ -9,11 +9,12 @@ use crate::embedding::{BACKGROUND, drawn_by, hundred, options, three, upright};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, DrawPath, Offscreen, Output, PassFormats, Renderer, View,
+    ComputeTarget, DepthOrder, Device, DrawPath, Output, PassFormats, Renderer, View,
 };
 use revmap::scene::{Clip, Scene, Shadow};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
+use revmap_offscreen::Offscreen;
 use revmap_searches::CIRCLE;
 use std::collections::HashSet;
 

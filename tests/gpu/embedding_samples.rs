@@ -7,11 +7,12 @@ use crate::common::{device, draw, sized};
 use crate::embedding::{options, three};
 use glam::DMat4;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Offscreen, OffscreenOptions, Output, PassFormats, Renderer, View};
+use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
 use revmap_lab::compare::flip_map;
 use revmap_lab::samples::averaged;
+use revmap_offscreen::{Offscreen, OffscreenOptions};
 
 /// Pixels of a degree of the visual field, as FLIP's default.
 const PIXELS_PER_DEGREE: f64 = 67.0;

@@ -8,10 +8,11 @@ use crate::common::{
 };
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::gpu::{DrawPath, Offscreen};
+use revmap::gpu::DrawPath;
 use revmap::profile::Profile;
 use revmap::scene::{Light, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
     drawn_by((160, 121), stage, solver)
@@ -132,7 +133,7 @@ fn a_tip_has_a_normal() {
 /// The draw path of the first object in the fragment stage.
 fn path(scene: &Scene) -> DrawPath {
     let offscreen = Offscreen::new(device(), scene, &sized(800, 600)).unwrap();
-    offscreen.draw_paths()[0]
+    offscreen.renderer().draw_paths()[0]
 }
 
 #[test]

@@ -3,10 +3,10 @@
 use crate::common::ways::STAGES;
 use crate::common::{device, draw, drawn_by, eye, hits, scene_of, shapes};
 use glam::DVec2;
-use revmap::gpu::{self, Offscreen};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Object, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use revmap_searches::CONE;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn what_has_no_contour_is_drawn_from_the_map() {
         scene.shadow = shadow;
         let settings = drawn_by((200, 150), stage, Solver::DEFAULT);
         let live = drawn_by((200, 150), stage, Solver::Live);
-        let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+        let drawn = revmap_offscreen::draw(device(), &scene, &settings).unwrap();
         let [note] = drawn.notes.as_slice() else {
             unreachable!("{:?}", drawn.notes)
         };
@@ -58,12 +58,12 @@ fn what_has_no_contour_is_drawn_from_the_map() {
     scene.camera.eye.x += 0.1;
     renderer.update(&scene).unwrap();
     renderer.draw().unwrap();
-    assert_eq!(renderer.notes().len(), 1);
+    assert_eq!(renderer.renderer().notes().len(), 1);
     // The contour is not tried again. No surface is made, because shadows draw both by the map.
-    assert_eq!(renderer.rebuild_count(), 1);
+    assert_eq!(renderer.renderer().rebuild_count(), 1);
     // Objects with a contour add no note.
     scene.objects.remove(0);
-    let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+    let drawn = revmap_offscreen::draw(device(), &scene, &settings).unwrap();
     assert!(drawn.notes.is_empty());
     device().check().unwrap();
 }
@@ -87,7 +87,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
         scene.objects.push(alone.clone());
         for solver in [Solver::Quadric, Solver::Exact] {
             let settings = Settings { solver, ..settings };
-            let drawn = gpu::draw(device(), &scene, &settings).unwrap();
+            let drawn = revmap_offscreen::draw(device(), &scene, &settings).unwrap();
             let [note] = drawn.notes.as_slice() else {
                 unreachable!("{:?}", drawn.notes)
             };

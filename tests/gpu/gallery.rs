@@ -2,9 +2,9 @@
 //! larger than the papers claim.
 
 use crate::common::{device, sized};
-use revmap::gpu::Offscreen;
 use revmap::scene::Scene;
 use revmap::settings::{Planes, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use std::path::{Path, PathBuf};
 
 fn root() -> &'static Path {
@@ -54,7 +54,7 @@ fn maps_are_as_small_as_the_papers_claim() {
     for (name, file) in scenes() {
         let scene: Scene = revmap_files::scene(&file).unwrap_or_else(|e| panic!("{e}"));
         let renderer = Offscreen::new(device(), &scene, &settings).unwrap();
-        let [shapes, covers] = renderer.map_bytes();
+        let [shapes, covers] = renderer.renderer().map_bytes();
         println!("{name}: {shapes} and {covers} bytes");
         let small = shapes > 0 && shapes <= 10_000_000;
         assert!(small, "{name}: {shapes} bytes of shape maps");

@@ -6,10 +6,10 @@ use crate::common::{
     assert_sound, device, draw, eye, hits, offset, reference, scene_of, shapes, sized, updated,
 };
 use revmap::error::ErrorKind;
-use revmap::gpu::{self, Offscreen};
 use revmap::maps::MapFormat;
 use revmap::scene::{Clip, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use revmap_searches::CIRCLE;
 
 fn settings() -> Settings {
@@ -116,7 +116,8 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
         solver: Solver::Live,
         ..settings()
     };
-    let error = gpu::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
+    let error =
+        revmap_offscreen::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("object.0.extend"));
     assert!(error.to_string().contains("rgba8"), "{error}");
     drop(renderer);

@@ -5,10 +5,11 @@ use super::hulls::{EXACT, settings};
 use crate::common::ways::{STAGES, WALKED, WRAPPED, draw_by};
 use crate::common::{device, draw, errors, eye, placement, reference, scene_of, shapes, updated};
 use glam::DVec3;
-use revmap::gpu::{DrawPath, Offscreen};
+use revmap::gpu::DrawPath;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
+use revmap_offscreen::Offscreen;
 use std::sync::Arc;
 
 /// Several intersecting objects, some copied, in one depth buffer: hulls beside boxes.

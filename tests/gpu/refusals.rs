@@ -45,6 +45,26 @@ fn dynamic(
     pass(begun, samples, planes)
 }
 
+fn single_subpass(color: &[vk::Format], depth: vk::Format, planes: Planes, samples: u32) -> Output {
+    let color = color.to_vec();
+    pass(PassKind::SingleSubpass { color, depth }, samples, planes)
+}
+
+/// Outputs of these formats; only dynamic rendering names the stencil apart.
+fn kinds(
+    color: &[vk::Format],
+    depth: vk::Format,
+    stencil: vk::Format,
+    planes: Planes,
+    samples: u32,
+) -> Vec<Output> {
+    let mut all = vec![dynamic(color, depth, stencil, planes, samples)];
+    if stencil == NONE {
+        all.push(single_subpass(color, depth, planes, samples));
+    }
+    all
+}
+
 /// The kind and key of the refusal; `None` if a renderer is made.
 fn refused(device: &Device, output: Output) -> Option<(ErrorKind, Option<String>)> {
     let made = Renderer::new(device, output, &SearchSettings::exact(), 1);
@@ -67,8 +87,9 @@ fn attachments_that_do_not_fit_are_refused() {
         (&[FLOAT; 4], DEPTH, NONE, Planes::All, 1),
         (&[], vk::Format::D16_UNORM, NONE, depth_alone, 1),
     ] {
-        let output = dynamic(color, depth, stencil, planes, samples);
-        assert_eq!(refused(device(), output.clone()), None, "{output:?}");
+        for output in kinds(color, depth, stencil, planes, samples) {
+            assert_eq!(refused(device(), output.clone()), None, "{output:?}");
+        }
     }
     let unsigned = vk::Format::R8G8B8A8_UINT;
     let signed = vk::Format::R32G32B32A32_SINT;
@@ -93,11 +114,19 @@ fn attachments_that_do_not_fit_are_refused() {
         (&[COLOR], DEPTH, BOTH, Planes::Color, "stencil"),
         (&[COLOR], DEPTH, COLOR, Planes::Color, "stencil"),
     ] {
-        let output = dynamic(color, depth, stencil, planes, 1);
-        assert_refused(device(), output, Usage, Some(key));
+        for output in kinds(color, depth, stencil, planes, 1) {
+            assert_refused(device(), output, Usage, Some(key));
+        }
     }
-    let output = dynamic(&[packed], DEPTH, NONE, Planes::Color, 1);
-    assert_refused(device(), output, Unsupported, None);
+    for output in kinds(&[packed], DEPTH, NONE, Planes::Color, 1) {
+        assert_refused(device(), output, Unsupported, None);
+    }
+    let two = single_subpass(&[COLOR], DEPTH, Planes::Color, 1);
+    let Output::Pass(mut two) = two else {
+        panic!("no pass");
+    };
+    two.views = 2;
+    assert_refused(device(), Output::Pass(two), Usage, Some("views"));
     let null = PassKind::RenderPass {
         pass: vk::RenderPass::null(),
         subpass: 0,

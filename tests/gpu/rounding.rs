@@ -10,7 +10,7 @@ use crate::common::{eye, offset, reference, scene_of, shapes, sized};
 use crate::spirv::{Arithmetic, edited};
 use ash::vk;
 use revmap::frame::Frame;
-use revmap::gpu::{self, Device, HostDevice};
+use revmap::gpu::{Device, HostDevice};
 use revmap::maps::MapFormat;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
@@ -69,7 +69,9 @@ fn drawn(scene: &Scene, settings: &Settings, how: Option<Arithmetic>) -> Edited 
     EDITS.store(0, SeqCst);
     // SAFETY: the host's own handles; the device is dropped before the host.
     let device = unsafe { Device::borrow(&planted) }.unwrap();
-    let frame = gpu::draw(&device, scene, settings).unwrap().frame;
+    let frame = revmap_offscreen::draw(&device, scene, settings)
+        .unwrap()
+        .frame;
     *HOW.lock().unwrap() = None;
     Edited {
         frame,

@@ -3,9 +3,9 @@
 use crate::common::{device, sized};
 use crate::embedding::{hundred, three};
 use revmap::frame::Frame;
-use revmap::gpu::{Offscreen, OffscreenOptions};
 use revmap::scene::{Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings};
+use revmap_offscreen::{Offscreen, OffscreenOptions};
 
 /// Three solids, with copies of one, or in each other's shadows.
 fn scenes() -> [(&'static str, Scene); 3] {
@@ -30,7 +30,7 @@ fn both(scene: &Scene, settings: &Settings, samples: u32) -> [(Frame, f32); 2] {
     // A first frame of few rays is one submission; its time divides the second.
     [1, settings.height.div_ceil(8)].map(|submissions| {
         assert_eq!(drawn.draw().unwrap().submissions, submissions);
-        paths.push(drawn.draw_paths());
+        paths.push(drawn.renderer().draw_paths());
         assert_eq!(paths.last(), paths.first());
         let mut frame = drawn.read().unwrap();
         let steps = frame.steps.iter().sum();

@@ -4,10 +4,11 @@ use crate::common::ways::STAGES;
 use crate::common::{
     device, draw, drawn_by, eye, next_frame, placement, reference, scene_of, shapes, updated,
 };
-use revmap::gpu::{Device, INSTANCE_BYTES, Offscreen};
+use revmap::gpu::{Device, INSTANCE_BYTES};
 use revmap::scene::{Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
 use revmap_lab::compare::pixel_errors;
+use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage, pixels: f64) -> Settings {
     Settings {
@@ -17,7 +18,12 @@ fn settings(stage: DrawStage, pixels: f64) -> Settings {
 }
 
 fn levels(offscreen: &Offscreen) -> Vec<Option<u32>> {
-    offscreen.object_costs().iter().map(|c| c.level).collect()
+    offscreen
+        .renderer()
+        .object_costs()
+        .iter()
+        .map(|c| c.level)
+        .collect()
 }
 
 /// Solids of all sizes on the screen, from the side and from above.
@@ -38,7 +44,7 @@ fn errors_stay_below_the_tolerance() {
                     let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
                     let frame = next_frame(&mut offscreen);
                     let found = pixel_errors(&scene, &truth, &frame).unwrap();
-                    let cost = offscreen.object_costs()[0];
+                    let cost = offscreen.renderer().object_costs()[0];
                     let most = cost.error_pixels.unwrap();
                     let what = format!(
                         "{name} from {distance} at {elevation}, {stage:?}, {pixels}: {cost:?}, {found:?}"
@@ -70,7 +76,7 @@ fn a_picture_follows_from_the_view_alone() {
         let mut drawn = |scene: &Scene| {
             let frame = updated(&mut offscreen, scene);
             let level = levels(&offscreen)[0].unwrap();
-            (frame, level, offscreen.rebuild_count())
+            (frame, level, offscreen.renderer().rebuild_count())
         };
         let (first, fine, made) = drawn(&near);
         // The exact surface is not made where it is not drawn.
@@ -92,7 +98,7 @@ fn no_tolerance_is_the_exact_level() {
     let of = |pixels| {
         let settings = settings(DrawStage::Fragment, pixels);
         let offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
-        offscreen.object_costs()[0]
+        offscreen.renderer().object_costs()[0]
     };
     let all = [0.0, 0.05, 0.25, 2.0].map(of);
     assert_eq!(all[0].level, Some(0));
@@ -114,7 +120,7 @@ fn a_memory_budget_is_kept() {
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     offscreen.draw().unwrap();
     let taken = device.memory_use().total();
-    assert!(taken > offscreen.device_bytes());
+    assert!(taken > offscreen.renderer().device_bytes());
     device.set_memory_budget(Some(taken + (1 << 20)));
     let error = Offscreen::new(&device, &scene, &settings).err().unwrap();
     assert!(error.message.contains("memory budget"), "{error}");

@@ -11,9 +11,10 @@ use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostDevice, Offscreen, Requirements};
+use revmap::gpu::{Device, DrawPath, HostDevice, Requirements};
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage) -> Settings {
     Settings {
@@ -272,7 +273,7 @@ fn a_device_without_what_is_optional_draws_the_same() {
             assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
             if mask.varyings && stage == DrawStage::Fragment {
                 // Cells need more varyings, so tiles are drawn; the visible solids are the same.
-                assert_eq!(drawn.draw_paths(), [DrawPath::Tiles; 3]);
+                assert_eq!(drawn.renderer().draw_paths(), [DrawPath::Tiles; 3]);
                 let frame = drawn.read().unwrap();
                 let differ = |&i: &usize| frame.hits(i) != wanted.hits(i);
                 let differ = (0..frame.pixels()).filter(differ).count();

@@ -6,10 +6,11 @@ use crate::common::{
     device, draw, drawn_by, eye, next_frame, placement, scene_of, shapes, updated,
 };
 use revmap::error::ErrorKind;
-use revmap::gpu::{Device, DrawPath, Offscreen};
+use revmap::gpu::{Device, DrawPath};
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use revmap_searches::{CIRCLE, CONE};
 
 fn settings(stage: DrawStage) -> Settings {
@@ -164,14 +165,18 @@ fn only_what_has_changed_is_cut() {
         let mut check = |scene: &Scene, cuts: u64, what: &str| {
             renderer.update(scene).unwrap();
             let cuts = if solver.reads_map() { 0 } else { cuts };
-            let found = renderer.rebuild_count();
+            let found = renderer.renderer().rebuild_count();
             assert_eq!(found, cuts, "{solver}, {stage:?}: {what}");
             let way = match (solver, stage) {
                 (Solver::Exact, DrawStage::Fragment) => DrawPath::Cells,
                 (Solver::Other(_), _) => DrawPath::Box,
                 _ => DrawPath::Tiles,
             };
-            assert_eq!(renderer.draw_paths(), [way; 3], "{solver}: {what}");
+            assert_eq!(
+                renderer.renderer().draw_paths(),
+                [way; 3],
+                "{solver}: {what}"
+            );
             let fresh = draw(scene, &settings);
             let kept = next_frame(&mut renderer);
             assert_eq!(fresh.first_difference(&kept), None, "{solver}: {what}");
@@ -203,7 +208,11 @@ fn only_what_has_changed_is_cut() {
         renderer.update(&scene).unwrap();
         let none = [DrawPath::Nothing; 3];
         let by_tiles = !matches!(solver, Solver::Other(_));
-        assert_eq!(renderer.draw_paths() == none, by_tiles, "{solver}");
+        assert_eq!(
+            renderer.renderer().draw_paths() == none,
+            by_tiles,
+            "{solver}"
+        );
         let frame = next_frame(&mut renderer);
         assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }
@@ -274,7 +283,7 @@ fn no_cut_compiles_a_pipeline() {
         for extend in [0.0, 0.01, 0.2, 0.3] {
             scene.objects[0].offset.extend = extend;
             renderer.update(&scene).unwrap();
-            assert_eq!(renderer.draw_paths(), [path], "{extend}");
+            assert_eq!(renderer.renderer().draw_paths(), [path], "{extend}");
             renderer.draw().unwrap();
             let now = device.pipelines_compiled();
             assert_eq!(now, compiled, "{stage:?}: {extend}");
@@ -311,7 +320,7 @@ fn pipelines_of_large_tables_are_compiled() {
         let compiled = device.pipelines_compiled();
         renderer.draw().unwrap();
         assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}");
-        assert!(renderer.object_costs()[0].table_bytes > least);
+        assert!(renderer.renderer().object_costs()[0].table_bytes > least);
         // Many copies use other pipelines, which also depend on the size of tables.
         let mut crowd = scene.clone();
         crowd.objects[0].instances = (0..70)
@@ -322,7 +331,11 @@ fn pipelines_of_large_tables_are_compiled() {
         renderer.prewarm().unwrap();
         let compiled = device.pipelines_compiled();
         renderer.draw().unwrap();
-        assert_eq!(renderer.draw_paths(), [DrawPath::Tiles], "{stage:?}");
+        assert_eq!(
+            renderer.renderer().draw_paths(),
+            [DrawPath::Tiles],
+            "{stage:?}"
+        );
         assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}, copies");
     }
     device.check().unwrap();

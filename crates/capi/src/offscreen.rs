@@ -8,10 +8,10 @@ use crate::object::RevmapObjectInfo;
 use crate::pointers::{described, fill, read, read_all, text};
 use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
 use revmap::frame::Frame;
-use revmap::gpu::Offscreen;
 use revmap::scene::Scene;
 use revmap::settings::{Planes, Settings};
 use revmap_files::Picture;
+use revmap_offscreen::Offscreen;
 use std::ffi::{c_char, c_void};
 use std::sync::{Arc, Mutex};
 

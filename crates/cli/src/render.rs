@@ -5,15 +5,16 @@ use super::progress::Progress;
 use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
-use revmap::antialias;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost, Times};
+use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost};
 use revmap::scene::{Object, Scene};
 use revmap::settings::{Planes, Tolerance, name_of};
 use revmap_files::SceneFile;
 use revmap_lab::method::{Edges, Method, MethodSettings};
 use revmap_lab::renderer::MethodDevice;
+use revmap_offscreen::Times;
+use revmap_offscreen::antialias;
 use revmap_reference as reference;
 use revmap_searches::folder;
 use serde_json::json;
@@ -141,7 +142,7 @@ impl Render {
             progress.report(times.len(), 1 + self.samples.count as usize);
             renderer.read()
         })?;
-        let costs = renderer.offscreen.object_costs();
+        let costs = renderer.offscreen.renderer().object_costs();
         let device_bytes = renderer.device_bytes();
         if let Some(file) = &self.levels {
             // Colours encode levels and are not mixed.
@@ -149,7 +150,7 @@ impl Render {
                 edges: Edges::OneRay,
                 ..*settings
             };
-            let copies = renderer.offscreen.copy_levels();
+            let copies = renderer.offscreen.renderer().copy_levels();
             let painted = levels::painted(scene, &costs, &copies);
             let mut renderer = method_device.renderer(&painted, &settings)?;
             renderer.draw()?;
@@ -166,7 +167,7 @@ impl Render {
                 submissions: times.iter().map(|t| t.submissions).sum(),
             },
             map_bytes: renderer.map_bytes(),
-            notes: renderer.offscreen.notes().to_vec(),
+            notes: renderer.offscreen.renderer().notes().to_vec(),
             costs,
             device_bytes,
             warnings: Vec::new(),

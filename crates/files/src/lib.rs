@@ -5,7 +5,7 @@
 //! picture, a whole scene from TOML.
 //!
 //! ```no_run
-//! use revmap::{gpu, scene::Object, settings::Settings};
+//! use revmap::{gpu::Device, scene::Object, settings::Settings};
 //! use revmap_files::ProfileAxis;
 //!
 //! // A scene file with all that it names, and one object more.
@@ -13,8 +13,8 @@
 //! let pawn = revmap_files::profile("pawn.svg", ProfileAxis::Center)?;
 //! scene.objects.push(Object::new("pawn", pawn.into()));
 //!
-//! let device = gpu::Device::open(None)?;
-//! let drawn = gpu::draw(&device, &scene, &Settings::default())?;
+//! let device = Device::open(None)?;
+//! let drawn = revmap_offscreen::draw(&device, &scene, &Settings::default())?;
 //! revmap_files::write_png(&drawn.frame, "board.png")?;
 //! revmap_files::write_exr(&drawn.frame, "board.exr")?;
 //! # Ok::<(), revmap::Error>(())

@@ -5,9 +5,10 @@ use crate::mesh::{MeshLayer, MeshPipelines};
 use crate::method::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, Guest, Offscreen, OffscreenOptions, Times};
+use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::{Settings, Solver};
+use revmap_offscreen::{Guest, Offscreen, OffscreenOptions, Times};
 use revmap_searches::folder::check_scene;
 use revmap_searches::watchdog::watched;
 use std::sync::{Arc, OnceLock};
@@ -127,21 +128,21 @@ impl MethodRenderer {
         self.offscreen.read()
     }
 
-    /// As [`Offscreen::rebuild_count`], or how many meshes were made.
+    /// As [`Renderer::rebuild_count`](revmap::gpu::Renderer::rebuild_count), or how many meshes were made.
     pub fn rebuild_count(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.made_count());
-        meshes.unwrap_or_else(|| self.offscreen.rebuild_count())
+        meshes.unwrap_or_else(|| self.offscreen.renderer().rebuild_count())
     }
 
     /// Bytes on the device: of shape maps and tables, or of meshes; of colours and displacements.
     pub fn map_bytes(&self) -> [u64; 2] {
         let meshes = self.meshes.as_ref().map(|meshes| [meshes.bytes(), 0]);
-        meshes.unwrap_or_else(|| self.offscreen.map_bytes())
+        meshes.unwrap_or_else(|| self.offscreen.renderer().map_bytes())
     }
 
-    /// As [`Offscreen::device_bytes`]; of a mesh its own bytes.
+    /// As [`Renderer::device_bytes`](revmap::gpu::Renderer::device_bytes); of a mesh its own bytes.
     pub fn device_bytes(&self) -> u64 {
         let meshes = self.meshes.as_ref().map(|meshes| meshes.bytes());
-        meshes.unwrap_or_else(|| self.offscreen.device_bytes())
+        meshes.unwrap_or_else(|| self.offscreen.renderer().device_bytes())
     }
 }

@@ -17,7 +17,6 @@ mod common {
 
 use common::passing::{Count, count};
 use common::{assert_sound, device, draw, eye, placement, reference, scene_of, shapes};
-use revmap::gpu;
 use revmap::profile::Profile;
 use revmap::scene::{Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
@@ -176,7 +175,7 @@ fn what_is_not_single_valued_is_refused() {
     for (name, profile) in [("torus", shapes::torus()), ("glass", shapes::glass())] {
         let mut scene = scene_of(shapes::sphere(), eye(20.0, 2.0));
         scene.objects.push(Object::new(name, Arc::new(profile)));
-        let error = gpu::draw(device(), &scene, &settings()).unwrap_err();
+        let error = revmap_offscreen::draw(device(), &scene, &settings()).unwrap_err();
         assert_eq!(error.key.as_deref(), Some("object.1.profile"), "{error}");
         let text = error.to_string();
         let says = |words| text.contains(words);

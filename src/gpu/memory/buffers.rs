@@ -2,9 +2,8 @@
 //!
 //! | use | the host | the device | memory |
 //! |---|---|---|---|
-//! | [`Bins`](Use::Bins), [`Pixels`](Use::Pixels) | never touches it | writes and reads it | of the device |
+//! | [`Bins`](Use::Bins) | never touches it | writes and reads it | of the device |
 //! | [`Upload`](Use::Upload) | writes it once | copies from it once | of the host |
-//! | [`ReadBack`](Use::ReadBack) | reads it | copies into it | of the host, cached where there is such |
 //! | others | writes it every frame | reads it | of the device, seen by the host |
 //!
 //! Device memory replaces host memory, and the reverse, on a device that has no other. Memory that
@@ -153,12 +152,8 @@ pub(crate) enum Use {
     Indices,
     /// Bins of tiles, which the device fills and counts.
     Bins,
-    /// Words of pixels, which shaders write.
-    Pixels,
     /// Bytes that are copied to the device once.
     Upload,
-    /// Bytes that the host reads.
-    ReadBack,
 }
 
 impl Use {
@@ -169,16 +164,13 @@ impl Use {
             Self::Draws => B::INDIRECT_BUFFER,
             Self::Indices => B::INDEX_BUFFER,
             Self::Bins => B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST,
-            Self::Pixels => B::STORAGE_BUFFER | B::TRANSFER_DST | B::TRANSFER_SRC,
             Self::Upload => B::TRANSFER_SRC,
-            Self::ReadBack => B::TRANSFER_DST,
         }
     }
 
     fn location(self) -> MemoryLocation {
         match self {
-            Self::Bins | Self::Pixels => MemoryLocation::GpuOnly,
-            Self::ReadBack => MemoryLocation::GpuToCpu,
+            Self::Bins => MemoryLocation::GpuOnly,
             _ => MemoryLocation::CpuToGpu,
         }
     }

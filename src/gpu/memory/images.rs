@@ -13,17 +13,24 @@ use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
 
 /// The parameters of an image; always 2D, one layer.
-#[derive(Clone, Copy)]
-pub(crate) struct ImageKind {
+#[derive(Clone, Copy, Debug)]
+pub struct ImageKind {
+    /// Format of colours, or `D32_SFLOAT`.
     pub format: vk::Format,
+    /// Width in texels.
     pub width: u32,
+    /// Height in texels.
     pub height: u32,
+    /// Number of mip levels.
     pub mips: u32,
+    /// Samples of a texel.
     pub samples: vk::SampleCountFlags,
+    /// Uses.
     pub usage: vk::ImageUsageFlags,
 }
 
 impl ImageKind {
+    /// Colour or depth.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
         if self.format == vk::Format::D32_SFLOAT {
             vk::ImageAspectFlags::DEPTH
@@ -32,6 +39,7 @@ impl ImageKind {
         }
     }
 
+    /// The whole image.
     pub fn range(&self) -> vk::ImageSubresourceRange {
         vk::ImageSubresourceRange::default()
             .aspect_mask(self.aspect())
@@ -40,16 +48,20 @@ impl ImageKind {
     }
 }
 
-pub(crate) struct Image {
+/// An image with its memory. The owner must wait for the device before dropping it.
+pub struct Image {
+    /// The image.
     pub raw: vk::Image,
+    /// A view of the whole image.
     pub view: vk::ImageView,
+    /// The parameters that it was made with.
     pub kind: ImageKind,
     allocation: Option<Allocation>,
     device: Arc<Shared>,
 }
 
 impl Image {
-    pub fn new(device: &Arc<Shared>, name: &str, kind: ImageKind) -> Result<Self> {
+    pub(crate) fn new(device: &Arc<Shared>, name: &str, kind: ImageKind) -> Result<Self> {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(kind.format)
@@ -90,12 +102,13 @@ impl Image {
     }
 
     /// Bytes of memory that the image takes.
+    #[must_use]
     pub fn bytes(&self) -> u64 {
         self.allocation.as_ref().map_or(0, Allocation::size)
     }
 
     /// Records a barrier between two uses of the image.
-    pub fn barrier(&self, cmd: vk::CommandBuffer, from: Usage, to: Usage) {
+    pub(crate) fn barrier(&self, cmd: vk::CommandBuffer, from: Usage, to: Usage) {
         let barrier = vk::ImageMemoryBarrier::default()
             .src_access_mask(from.access())
             .dst_access_mask(to.access())

@@ -11,7 +11,7 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 
 pub use buffers::Buffer;
-pub(crate) use images::{Image, ImageKind};
+pub use images::{Image, ImageKind};
 
 fn allocate(
     device: &Shared,

@@ -4,7 +4,6 @@ use crate::error::{Error, ErrorKind, Result, usage};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::attachments;
 use crate::maps::MapFormat;
 use crate::settings::{Plane, Planes, SearchSettings, Solver};
 use ash::vk;
@@ -84,6 +83,10 @@ impl PassFormats {
             let message = "only depths alone have a bias for slopes; draw Planes::Depth";
             return usage("slope_bias", message);
         }
+        if views > 1 && matches!(self.begun, PassKind::SingleSubpass { .. }) {
+            let message = "a pass known by its formats has one view; give the render pass";
+            return usage("views", message);
+        }
         if views > 1 && all {
             let message = "all planes are drawn for one view; give a list of planes";
             return usage("views", message);
@@ -91,7 +94,7 @@ impl PassFormats {
         if ![1, 2, 4, 8].contains(&samples) {
             return usage("samples", format!("{samples} samples; give 1, 2, 4 or 8"));
         }
-        let (planes, most) = (attachments(self.planes), limits.max_color_attachments);
+        let (planes, most) = (self.planes.attachments(), limits.max_color_attachments);
         if planes > most as usize {
             let message = format!("{planes} planes; the device draws into {most} at once");
             return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
@@ -104,6 +107,9 @@ impl PassFormats {
             PassKind::RenderPass { .. } => {
                 let colors = limits.framebuffer_color_sample_counts;
                 self.check_counts(device, colors & limits.framebuffer_depth_sample_counts)
+            }
+            PassKind::SingleSubpass { color, depth } => {
+                self.check_formats(device, color, *depth, vk::Format::UNDEFINED)
             }
             PassKind::Dynamic {
                 color,
@@ -122,7 +128,7 @@ impl PassFormats {
     ) -> Result<()> {
         use vk::ImageAspectFlags as A;
         use vk::ImageUsageFlags as U;
-        let (planes, count, wanted) = (self.planes, color.len(), attachments(self.planes));
+        let (planes, count, wanted) = (self.planes, color.len(), self.planes.attachments());
         if count != wanted {
             let message = format!("{count} attachments for the planes {planes:?}; give {wanted}");
             return usage("color", message);

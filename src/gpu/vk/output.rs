@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::frame::srgb_from_linear;
 use crate::plan::DepthOrder;
 use crate::settings::Planes;
-use crate::shader::generated::{SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
+use crate::shader::generated::{EXHAUSTED_BIT, SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
 use ash::vk;
 
 /// The destination of a renderer's work, fixed when the renderer is made.
@@ -138,6 +138,15 @@ pub enum PassKind {
         /// The subpass, which has the colour attachments of the planes and a depth attachment.
         subpass: u32,
     },
+    /// A render pass of one view and one subpass, without input attachments and dependencies, known
+    /// by its formats. Renderers of one device share the pipelines for equal formats, as with dynamic
+    /// rendering; those for a given pass are a renderer's own.
+    SingleSubpass {
+        /// Formats of the colour attachments in order; empty if only depth is drawn.
+        color: Vec<vk::Format>,
+        /// Format of the depth attachment.
+        depth: vk::Format,
+    },
     /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
     Dynamic {
         /// Formats of the colour attachments in order; empty if only depth is drawn.
@@ -205,8 +214,9 @@ pub struct ComputeTarget {
     /// A storage buffer of two 32-bit words per pixel, row by row from the top. The first half
     /// holds the depths of all pixels, as bits of floats. The second half holds a second word of
     /// each pixel. This word is the colour, packed as `R8G8B8A8_SRGB`, if only colour is drawn,
-    /// else a count of look-ups. Before a frame the host clears depths to 1.0 and colours to its
-    /// background, or fills in what is already drawn.
+    /// else a count of look-ups with the bit [`ComputeTarget::EXHAUSTED`]. Before a frame the host
+    /// clears depths to 1.0 and second words to its background or 0, or fills in what is already
+    /// drawn.
     pub words: vk::Buffer,
     /// Storage images of all planes, `R32G32B32A32_SFLOAT` in the layout `GENERAL`. Empty if only
     /// colour is drawn, or if fragments draw.
@@ -218,6 +228,9 @@ pub struct ComputeTarget {
 }
 
 impl ComputeTarget {
+    /// The bit of a pixel's count of look-ups which says that one of its rays ran out of steps.
+    pub const EXHAUSTED: u32 = EXHAUSTED_BIT;
+
     /// The second word of a pixel of this linear colour, if only colour is drawn: the same sRGB word
     /// as `pack_srgb` of `stores.glsl` gives.
     #[must_use]

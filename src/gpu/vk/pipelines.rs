@@ -7,9 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::render_pass;
 use crate::gpu::vk::shading::{BoundShading, HostShading};
-use crate::settings::Planes;
 use crate::shader::Pushed;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID};
 use crate::shader::{Kind, Variant};
@@ -52,8 +50,6 @@ pub(crate) struct Pipelines {
     made: Mutex<HashMap<Key, vk::Pipeline>>,
     compiled: AtomicU64,
     owners: AtomicU64,
-    /// The passes of off-screen frames. A pass lives as long as the pipelines that are keyed by it.
-    passes: Mutex<HashMap<(Planes, bool, u32, bool), vk::RenderPass>>,
     flags: vk::PipelineCreateFlags,
     /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
@@ -101,7 +97,6 @@ impl Pipelines {
             made: Mutex::default(),
             compiled: AtomicU64::new(0),
             owners: AtomicU64::new(0),
-            passes: Mutex::default(),
             flags: vk::PipelineCreateFlags::empty(),
             constants,
             #[cfg(feature = "other-shaders")]
@@ -190,13 +185,13 @@ impl Pipelines {
     /// are the renderer's own: the host may destroy its pass once the renderer is gone, and make
     /// another of the same handle. All others are shared.
     pub fn owner(&self, output: &Output, host: Option<&HostShading>) -> Result<Owner> {
-        let of_host = match output {
+        let of_host = matches!(
+            output,
             Output::Pass(PassFormats {
-                begun: PassKind::RenderPass { pass, .. },
+                begun: PassKind::RenderPass { .. },
                 ..
-            }) => !self.is_own(*pass),
-            _ => false,
-        };
+            })
+        );
         let bound = |host| BoundShading::new(&self.raw, host, &self.set_layouts, pushed());
         let number = || self.owners.fetch_add(1, Ordering::Relaxed) + 1;
         Ok(Owner {
@@ -220,34 +215,6 @@ impl Pipelines {
                 key.owner != owner
             });
         }
-    }
-
-    fn is_own(&self, pass: vk::RenderPass) -> bool {
-        let passes = self.passes.lock();
-        passes.is_ok_and(|passes| passes.values().any(|own| *own == pass))
-    }
-
-    /// Returns the render pass of off-screen frames, made now if it is new. `resumes`: other pixels
-    /// keep what an earlier pass drew.
-    pub fn own_pass(
-        &self,
-        planes: Planes,
-        keeps_depths: bool,
-        samples: u32,
-        resumes: bool,
-    ) -> Result<vk::RenderPass> {
-        let mut passes = self
-            .passes
-            .lock()
-            .map_err(|_| Error::new(ErrorKind::Other, "the render passes' lock is poisoned"))?;
-        let key = (planes, keeps_depths, samples, resumes);
-        if let Some(known) = passes.get(&key) {
-            return Ok(*known);
-        }
-        let count = vk::SampleCountFlags::from_raw(samples);
-        let made = render_pass(&self.raw, planes, keeps_depths, count, resumes)?;
-        passes.insert(key, made);
-        Ok(made)
     }
 
     /// The number of pipelines that were compiled.
@@ -294,18 +261,10 @@ fn pushed() -> vk::PushConstantRange {
 impl Drop for Pipelines {
     fn drop(&mut self) {
         let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
-        let passes = self
-            .passes
-            .get_mut()
-            .map(std::mem::take)
-            .unwrap_or_default();
         // SAFETY: the device's last user is gone; null handles may be destroyed.
         unsafe {
             for pipeline in made.into_values() {
                 self.raw.destroy_pipeline(pipeline, None);
-            }
-            for pass in passes.into_values() {
-                self.raw.destroy_render_pass(pass, None);
             }
             if self.owns_cache {
                 self.raw.destroy_pipeline_cache(self.cache, None);

@@ -10,18 +10,12 @@ pub(crate) enum Usage {
     Nothing,
     /// Copied or cleared into.
     TransferWrite,
-    /// Copied from.
-    TransferRead,
     /// Sampled by any shader.
     Sampled,
     /// Written, and perhaps read, by compute shaders.
     ComputeWrite,
     /// Read by compute shaders and as the groups of an indirect dispatch.
     TileRead,
-    /// Added to by fragment shaders.
-    FragmentAtomic,
-    /// Read by the host.
-    HostRead,
 }
 
 impl Usage {
@@ -29,12 +23,10 @@ impl Usage {
         use vk::PipelineStageFlags as S;
         match self {
             Self::Nothing => S::TOP_OF_PIPE,
-            Self::TransferWrite | Self::TransferRead => S::TRANSFER,
+            Self::TransferWrite => S::TRANSFER,
             Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::ComputeWrite => S::COMPUTE_SHADER,
             Self::TileRead => S::COMPUTE_SHADER | S::DRAW_INDIRECT,
-            Self::FragmentAtomic => S::FRAGMENT_SHADER,
-            Self::HostRead => S::HOST,
         }
     }
 
@@ -43,11 +35,9 @@ impl Usage {
         match self {
             Self::Nothing => A::empty(),
             Self::TransferWrite => A::TRANSFER_WRITE,
-            Self::TransferRead => A::TRANSFER_READ,
             Self::Sampled => A::SHADER_READ,
-            Self::ComputeWrite | Self::FragmentAtomic => A::SHADER_READ | A::SHADER_WRITE,
+            Self::ComputeWrite => A::SHADER_READ | A::SHADER_WRITE,
             Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
-            Self::HostRead => A::HOST_READ,
         }
     }
 
@@ -56,11 +46,8 @@ impl Usage {
         match self {
             Self::Nothing => L::UNDEFINED,
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
-            Self::TransferRead => L::TRANSFER_SRC_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite | Self::TileRead | Self::FragmentAtomic | Self::HostRead => {
-                L::GENERAL
-            }
+            Self::ComputeWrite | Self::TileRead => L::GENERAL,
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::host::{self, Options, Stage};
 use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
 use glam::{DMat4, DVec3};
-use revmap::gpu::{self, DepthOrder, Device, View};
+use revmap::gpu::{DepthOrder, Device, View};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
@@ -146,7 +146,11 @@ fn the_picture_in_cpp_is_what_rust_draws() {
         ..Settings::default()
     };
     let device = Device::open_validated(None).unwrap();
-    let wanted = Picture::of(&gpu::draw(&device, &scene, &settings).unwrap().frame);
+    let wanted = Picture::of(
+        &revmap_offscreen::draw(&device, &scene, &settings)
+            .unwrap()
+            .frame,
+    );
     let file = std::io::BufReader::new(std::fs::File::open(&png).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut found = vec![0; reader.output_buffer_size().unwrap()];

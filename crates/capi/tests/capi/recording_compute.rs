@@ -5,7 +5,7 @@ use crate::host::{Host, Stage, open};
 use crate::recording::{OPTIONS, RANGE, add, camera, lend, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
-use revmap::gpu::{Device, Offscreen};
+use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_capi::device::*;
 use revmap_capi::enums::*;
@@ -14,6 +14,7 @@ use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
 use revmap_files::Picture;
+use revmap_offscreen::Offscreen;
 use std::ptr::{null, null_mut};
 
 const PIXELS: usize = (OPTIONS.width * OPTIONS.height) as usize;

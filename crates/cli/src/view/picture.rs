@@ -8,11 +8,12 @@ use super::times::Cost;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, Offscreen, Times};
+use revmap::gpu::{Device, DrawPath};
 use revmap::settings::Settings;
 use revmap_files::Picture;
 use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_lab::report::pictures::steps;
+use revmap_offscreen::{Offscreen, Times};
 use revmap_searches::watchdog::watched;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
@@ -177,7 +178,7 @@ impl Painter {
             }
         };
         let times = watched(Some(settings.solver), || offscreen.draw())?;
-        self.draw_paths = offscreen.draw_paths();
+        self.draw_paths = offscreen.renderer().draw_paths();
         let (_, offscreen) = self.offscreen.insert((settings, offscreen));
         Ok((offscreen, times))
     }

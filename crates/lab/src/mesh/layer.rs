@@ -13,9 +13,10 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use pipelines::PipelineKey;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::gpu::{Buffer, Device, Guest, Offscreen, View, vulkan_error as vulkan};
+use revmap::gpu::{Buffer, Device, View, vulkan_error as vulkan};
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::{DrawStage, Planes};
+use revmap_offscreen::{Guest, Offscreen};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,14 +31,14 @@ pub(crate) struct MeshLayer {
     instances: Buffer,
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
-    pass: DrawnPass,
+    pass: vk::RenderPass,
+    kind: PassKind,
     pipelines: Arc<MeshPipelines>,
 }
 
-/// A pass that meshes are drawn in; it lives as long as the device's pipelines.
+/// Passes that are compatible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct DrawnPass {
-    pub raw: vk::RenderPass,
+pub(super) struct PassKind {
     pub samples: vk::SampleCountFlags,
     pub planes: Planes,
 }
@@ -74,8 +75,8 @@ impl MeshLayer {
             instances: instance_buffer(device, 1)?,
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
-            pass: DrawnPass {
-                raw: offscreen.render_pass(),
+            pass: offscreen.render_pass(),
+            kind: PassKind {
                 samples: vk::SampleCountFlags::from_raw(samples),
                 planes: settings.planes,
             },
@@ -138,7 +139,7 @@ impl MeshLayer {
                 }
             };
             let key = PipelineKey {
-                pass: self.pass,
+                pass: self.kind,
                 lights: lights.min(MAX_LIGHTS) as u32,
                 single: one.instances.len() == 1,
                 projection: one.projection,
@@ -148,7 +149,7 @@ impl MeshLayer {
             instances.extend(&one.instances);
             objects.push(DrawnObject {
                 mesh,
-                pipeline: self.pipelines.get(key)?,
+                pipeline: self.pipelines.get(key, self.pass)?,
                 block: one.block,
                 instances: first..instances.len() as u32,
                 start: one.start,

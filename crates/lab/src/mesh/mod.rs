@@ -1,8 +1,8 @@
 //! The mesh baseline: the same solids as triangles, drawn beside the searches for comparison.
 //!
 //! Data flows one way: contour → rings of a meridian → [`Mesh`] → the meshes of a scene → a drawer
-//! that records into an [`Offscreen`](revmap::gpu::Offscreen)'s pass as a
-//! [`Guest`](revmap::gpu::Guest). Nothing in [`revmap`] knows of it. Pass, depth buffer,
+//! that records into an [`Offscreen`](revmap_offscreen::Offscreen)'s pass as a
+//! [`Guest`](revmap_offscreen::Guest). Nothing in [`revmap`] knows of it. Pass, depth buffer,
 //! timestamps and reading back are the renderer's, so that times compare.
 //!
 //! Meshes draw plain colours with the renderer's shading. They refuse what they do not draw:

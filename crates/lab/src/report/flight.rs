@@ -10,9 +10,9 @@ use crate::compare::{PixelErrors, pixel_errors};
 use crate::method::{Edges, Method, MethodSettings};
 use crate::renderer::MethodDevice;
 use revmap::error::Result;
-use revmap::gpu::Times;
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, Tolerance};
+use revmap_offscreen::Times;
 use std::time::Instant;
 
 /// Frames before the first that counts: buffers grow, and drivers compile when they first draw.

@@ -2,8 +2,9 @@
 
 use crate::scenes::{eye, scene_of};
 use crate::shapes;
-use revmap::gpu::{Device, DrawPath, Offscreen};
+use revmap::gpu::{Device, DrawPath};
 use revmap::settings::{Planes, Settings, Solver};
+use revmap_offscreen::Offscreen;
 use shaderc_link::{Compiler, OptimizationLevel, spirv};
 
 const GLSL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders-glsl");
@@ -53,7 +54,7 @@ fn fetched_cells_are_passed_cells() {
         let [a, b] = [&passed, &fetched].map(|device| {
             let mut renderer = Offscreen::new(device, &scene, &settings).unwrap();
             renderer.draw().unwrap();
-            assert_eq!(renderer.draw_paths(), [DrawPath::Cells]);
+            assert_eq!(renderer.renderer().draw_paths(), [DrawPath::Cells]);
             renderer.read().unwrap()
         });
         assert!((0..a.pixels()).filter(|&k| a.hits(k)).count() > 2000);

@@ -4,7 +4,7 @@ use super::Pipelines;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::render_pass::attachments;
+use crate::gpu::vk::render_pass::CompatiblePass;
 use crate::gpu::vk::shading::BoundShading;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
@@ -178,12 +178,13 @@ impl Pipelines {
         let blends = vec![
             vk::PipelineColorBlendAttachmentState::default()
                 .color_write_mask(vk::ColorComponentFlags::RGBA);
-            attachments(pass.planes)
+            pass.planes.attachments()
         ];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
         let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let compatible;
         let mut info = vk::GraphicsPipelineCreateInfo::default()
             .flags(self.flags)
             .stages(&stages)
@@ -199,6 +200,10 @@ impl Pipelines {
         match &pass.begun {
             PassKind::RenderPass { pass, subpass } => {
                 info = info.render_pass(*pass).subpass(*subpass);
+            }
+            PassKind::SingleSubpass { color, depth } => {
+                compatible = CompatiblePass::new(&self.raw, color, *depth, pass.samples)?;
+                info = info.render_pass(compatible.raw);
             }
             PassKind::Dynamic {
                 color,

@@ -2,7 +2,7 @@
 
 use super::super::blocks::ObjectBlock;
 use super::super::tessellation::Vertex;
-use super::DrawnPass;
+use super::PassKind;
 use ash::vk;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::{Device, vulkan_error as vulkan};
@@ -30,7 +30,7 @@ pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
 /// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct PipelineKey {
-    pub pass: DrawnPass,
+    pub pass: PassKind,
     pub lights: u32,
     /// Whether the object is one instance, which its block holds.
     pub single: bool,
@@ -101,19 +101,19 @@ impl MeshPipelines {
         &self.device
     }
 
-    /// The pipeline of a key, compiled now if it is new.
-    pub(super) fn get(&self, key: PipelineKey) -> Result<vk::Pipeline> {
+    /// The pipeline of a key, compiled now for `pass` if it is new.
+    pub(super) fn get(&self, key: PipelineKey, pass: vk::RenderPass) -> Result<vk::Pipeline> {
         let gone = |_| Error::new(ErrorKind::Other, "the mesh pipelines' lock is poisoned");
         let mut made = self.made.lock().map_err(gone)?;
         if let Some(pipeline) = made.get(&key) {
             return Ok(*pipeline);
         }
-        let pipeline = self.make(key)?;
+        let pipeline = self.make(key, pass)?;
         made.insert(key, pipeline);
         Ok(pipeline)
     }
 
-    fn make(&self, key: PipelineKey) -> Result<vk::Pipeline> {
+    fn make(&self, key: PipelineKey, pass: vk::RenderPass) -> Result<vk::Pipeline> {
         let entry = |id: u32| {
             vk::SpecializationMapEntry::default()
                 .constant_id(id)
@@ -146,12 +146,12 @@ impl MeshPipelines {
             stage(vk::ShaderStageFlags::VERTEX, 0),
             stage(vk::ShaderStageFlags::FRAGMENT, fragment),
         ];
-        self.compile(key, &stages, attachments)
+        self.compile((key, pass), &stages, attachments)
     }
 
     fn compile(
         &self,
-        key: PipelineKey,
+        (key, pass): (PipelineKey, vk::RenderPass),
         stages: &[vk::PipelineShaderStageCreateInfo<'_>],
         attachments: usize,
     ) -> Result<vk::Pipeline> {
@@ -209,9 +209,9 @@ impl MeshPipelines {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(self.layout)
-            .render_pass(key.pass.raw);
+            .render_pass(pass);
         let none = vk::PipelineCache::null();
-        // SAFETY: what `info` points to lives until the call returns, the pass with the device.
+        // SAFETY: what `info` points to lives until the call returns, and so does the pass.
         let made = unsafe { (self.device.raw()).create_graphics_pipelines(none, &[info], None) };
         made.map(|all| all.first().copied().unwrap_or_default())
             .map_err(|(_, code)| vulkan("vkCreateGraphicsPipelines", code))

@@ -18,14 +18,14 @@ mod meridian;
 
 pub use coverage::coverage;
 
-use crate::error::Result;
-use crate::frame::Frame;
-use crate::scene::{CameraFrame, Object, Placement, Scene};
 use coverage::{Blend, Screen};
 use glam::{DVec2, DVec3};
 use lines::Sight;
 use meridian::Meridian;
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::frame::Frame;
+use revmap::scene::{CameraFrame, Object, Placement, Scene};
 use std::sync::Arc;
 
 /// Smooths the silhouettes of a frame of this scene. The frame must have distances; an infinite
@@ -55,7 +55,7 @@ impl Solids {
     pub fn update(&mut self, scene: &Scene) {
         self.of.truncate(scene.objects.len());
         for (number, object) in scene.objects.iter().enumerate() {
-            let known = self.of.get(number).filter(|(old, _)| old.equals(object));
+            let known = self.of.get(number).filter(|(old, _)| old == object);
             if known.is_none() {
                 let made = Meridian::new(object).ok().flatten().map(Arc::new);
                 let entry = (object.clone(), made);

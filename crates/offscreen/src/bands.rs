@@ -1,6 +1,6 @@
 //! Frames in several submissions, because systems reset a device whose submission takes seconds.
 
-use crate::shader::generated::GROUP_PIXELS;
+use revmap::gpu::View;
 use std::ops::Range;
 
 /// Most milliseconds of a submission on a GPU. Windows resets a device after 2 s.
@@ -11,7 +11,7 @@ const MOST_MS: f64 = 500.0;
 const FIRST_RAYS: u32 = 1 << 20;
 
 /// Divides frames into bands of rows, by the time that rows took.
-pub(super) struct Bands {
+pub(crate) struct Bands {
     /// Most milliseconds of a submission; infinite without a limit.
     most_ms: f64,
     /// Rays of a pixel.
@@ -56,7 +56,7 @@ impl Bands {
         };
         let end = match rows >= height - first {
             true => height,
-            false => first + (rows / GROUP_PIXELS).max(1) * GROUP_PIXELS,
+            false => first + (rows / View::ROW_STEP).max(1) * View::ROW_STEP,
         };
         first..end.min(height)
     }
@@ -81,7 +81,7 @@ mod tests {
         while row < size[1] {
             let rows = bands.next(row, size);
             assert!(rows.start == row && rows.end > row && rows.end <= size[1]);
-            assert!(rows.end.is_multiple_of(GROUP_PIXELS) || rows.end == size[1]);
+            assert!(rows.end.is_multiple_of(View::ROW_STEP) || rows.end == size[1]);
             let ms: f64 = rows.clone().map(&row_ms).sum();
             row = rows.end;
             bands.record(&rows, ms, row == size[1]);

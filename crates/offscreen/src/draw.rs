@@ -1,11 +1,9 @@
 //! The draws of a frame off screen, and their times.
 
-use super::Offscreen;
-use crate::error::Result;
-use crate::settings::DrawStage;
+use crate::offscreen::Offscreen;
 use ash::vk;
+use revmap::error::Result;
 use std::ops::Range;
-use std::time::Instant;
 
 /// The times of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,7 +15,7 @@ pub struct Times {
     /// Milliseconds from submission to completion by the wall clock.
     pub frame_ms: f64,
     /// Submissions of the frame, each of some rows
-    /// ([`OffscreenOptions::submission_ms`](super::OffscreenOptions::submission_ms)). The times are
+    /// ([`OffscreenOptions::submission_ms`](crate::OffscreenOptions::submission_ms)). The times are
     /// sums.
     pub submissions: u32,
 }
@@ -45,42 +43,40 @@ pub trait Guest {
 
 impl Offscreen {
     /// Compiles every pipeline that updates may need while no object's technique changes, as
-    /// [`Renderer::prewarm`](crate::gpu::Renderer::prewarm) does. Then runs each pipeline on
+    /// [`Renderer::prewarm`](revmap::gpu::Renderer::prewarm) does. Then runs each pipeline on
     /// nothing, because some drivers compile only then: see
-    /// [`Renderer::record_prewarm`](crate::gpu::Renderer::record_prewarm).
+    /// [`Renderer::record_prewarm`](revmap::gpu::Renderer::record_prewarm).
     ///
     /// # Errors
-    /// Errors of Vulkan calls; [`Usage`](crate::error::ErrorKind::Usage) after an update that failed half
-    /// way.
+    /// Errors of Vulkan calls; [`Usage`](revmap::error::ErrorKind::Usage) after an update that failed
+    /// half way.
     pub fn prewarm(&mut self) -> Result<()> {
         self.check_whole()?;
         self.renderer.prewarm()?.compile()?;
-        let compute = self.settings.stage == DrawStage::Compute;
-        let Self {
-            renderer, target, ..
-        } = self;
-        self.commands.record(|cmd| {
-            // SAFETY: as in `draw_with`.
+        let (renderer, target) = (&mut self.renderer, &self.target);
+        let background = self.scene.background;
+        self.commands.run(|cmd| {
+            // SAFETY: as in `draw_rows`.
             unsafe {
                 let frame = renderer.prepare(cmd, 0, &self.view)?;
-                target.clear(cmd, self.background, frame.reads_depths());
-                if compute {
+                target.clear(cmd, background, frame.reads_depths());
+                if target.is_compute() {
                     return renderer.record_prewarm(cmd, &frame);
                 }
-                target.begin(cmd, self.passes[0], self.background, &(0..target.height));
+                target.begin(cmd, background, &(0..self.settings.height));
                 renderer.record_prewarm(cmd, &frame)?;
-                self.device.raw.cmd_end_render_pass(cmd);
+                self.device.raw().cmd_end_render_pass(cmd);
             }
             Ok(())
         })?;
-        self.commands.submit_and_wait()
+        Ok(())
     }
 
     /// Draws one frame and waits for it.
     ///
     /// # Errors
-    /// Errors of Vulkan calls; [`Usage`](crate::error::ErrorKind::Usage) after an update that failed half
-    /// way.
+    /// Errors of Vulkan calls; [`Usage`](revmap::error::ErrorKind::Usage) after an update that failed
+    /// half way.
     pub fn draw(&mut self) -> Result<Times> {
         self.draw_with(None)
     }
@@ -118,24 +114,16 @@ impl Offscreen {
 
     /// Draws rows of a frame in one submission, and waits for it.
     fn draw_rows(&mut self, guest: Option<&dyn Guest>, rows: &Range<u32>) -> Result<Times> {
-        let start = Instant::now();
-        let Self {
-            renderer,
-            target,
-            commands,
-            clock,
-            background,
-            ..
-        } = self;
-        let (begins, height) = (rows.start == 0, self.settings.height);
-        let whole = begins && rows.end == height;
+        let (renderer, target, commands) = (&mut self.renderer, &self.target, &self.commands);
+        let background = self.scene.background;
+        let begins = rows.start == 0;
+        let whole = begins && rows.end == self.settings.height;
         let view = match whole {
             true => self.view,
             false => self.view.with_rows(rows.clone()),
         };
-        let compute = self.settings.stage == DrawStage::Compute;
-        let pass = self.passes[usize::from(!begins)];
-        commands.record(|cmd| {
+        let compute = target.is_compute();
+        let times = commands.run(|cmd| {
             // SAFETY: `cmd` is recording, and the previous submission was waited for.
             let frame = unsafe { renderer.prepare(cmd, 0, &view)? };
             if let (Some(guest), true, false) = (guest, begins, compute) {
@@ -143,9 +131,11 @@ impl Offscreen {
                 // returns.
                 unsafe { guest.prepare(cmd) };
             }
-            clock.start(cmd);
+            commands.start_clock(cmd);
             if begins {
-                target.clear(cmd, *background, !whole || frame.reads_depths());
+                target.clear(cmd, background, !whole || frame.reads_depths());
+            } else {
+                target.wait(cmd);
             }
             // SAFETY: the frame was prepared above; the target was cleared, the pass has the
             // output's formats and sets viewport and scissor; the commands are waited for before
@@ -154,26 +144,18 @@ impl Offscreen {
                 if compute {
                     renderer.record_compute(cmd, &frame)?;
                 } else {
-                    target.begin(cmd, pass, *background, rows);
+                    target.begin(cmd, background, rows);
                     renderer.record(cmd, &frame)?;
                     if let Some(guest) = guest {
                         guest.record(cmd);
                     }
-                    self.device.raw.cmd_end_render_pass(cmd);
+                    self.device.raw().cmd_end_render_pass(cmd);
                 }
             }
-            clock.stop(cmd);
+            commands.stop_clock(cmd);
             Ok(())
         })?;
-        let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
-        let start = Instant::now();
-        self.commands.submit_and_wait()?;
-        let frame_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(Times {
-            prepare_ms,
-            gpu_ms: self.clock.milliseconds()?,
-            frame_ms,
-            submissions: 1,
-        })
+        let gpu_ms = commands.gpu_ms()?;
+        Ok(Times { gpu_ms, ..times })
     }
 }

@@ -6,9 +6,9 @@
 //! form. The heights at which the cosine is 1 or -1 are the roots of a quadratic. If two patches
 //! meet at an angle, the surface turns away along an arc of their common circle.
 
-use crate::scene::{CameraFrame, Placement};
-use crate::surface::QuadricPatch;
 use glam::{DVec2, DVec3};
+use revmap::scene::{CameraFrame, Placement};
+use revmap::surface::QuadricPatch;
 use std::f64::consts::PI;
 
 /// A point of a line, on the screen.

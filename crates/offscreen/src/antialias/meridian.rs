@@ -1,10 +1,10 @@
 //! The part of an object's silhouettes that is independent of the view: its boundary as patches, as
 //! coarse as a copy's size on the screen allows.
 
-use crate::error::Result;
-use crate::scene::{GrownProfiles, Object, Placement};
-use crate::surface::{Contour, ContourSource, FitOptions, QuadricPatch, fit_patches};
 use glam::DVec2;
+use revmap::error::Result;
+use revmap::scene::{GrownProfiles, Object, Placement};
+use revmap::surface::{Contour, ContourSource, FitOptions, QuadricPatch, fit_patches};
 use std::sync::OnceLock;
 
 /// Number of levels, each twice as coarse as the one before.

@@ -1,15 +1,13 @@
 //! Conversion of a target's bytes to a frame.
 
 use crate::antialias::{self, Solids};
-use crate::error::Result;
-use crate::frame::{Frame, linear_from_srgb};
-use crate::plan::View;
-use crate::scene::CameraFrame;
-use crate::settings::{Planes, Settings};
-use crate::shader::generated::EXHAUSTED_BIT;
+use revmap::error::Result;
+use revmap::frame::{Frame, linear_from_srgb};
+use revmap::gpu::{ComputeTarget, View};
+use revmap::scene::CameraFrame;
+use revmap::settings::{Planes, Settings};
 
-/// Makes a frame of `planes`, which [`Target::read`](crate::gpu::offscreen::target::Target::read)
-/// returns.
+/// Makes a frame of `planes`, which [`Target::read`](crate::target::Target::read) returns.
 pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]]) -> Result<Frame> {
     let mut frame = Frame::new(settings.width, settings.height, background)?;
     match settings.planes {
@@ -36,8 +34,8 @@ pub(crate) fn frame(settings: &Settings, background: [f32; 4], planes: &[&[u8]])
                 frame.albedo[i] = [r, g, b];
                 frame.uv[i] = [u, v];
                 let word: u32 = bytemuck::pod_read_unaligned(&steps[4 * i..4 * i + 4]);
-                frame.exhausted += usize::from(word & EXHAUSTED_BIT != 0);
-                let count = word & !EXHAUSTED_BIT;
+                frame.exhausted += usize::from(word & ComputeTarget::EXHAUSTED != 0);
+                let count = word & !ComputeTarget::EXHAUSTED;
                 #[allow(clippy::cast_precision_loss)] // look-ups of a pixel stay far below 2^24
                 {
                     frame.steps[i] = count as f32;
@@ -53,7 +51,7 @@ pub(crate) fn smoothed(
     settings: &Settings,
     background: [f32; 4],
     planes: &[&[u8]],
-    (solids, camera): &(Solids, CameraFrame),
+    (solids, camera): (&Solids, &CameraFrame),
     view: &View,
 ) -> Result<Frame> {
     let [colors, depths] = planes else {
@@ -64,7 +62,10 @@ pub(crate) fn smoothed(
     let (colors, depths) = (colors.as_chunks().0, depths.as_chunks().0);
     let linear = Linear::new();
     let color = |pixel: usize| linear.color(&colors[pixel]);
-    let depth = |pixel: usize| view.along_at(f32::from_ne_bytes(depths[pixel]));
+    let depth = |pixel: usize| match f32::from_ne_bytes(depths[pixel]) {
+        depth if depth < 1.0 => view.t_at(f64::from(depth)),
+        _ => f64::INFINITY,
+    };
     let size = (settings.width, settings.height);
     let mut changes = Vec::new();
     // The two tasks are independent. The frame is made on the thread that also frees it: memory
