@@ -15,14 +15,13 @@ use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::resources::host_image::ObjectImages;
-use crate::gpu::resources::textures::{ShadowMaps, Textures};
+use crate::gpu::resources::textures::{ObjectImages, ShadowMaps, Textures};
 use crate::gpu::vk::output::Output;
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::{HostLook, ShadowCasters, Variant};
 use objects::{Objects, next_renderer};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use view_plan::ViewPlan;
 
 /// Objects, lights, and all that is derived from them.
@@ -31,7 +30,7 @@ pub(super) struct Content {
     pub textures: Textures,
     pub shadow_maps: Arc<ShadowMaps>,
     pub uploads: Uploads,
-    pub geometry: Arc<Geometry>,
+    pub geometry: Arc<Mutex<Geometry>>,
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
     pub lit: Lighting,
@@ -64,15 +63,15 @@ impl Content {
     /// No objects, for a renderer with this output.
     pub fn new(
         device: &Arc<Shared>,
-        geometry: Arc<Geometry>,
+        geometry: Arc<Mutex<Geometry>>,
         output: Output,
         settings: &SearchSettings,
     ) -> Result<Self> {
         let identity = next_renderer();
-        let mut uploads = Uploads::of(identity);
+        let mut uploads = Uploads::new(device);
         Ok(Self {
             objects: Objects::of(identity),
-            textures: Textures::new(device, &mut uploads, settings.map_format)?,
+            textures: Textures::new(&mut uploads, settings.map_format)?,
             shadow_maps: Arc::default(),
             uploads,
             geometry,

@@ -4,18 +4,17 @@
 
 use super::Content;
 use super::entry::{Derived, Entry};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
-use crate::gpu::resources::solid_cache::Solid;
-use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
+use crate::gpu::resources::textures::{BoundTextures, ShadowMaps};
 use crate::maps::Projection;
 use crate::scene::{GrownObject, Growth, Object};
 use crate::settings::Solver;
 use crate::shader::ShadowCasters;
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::solid::offset_surface::OffsetSurface;
-use crate::solid::outline_cache::OffsetContour;
+use crate::solid::cache::{OffsetContour, Solid};
+use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -146,7 +145,7 @@ impl Content {
     fn resolve(&mut self, numbers: &[u32]) -> Result<Vec<Resolved>> {
         let solver = self.settings.solver;
         let mut resolved = Vec::with_capacity(numbers.len());
-        let mut geometry = self.geometry.lock()?;
+        let mut geometry = lock(&self.geometry)?;
         for &number in numbers {
             let Some(entry) = self.objects.at(number) else {
                 continue;
@@ -160,7 +159,7 @@ impl Content {
                 contour = Some(solid.contour(&object.offset)?);
             } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
                 let rows = MapKey::new(object, &growth, &self.settings).rows;
-                table = Some(solid.search_table(search, &object.offset, rows)?);
+                table = Some(solid.surface(&object.offset, Recipe::Table { search, rows })?);
             }
             resolved.push(Resolved {
                 number,
@@ -264,8 +263,8 @@ impl Content {
         {
             return Ok(Some(there.clone()));
         }
-        let map = one.solid.map(&self.device, &mut self.uploads, key)?;
-        Ok(Some(map))
+        let (uploads, profile) = (&mut self.uploads, &wanted.profile);
+        Ok(Some(self.textures.shape(uploads, profile, key)?))
     }
 
     /// The maps that shadows read, including maps of changed objects. Returns the present value if
@@ -320,7 +319,8 @@ impl Content {
             |m| m.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {
-            Some(solid.arc(&self.device, &mut self.uploads, &facts)?)
+            let (uploads, profile) = (&mut self.uploads, &object.profile);
+            Some(self.textures.arc(uploads, profile, &facts)?)
         } else {
             None
         };
@@ -329,15 +329,15 @@ impl Content {
             let same = |m: &Arc<ShapeTexture>| Arc::ptr_eq(m, map);
             self.shadow_maps.maps.iter().position(same)
         });
-        let bound = ObjectTextures {
-            look: &object.texturing,
-            images: entry.latest_images(),
+        let bound = BoundTextures {
+            images: entry.latest_images().clone(),
             shape: one.map.clone(),
             arc: arc.clone(),
-            shadows: &self.shadow_maps,
+            shadows: self.shadow_maps.clone(),
         };
+        let (uploads, look) = (&mut self.uploads, &object.texturing);
         Ok(Derived {
-            textures: self.textures.set(&self.device, &mut self.uploads, bound)?,
+            textures: self.textures.set(uploads, look, bound)?,
             solid: solid.clone(),
             contour: one.contour.clone(),
             levels: one.table.iter().map(|table| (0, table.clone())).collect(),

@@ -128,9 +128,7 @@ impl Offscreen {
         let commands = Commands::new(&shared)?;
         let pass = |resumes| match settings.stage {
             DrawStage::Compute => Ok(vk::RenderPass::null()),
-            _ => shared
-                .pipelines()?
-                .own_pass(settings.planes, keeps_depths, samples, resumes),
+            _ => (shared.pipelines).own_pass(settings.planes, keeps_depths, samples, resumes),
         };
         let passes = [pass(false)?, pass(true)?];
         let target = Target::new(

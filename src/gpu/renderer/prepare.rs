@@ -4,15 +4,14 @@
 
 use super::Renderer;
 use super::slot::{BoundPlan, BoundStep};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::gpu::resources::block::{add_casters, frame_block, instance_block};
-use crate::gpu::resources::motion::last_block;
+use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
 use crate::plan::View;
 use crate::settings::Planes;
 use crate::shader::Kind;
 use crate::shader::OBJECT_STRIDE;
-use crate::solid::table_slot::{Part, Slot};
+use crate::solid::offset_surface::{Part, Slot};
 use ash::vk;
 use std::borrow::Cow;
 use std::iter;
@@ -100,7 +99,7 @@ impl Renderer {
         self.check(slot, view)?;
         let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
         let plan = self.content.plan(view, known)?;
-        self.slots[slot].staging = self.content.uploads.record(&self.device, cmd);
+        self.slots[slot].staging = self.content.uploads.record(cmd);
         let anew = {
             let bound = self.slots[slot].bound.as_ref();
             bound.is_none_or(|bound| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0)
@@ -166,9 +165,8 @@ impl Renderer {
         let parts = plan.objects.iter().zip(&frame.parts);
         let read =
             parts.flat_map(|(object, parts)| object.surfaces().map(|surface| (surface, *parts)));
-        let buffers = self.content.geometry.lock()?.store(read)?;
-        let pipelines = self.device.pipelines()?;
-        let output = &self.content.output;
+        let buffers = lock(&self.content.geometry)?.store(read)?;
+        let pipelines = &self.device.pipelines;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
         let mut steps = Vec::with_capacity(frame.steps.len());
@@ -195,8 +193,8 @@ impl Renderer {
             };
             steps.push(BoundStep {
                 pipeline: match self.hides {
-                    true => pipelines.known(variant, step.kind, output, &self.owner)?,
-                    false => Some(pipelines.get(variant, step.kind, output, &self.owner)?),
+                    true => pipelines.known(variant, step.kind, &self.owner)?,
+                    false => Some(pipelines.get(variant, step.kind, &self.owner)?),
                 },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
@@ -204,7 +202,7 @@ impl Renderer {
         }
         let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
         let crowd_pipelines = listed
-            .map(|step| pipelines.get(step.variant, step.kind, output, &self.owner))
+            .map(|step| pipelines.get(step.variant, step.kind, &self.owner))
             .collect::<Result<_>>()?;
         Ok(BoundPlan {
             plan: plan.clone(),

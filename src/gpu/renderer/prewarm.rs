@@ -7,7 +7,6 @@ use crate::gpu::content::Content;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
-use crate::gpu::vk::output::Output;
 use crate::gpu::vk::pipelines::Owner;
 use crate::plan::levels::LevelledCopies;
 use crate::plan::{PlanObject, variants};
@@ -20,7 +19,6 @@ use std::sync::Arc;
 /// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
-    output: Output,
     owner: Owner,
     device: Arc<Shared>,
 }
@@ -43,9 +41,9 @@ impl Prewarm {
     /// # Errors
     /// Errors of Vulkan calls.
     pub fn compile(&self) -> Result<()> {
-        let pipelines = self.device.pipelines()?;
+        let pipelines = &self.device.pipelines;
         for &(variant, kind) in &self.wanted {
-            pipelines.get(variant, kind, &self.output, &self.owner)?;
+            pipelines.get(variant, kind, &self.owner)?;
         }
         Ok(())
     }
@@ -69,7 +67,6 @@ impl Renderer {
                 .into_iter()
                 .map(|(v, k, _)| (v, k))
                 .collect(),
-            output: self.content.output.clone(),
             owner: self.owner.clone(),
             device: self.device.clone(),
         })
@@ -94,7 +91,7 @@ impl Renderer {
         frame: &PreparedFrame,
     ) -> Result<()> {
         let (slot, _) = self.frame(frame)?;
-        let pipelines = self.device.pipelines()?;
+        let pipelines = &self.device.pipelines;
         let raw = &self.device.raw;
         let compute = self.content.is_compute();
         if !compute {
@@ -105,7 +102,7 @@ impl Renderer {
             if !compute && kind.makes_lists() {
                 continue;
             }
-            let pipeline = pipelines.get(variant, kind, &self.content.output, &self.owner)?;
+            let pipeline = pipelines.get(variant, kind, &self.owner)?;
             let point = if compute {
                 vk::PipelineBindPoint::COMPUTE
             } else {

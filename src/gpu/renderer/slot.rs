@@ -111,7 +111,7 @@ impl FrameSlot {
             pool: vk::DescriptorPool::null(),
             device: device.clone(),
         };
-        let layouts = &device.pipelines()?.set_layouts;
+        let layouts = &device.pipelines.set_layouts;
         let sets = [FRAME_SET, TARGET_SET];
         let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
         slot.pool = pool;
