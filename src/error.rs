@@ -7,6 +7,7 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard};
 
 /// The result of every function in this crate that can fail.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -86,6 +87,13 @@ impl Error {
         self.key.get_or_insert_with(|| key.into());
         self
     }
+}
+
+/// Locks a value that threads share.
+pub(crate) fn lock<T>(shared: &Mutex<T>) -> Result<MutexGuard<'_, T>> {
+    let message = "a lock is poisoned: another thread panicked while it held it";
+    let poisoned = |_| Error::new(ErrorKind::Other, message);
+    shared.lock().map_err(poisoned)
 }
 
 impl fmt::Display for Error {

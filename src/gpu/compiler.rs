@@ -8,10 +8,10 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::create;
 use crate::gpu::device::instance::Instance;
-use crate::gpu::device::report::{DeviceReport, candidates, choose, text, variable};
+use crate::gpu::device::report::{DeviceReport, choose, text};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::pipelines::{Owner, Pipelines};
+use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
@@ -41,21 +41,11 @@ impl PipelineChoice {
     /// The name of the draw or dispatch: `cells`, `boxes`, `tiles of one copy`, ...
     #[must_use]
     pub fn path(&self) -> String {
-        let Self(variant, kind) = *self;
-        let name = match kind {
-            Kind::Boxes => "boxes",
-            Kind::Cells => "cells",
-            Kind::Quads => "quads of tiles",
-            Kind::Tiles => "tiles",
-            Kind::CrowdCopies => "copies of crowds",
-            Kind::CrowdTiles => "copies in tiles",
-            Kind::CrowdOrder => "copies in order",
-            Kind::TileLists => "lists of patches",
-            Kind::TilePatches => return format!("tiles of {} patches", variant.list_length),
-            Kind::TileTree => "tiles of one copy",
-            Kind::TileCopies => "tiles of several copies",
-        };
-        name.to_owned()
+        let Self(variant, kind) = self;
+        match kind {
+            Kind::TilePatches => format!("tiles of {} patches", variant.list_length),
+            _ => kind.label().to_string_lossy().replace("revmap ", ""),
+        }
     }
 }
 
@@ -79,7 +69,7 @@ pub struct PipelineCompiler {
     pub report: DeviceReport,
     /// The conditions of a device with every capability.
     conditions: Conditions,
-    asked: khr::pipeline_executable_properties::Device,
+    queries: khr::pipeline_executable_properties::Device,
     // Never destroyed.
     pipelines: ManuallyDrop<Pipelines>,
     _instance: ManuallyDrop<Instance>,
@@ -93,8 +83,7 @@ impl PipelineCompiler {
     /// without `VK_KHR_pipeline_executable_properties`; errors of Vulkan calls.
     pub fn open(choice: Option<&str>) -> Result<Self> {
         let instance = ManuallyDrop::new(Instance::from_environment()?);
-        let variable = variable();
-        let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
+        let chosen = choose(&instance, choice)?;
         let extension = khr::pipeline_executable_properties::NAME;
         if !chosen.offers(extension) {
             let (name, extension) = (&chosen.report.name, extension.to_string_lossy());
@@ -106,28 +95,22 @@ impl PipelineCompiler {
             .pipeline_executable_info(true);
         let raw = create(&instance, &chosen, &[extension], Some(&mut info))?;
         let constants = chosen.constants();
-        let pipelines = Pipelines::new(raw.clone(), None, constants)?;
-        let asked = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
+        let mut pipelines = Pipelines::new(raw.clone(), None, constants)?;
+        pipelines.flags = vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
+        let queries = khr::pipeline_executable_properties::Device::new(&instance.raw, &raw);
         Ok(Self {
             conditions: Conditions {
-                compute: false,
                 passes_cells: true,
                 clips: chosen.clips(),
-                software: false,
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,
-                own_vectors: 0,
-                least_pixels: 0,
                 occlusion_culling: true,
-                ray_spread: 0.0,
-                casts: false,
                 lists_crowds: chosen.lists_crowds(),
-                level_pixels: 0.0,
-                host_depths: false,
+                ..Conditions::default()
             },
             report: chosen.report,
-            asked,
-            pipelines: ManuallyDrop::new(pipelines.capturing_statistics()),
+            queries,
+            pipelines: ManuallyDrop::new(pipelines),
             _instance: instance,
         })
     }
@@ -149,18 +132,9 @@ impl PipelineCompiler {
             map_format: look.format,
             ..SearchSettings::default()
         };
-        let (lighting, object) = (&look.lighting, &look.object);
-        let casters = ShadowCasters::default();
-        let host = HostLook::default();
-        let variant = Variant::new(
-            &settings,
-            look.planes,
-            solver,
-            lighting,
-            object,
-            casters,
-            host,
-        );
+        let (lighting, object, planes) = (&look.lighting, &look.object, look.planes);
+        let (casters, host) = (ShadowCasters::default(), HostLook::default());
+        let variant = Variant::new(&settings, planes, solver, lighting, object, casters, host);
         let conditions = Conditions {
             compute: stage == DrawStage::Compute,
             casts: lighting.shadow != Shadow::Off,
@@ -236,20 +210,19 @@ impl PipelineCompiler {
     ) -> Result<Vec<Executable>> {
         let PipelineChoice(variant, kind) = choice;
         let output = Self::output(stage, planes);
-        let pipeline = self
-            .pipelines
-            .get(variant, kind, &output, &Owner::default())?;
+        let owner = self.pipelines.owner(&output, None)?;
+        let pipeline = self.pipelines.get(variant, kind, &owner)?;
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline was made with statistics captured, and is never destroyed.
-        let executables =
-            unsafe { self.asked.get_pipeline_executable_properties(&info) }.call(EXECUTABLES)?;
+        let executables = unsafe { self.queries.get_pipeline_executable_properties(&info) }
+            .call("vkGetPipelineExecutablePropertiesKHR")?;
         let mut shaders = Vec::new();
         for (executable, index) in executables.iter().zip(0..) {
             let info = vk::PipelineExecutableInfoKHR::default()
                 .pipeline(pipeline)
                 .executable_index(index);
             // SAFETY: as above; the index is that of an executable.
-            let said = unsafe { self.asked.get_pipeline_executable_statistics(&info) }
+            let said = unsafe { self.queries.get_pipeline_executable_statistics(&info) }
                 .call("vkGetPipelineExecutableStatisticsKHR")?;
             let vertices = executable.stages.contains(vk::ShaderStageFlags::VERTEX);
             let module = match variant.vertices(kind) {
@@ -257,7 +230,7 @@ impl PipelineCompiler {
                 _ => variant.module(kind),
             };
             shaders.push(Executable {
-                shader: stage_name(&text(&executable.name)),
+                shader: stage_name(&text(executable.name_as_c_str())),
                 module: match variant.external {
                     Some(external) if !vertices => external.name(&module),
                     _ => catalogued(&module).unwrap_or(module).name(),
@@ -288,8 +261,6 @@ fn color_formats(planes: Planes) -> Vec<vk::Format> {
     }
 }
 
-const EXECUTABLES: &str = "vkGetPipelineExecutablePropertiesKHR";
-
 /// The stage in lower case: versions of a driver write `Fragment Shader` or `fragment`.
 fn stage_name(name: &str) -> String {
     let name = name.to_lowercase();
@@ -299,9 +270,8 @@ fn stage_name(name: &str) -> String {
 /// A number with its name; `None` for a hash.
 fn statistic(said: &vk::PipelineExecutableStatisticKHR<'_>) -> Option<(String, f64)> {
     use vk::PipelineExecutableStatisticFormatKHR as F;
-    let name = text(&said.name);
+    let name = text(said.name_as_c_str());
     // SAFETY: the format says which of the values is valid.
-    #[allow(clippy::cast_precision_loss)]
     let value = unsafe {
         match said.format {
             F::BOOL32 => f64::from(said.value.b32),

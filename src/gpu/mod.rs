@@ -29,9 +29,10 @@ pub use renderer::Renderer;
 pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
 pub use renderer::prepare::{FrameStatistics, PreparedFrame};
 pub use renderer::prewarm::Prewarm;
-pub use resources::host_image::HostImage;
+pub use resources::textures::HostImage;
 pub use vk::call::{allocation_error, vulkan_error};
-pub use vk::output::{ComputeTarget, DepthTest, Output, PassFormats, PassKind, SlopeBias};
+pub use vk::output::{
+    ComputeTarget, DepthTest, HostShading, Output, PassFormats, PassKind, SlopeBias,
+};
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;
-pub use vk::shading::HostShading;

@@ -1,31 +1,28 @@
 //! A device to draw on: opened here, or borrowed from a host.
 
 use crate::error::{Error, ErrorKind, Result};
-#[cfg(feature = "other-shaders")]
-use crate::gpu::device::budget::MemoryBudget;
 use crate::gpu::device::budget::MemoryUse;
-use crate::gpu::device::instance::{API_VERSION, Instance, Messages};
-use crate::gpu::device::report::{DeviceReport, candidates, choose, inspect, refuse, variable};
+use crate::gpu::device::instance::{API_VERSION, Instance};
+use crate::gpu::device::report::{DeviceReport, choose, inspect, refuse};
 use crate::gpu::device::{Shared, create};
 use crate::gpu::memory::{Buffer, Image, ImageKind};
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::vk::call::Call;
 #[cfg(feature = "other-shaders")]
-use crate::gpu::vk::debug::DebugLabels;
-use crate::gpu::vk::pipelines::Pipelines;
-#[cfg(feature = "other-shaders")]
 use crate::gpu::vk::pipelines::ShaderSource;
+use ash::ext::debug_utils;
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use gpu_allocator::{AllocationSizes, AllocatorDebugSettings, MemoryLocation};
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A Vulkan device, with memory and pipelines that all its renderers share. Clones share them, too.
 #[derive(Clone)]
 pub struct Device {
     pub(crate) shared: Arc<Shared>,
     /// The geometry that renderers share, while there are any.
-    pub(crate) geometry: Arc<Mutex<Weak<Geometry>>>,
+    pub(crate) geometry: Arc<Mutex<Weak<Mutex<Geometry>>>>,
 }
 
 impl From<Shared> for Device {
@@ -107,55 +104,30 @@ impl Device {
         Ok(shared.into())
     }
 
-    /// Same as [`Device::borrow`], with pipelines made of the SPIR-V that `shaders` returns. Use it
-    /// to work on shaders while a program runs.
-    ///
-    /// # Errors
-    /// Same as [`Device::borrow`].
-    ///
-    /// # Safety
-    /// Same as [`Device::borrow`]. The SPIR-V of `shaders` must be valid and have the interface of
-    /// this version's shaders: their bindings, blocks and specialisation constants.
-    #[cfg(feature = "other-shaders")]
-    pub unsafe fn borrow_with_shaders(
-        host: &HostDevice<'_>,
-        shaders: ShaderSource,
-    ) -> Result<Self> {
-        // SAFETY: as the caller promised.
-        let mut device = unsafe { Self::borrow(host) }?;
-        let shared = Arc::get_mut(&mut device.shared);
-        if let Some(pipelines) = shared.and_then(|shared| shared.pipelines.as_mut()) {
-            pipelines.source = Some(shaders);
-        }
-        Ok(device)
-    }
-
     /// Returns the same device with its own pipelines, made of the SPIR-V that `shaders` returns.
-    /// The new value keeps this value alive.
+    /// Use it to work on shaders while a program runs. The new value keeps this value alive.
     ///
     /// # Errors
     /// Errors of Vulkan calls.
     ///
     /// # Safety
-    /// Same as [`Device::borrow_with_shaders`], for `shaders`.
+    /// The SPIR-V of `shaders` must be valid and have the interface of this version's shaders: their
+    /// bindings, blocks and specialisation constants.
     #[cfg(feature = "other-shaders")]
     pub unsafe fn with_shaders(&self, shaders: ShaderSource) -> Result<Self> {
-        let shared = &self.shared;
-        let mut pipelines = Pipelines::new(shared.raw.clone(), None, shared.chosen.constants())?;
-        pipelines.source = Some(shaders);
-        let own = Shared {
-            allocator: shared.allocator.clone(),
-            pipelines: Some(pipelines),
-            raw: shared.raw.clone(),
-            queue: shared.queue.clone(),
-            functions: shared.functions.clone(),
-            chosen: shared.chosen.clone(),
-            budget: MemoryBudget::default(),
-            debug_labels: DebugLabels::default(),
-            host_types: shared.host_types,
-            instance: None,
-            opened: Some(shared.clone()),
-        };
+        let Shared {
+            functions,
+            chosen,
+            raw,
+            allocator,
+            queue,
+            ..
+        } = &*self.shared;
+        let memory = Arc::clone(allocator);
+        let mut own = Shared::new(functions, chosen.clone(), raw.clone(), None, memory, None)?;
+        own.pipelines.source = Some(shaders);
+        own.queue.clone_from(queue);
+        own.opened = Some(self.shared.clone());
         Ok(own.into())
     }
 
@@ -168,37 +140,33 @@ impl Device {
     /// `VK_EXT_debug_utils`.
     pub unsafe fn enable_debug_labels(&self) {
         let shared = &self.shared;
-        shared.debug_labels.enable(&shared.functions, &shared.raw);
+        let functions = || debug_utils::Device::new(&shared.functions, &shared.raw);
+        shared.debug_labels.get_or_init(functions);
     }
 
     /// Limits the bytes of all buffers and images on the device, including those of pictures.
     /// `None` allows as many as the device has. Earlier allocations count. Only an allocation that
     /// exceeds the budget fails.
     pub fn set_memory_budget(&self, bytes: Option<u64>) {
-        self.shared.budget.set(bytes);
+        let budget = self.shared.budget.lock();
+        budget.unwrap_or_else(PoisonError::into_inner).limit = bytes;
     }
 
     /// The memory that all buffers and images on the device take.
     #[must_use]
     pub fn memory_use(&self) -> MemoryUse {
-        self.shared.budget.memory_use()
+        let budget = self.shared.budget.lock();
+        budget.unwrap_or_else(PoisonError::into_inner).used
     }
 
     fn on(instance: Instance, choice: Option<&str>) -> Result<Self> {
-        let variable = variable();
-        let chosen = choose(candidates(&instance)?, choice.or(variable.as_deref()))?;
+        let chosen = choose(&instance, choice)?;
         let raw = create(&instance, &chosen, &[], None)?;
         // SAFETY: the queue was requested when the device was made.
         let queue = unsafe { raw.get_device_queue(chosen.family, 0) };
-        let made = allocator(&instance.raw, chosen.physical, &raw).and_then(|memory| {
-            Shared::new(
-                &instance.raw,
-                chosen,
-                raw.clone(),
-                Some(queue),
-                memory,
-                None,
-            )
+        let functions = &instance.raw;
+        let made = allocator(functions, chosen.physical, &raw).and_then(|memory| {
+            Shared::new(functions, chosen, raw.clone(), Some(queue), memory, None)
         });
         match made {
             Ok(mut shared) => {
@@ -231,7 +199,7 @@ impl Device {
     /// The number of pipelines that were compiled on the device.
     #[must_use]
     pub fn pipelines_compiled(&self) -> u64 {
-        self.shared.pipelines().map_or(0, Pipelines::compiled)
+        self.shared.pipelines.compiled.load(Ordering::Relaxed)
     }
 
     /// Adds the data that [`Device::pipeline_cache_data`] returned in another process. Pipelines
@@ -240,7 +208,17 @@ impl Device {
     /// # Errors
     /// Errors of Vulkan calls.
     pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
-        self.shared.pipelines()?.add_cache(data)
+        let (raw, cache) = (&self.shared.raw, self.shared.pipelines.cache);
+        let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: drivers read the data's header and ignore data of other drivers; the second cache
+        // is gone again.
+        unsafe {
+            let other = raw.create_pipeline_cache(&with, None);
+            let other = other.call("vkCreatePipelineCache")?;
+            let merged = raw.merge_pipeline_caches(cache, &[other]);
+            raw.destroy_pipeline_cache(other, None);
+            merged.call("vkMergePipelineCaches")
+        }
     }
 
     /// The driver's compiled pipelines, to be saved for [`Device::add_pipeline_cache`].
@@ -248,7 +226,9 @@ impl Device {
     /// # Errors
     /// Errors of Vulkan calls.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
-        self.shared.pipelines()?.cache_data()
+        let cache = self.shared.pipelines.cache;
+        // SAFETY: the cache is live.
+        unsafe { self.shared.raw.get_pipeline_cache_data(cache) }.call("vkGetPipelineCacheData")
     }
 
     /// The device's functions and handle, for other drawing on the device.
@@ -302,10 +282,9 @@ impl Device {
     /// The source of device memory, for other drawing on the device.
     ///
     /// # Errors
-    /// [`ErrorKind::Other`] while the device is being closed.
+    /// None in this version.
     pub fn allocator(&self) -> Result<Arc<Mutex<Allocator>>> {
-        let closed = || Error::new(ErrorKind::Other, "the device is being closed");
-        self.shared.allocator.clone().ok_or_else(closed)
+        Ok(Arc::clone(&self.shared.allocator))
     }
 
     /// Makes a buffer for other drawing on the device, called `name` in messages. The buffer counts
@@ -336,11 +315,8 @@ impl Device {
     /// the layers, and for a borrowed device.
     #[must_use]
     pub fn take_messages(&self) -> Vec<String> {
-        self.messages().map(Messages::take).unwrap_or_default()
-    }
-
-    fn messages(&self) -> Option<&Messages> {
-        self.shared.instance.as_ref()?.messages.as_ref()
+        let instance = self.shared.instance.as_ref();
+        instance.map(Instance::take_messages).unwrap_or_default()
     }
 
     /// Returns an error if the validation layers have sent any message since the last call.
@@ -349,23 +325,19 @@ impl Device {
     /// [`ErrorKind::Other`] with the first message and the number of them.
     pub fn check(&self) -> Result<()> {
         let messages = self.take_messages();
-        match messages.first() {
-            None => Ok(()),
-            Some(first) => Err(Error::new(
-                ErrorKind::Other,
-                format!(
-                    "{} messages of the validation layers, the first: {}",
-                    messages.len(),
-                    first.replace('\n', " ")
-                ),
-            )),
-        }
+        let Some(first) = messages.first() else {
+            return Ok(());
+        };
+        let (count, first) = (messages.len(), first.replace('\n', " "));
+        let message = format!("{count} messages of the validation layers, the first: {first}");
+        Err(Error::new(ErrorKind::Other, message))
     }
 
     /// Returns true if the validation layers are on.
     #[must_use]
     pub fn validated(&self) -> bool {
-        self.messages().is_some()
+        let instance = self.shared.instance.as_ref();
+        instance.is_some_and(Instance::validated)
     }
 }
 

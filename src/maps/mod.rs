@@ -1,25 +1,18 @@
 //! Maps made from a profile: signed distances on a grid, and their storage formats.
 
 mod arc;
-mod color;
-mod displacement;
-mod half;
-mod halving;
+mod mips;
 mod nearest;
-mod projection;
-mod rounding;
 mod shape_map;
-mod source;
 mod store;
+mod textures;
 
 pub use crate::profile::Bounds;
 pub use arc::{ArcLength, ArcTable};
-pub use color::ColorMap;
-pub use displacement::{DisplacementMap, Level, SlopeFilter};
-pub use projection::Projection;
-pub use rounding::round_down;
-pub use source::{MapSource, Measured};
-pub use store::EncodedMap;
+pub use mips::Level;
+pub use shape_map::{BakeOptions, MapSource, Measured, ShapeMap};
+pub use store::{EncodedMap, round_down};
+pub use textures::{ColorMap, DisplacementMap, SlopeFilter};
 
 use crate::names::name_of;
 
@@ -52,37 +45,32 @@ impl MapFormat {
     }
 }
 
-/// Options for baking a shape map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BakeOptions {
-    /// The method that measures distances.
-    pub source: MapSource,
-    /// Rows of the map: one object unit is this many texels.
-    pub rows: u32,
-    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. A larger
-    /// reach is needed for solids that extend past their cylinder: polygons wider than their box,
-    /// offsets, an axis off the middle.
-    pub reach: f64,
+/// The projection that lays a texture onto a solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Projection {
+    /// `(x, y)` of the box, seen from above.
+    Planar,
+    /// Azimuth and height.
+    #[default]
+    Cylindrical,
+    /// Azimuth and polar angle about the middle of the box.
+    Spherical,
+    /// Azimuth and length along the profile.
+    Arc,
 }
 
-/// Signed distances to the profile's boundary on a grid of square texels.
-///
-/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, with `h = 1 / rows`: row
-/// 0 is the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ShapeMap {
-    /// Texels along `r`.
-    pub columns: u32,
-    /// Texels along `z`.
-    pub rows: u32,
-    /// `R` of the shape box, object units (the map may reach farther).
-    pub radius: f64,
-    /// The method that measured the distances.
-    pub source: MapSource,
-    /// Signed distance in object units, positive outside; row by row from the top.
-    pub distance: Vec<f32>,
-    /// True for texels whose centre is solid; row by row from the top.
-    pub form: Vec<bool>,
-    /// The part of the half-plane that the solid occupies.
-    pub bounds: Bounds,
+impl Projection {
+    /// Every projection with its name in scene files and file names.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("planar", Self::Planar),
+        ("cylindrical", Self::Cylindrical),
+        ("spherical", Self::Spherical),
+        ("arc", Self::Arc),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, &self)
+    }
 }

@@ -1,11 +1,11 @@
 //! Finds the nearest of many segments, exactly, for every texel of a grid.
 //!
-//! Squares of the grid are halved repeatedly. Each square keeps only those segments that can be
-//! nearest to any of its points. Two tests reject the others:
+//! Bands of the grid are cut into squares, which are halved repeatedly. Each keeps only those
+//! segments that can be nearest to any of its points. Two tests reject the others:
 //!
-//! * Let `m` be the least distance from the square's middle to a segment, and `q` half of its
-//!   diagonal. A segment farther than `m + 2 q` is nearest nowhere: both distances change by at
-//!   most `q` on the way to any point.
+//! * Let `m` be the least distance from its middle to a segment, and `q` half of its diagonal. A
+//!   segment farther than `m + 2 q` is nearest nowhere: both distances change by at most `q` on the
+//!   way to any point.
 //! * Let `b` be the point, on any segment, that is nearest to the middle. A segment is nearest
 //!   nowhere if `b` is nearer than it at all four corners. The reason: for each point `s` of the
 //!   segment, `|p - s|^2 - |p - b|^2` is linear in `p`, and so is least at a corner.
@@ -17,53 +17,42 @@ use crate::profile::Segment;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Side of the squares that are processed independently, texels.
+/// Rows of the bands that are processed independently, and side of their squares, texels.
 const TILE: usize = 128;
 /// Side of the squares that are not halved further, texels.
 const LEAF: usize = 4;
 /// Fewer segments than this cost more to halve than to measure.
 const FEW: usize = 3;
 
-/// Evaluates `value(column, row, distance, segment)` for every texel of a grid of `columns x rows`
+/// Evaluates `value(column, row, distance, segment)` for every texel of a grid of `[columns, rows]`
 /// square texels of side `1 / rows`. Texel (0, 0) is at the top left, the axis at the left edge.
 /// `distance` is from the texel's centre to the nearest segment in object units, `segment` the
 /// index of that segment. Without segments they are `+inf` and 0.
 pub(crate) fn for_each_texel<T: Copy + Default + Send>(
     segments: &[Segment],
-    columns: usize,
-    rows: usize,
+    [columns, rows]: [usize; 2],
     value: impl Fn(usize, usize, f64, usize) -> T + Sync,
 ) -> Vec<T> {
     let mut out = vec![T::default(); columns * rows];
-    if out.is_empty() {
-        return out;
-    }
+    let side = rows as f64;
     let search = Search {
-        pieces: segments
-            .iter()
-            .map(|s| Piece::new(s, rows as f64))
-            .collect(),
+        pieces: segments.iter().map(|s| Piece::new(s, side)).collect(),
         columns,
         rows,
         value,
     };
-    let across = columns.div_ceil(TILE);
-    let mut lists = vec![Vec::new(); across * rows.div_ceil(TILE)];
-    let side = columns.max(rows).next_power_of_two().max(TILE);
-    let mut stack: Vec<u32> = (0..segments.len() as u32).collect();
-    search.deal(0, 0, side, 0, &mut stack, &mut |x, y, list| {
-        lists[y / TILE * across + x / TILE] = list.to_vec();
+    let bands = out.par_chunks_mut((columns * TILE).max(1)).enumerate();
+    bands.for_each(|(band, out)| {
+        let top = band * TILE;
+        let mut stack: Vec<u32> = (0..segments.len() as u32).collect();
+        search.narrow([0, top], [columns, TILE], 0, &mut stack);
+        let end = stack.len();
+        for left in (0..columns).step_by(TILE) {
+            search.narrow([left, top], [TILE; 2], segments.len(), &mut stack);
+            search.fill([left, top], TILE, end, &mut stack, top, out);
+            stack.truncate(end);
+        }
     });
-    out.par_chunks_mut(columns * TILE)
-        .zip(lists.par_chunks(across))
-        .enumerate()
-        .for_each(|(band, (out, lists))| {
-            for (tile, list) in lists.iter().enumerate() {
-                let mut stack = list.clone();
-                let corner = [tile * TILE, band * TILE];
-                search.fill(corner, TILE, 0, &mut stack, band * TILE, out);
-            }
-        });
     out
 }
 
@@ -107,12 +96,13 @@ struct Search<F> {
 }
 
 impl<F> Search<F> {
-    /// Appends to the stack those entries, from `from` on, that can be nearest within a square of
+    /// Appends to the stack those entries, from `from` on, that can be nearest within a rectangle of
     /// texels.
-    fn narrow(&self, [x, y]: [usize; 2], side: usize, from: usize, stack: &mut Vec<u32>) {
-        let middle = DVec2::new(x as f64, y as f64) + 0.5 * side as f64;
-        // Only texel centres are evaluated, so the square ends half a texel inside its texels.
-        let half = 0.5 * (side as f64 - 1.0);
+    fn narrow(&self, corner: [usize; 2], sides: [usize; 2], from: usize, stack: &mut Vec<u32>) {
+        let vector = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);
+        // Only texel centres are evaluated, so the rectangle ends half a texel inside its texels.
+        let half = 0.5 * (vector(sides) - 1.0);
+        let middle = vector(corner) + 0.5 + half;
         let end = stack.len();
         let (mut least, mut which) = (f64::INFINITY, 0);
         for &k in &stack[from..end] {
@@ -125,10 +115,11 @@ impl<F> Search<F> {
             return;
         }
         // The slack covers rounding only; too many candidates do no harm.
-        let reach = (least.sqrt() + 2.0 * half * std::f64::consts::SQRT_2) * (1.0 + 1e-12) + 1e-9;
+        let reach = (least.sqrt() + 2.0 * half.length()) * (1.0 + 1e-12) + 1e-9;
         let near = self.pieces[which as usize].nearest(middle);
-        let corners = [(-half, -half), (half, -half), (-half, half), (half, half)]
-            .map(|(dx, dy)| middle + DVec2::new(dx, dy))
+        let signs = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        let corners = signs
+            .map(|(x, y)| middle + half * DVec2::new(x, y))
             .map(|corner| (corner, corner.distance_squared(near) * (1.0 + 1e-12) + 1e-9));
         for k in from..end {
             let candidate = stack[k];
@@ -142,32 +133,6 @@ impl<F> Search<F> {
                 stack.push(candidate);
             }
         }
-    }
-
-    /// Distributes the segments among the tiles.
-    fn deal(
-        &self,
-        x: usize,
-        y: usize,
-        side: usize,
-        from: usize,
-        stack: &mut Vec<u32>,
-        put: &mut impl FnMut(usize, usize, &[u32]),
-    ) {
-        if x >= self.columns || y >= self.rows {
-            return;
-        }
-        let end = stack.len();
-        self.narrow([x, y], side, from, stack);
-        if side <= TILE {
-            put(x, y, &stack[end..]);
-        } else {
-            let half = side / 2;
-            for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
-                self.deal(x + dx, y + dy, half, end, stack, put);
-            }
-        }
-        stack.truncate(end);
     }
 }
 
@@ -191,7 +156,7 @@ impl<T, F: Fn(usize, usize, f64, usize) -> T> Search<F> {
             let end = stack.len();
             for (dx, dy) in [(0, 0), (half, 0), (0, half), (half, half)] {
                 let corner = [x + dx, y + dy];
-                self.narrow(corner, half, from, stack);
+                self.narrow(corner, [half; 2], from, stack);
                 self.fill(corner, half, end, stack, top, out);
                 stack.truncate(end);
             }
@@ -227,11 +192,12 @@ mod tests {
             rows in 1usize..150,
             points in prop::collection::vec([-0.2f64..1.5, -0.3f64..1.3, -0.1f64..0.1, -0.1f64..0.1], 1..120),
         ) {
-            let segments: Vec<Segment> = points
-                .iter()
-                .map(|&[x, y, dx, dy]| Segment { a: DVec2::new(x, y), b: DVec2::new(x + dx, y + dy) })
-                .collect();
-            let found = for_each_texel(&segments, columns, rows, |_, _, d, k| (d, k));
+            let segment = |&[x, y, dx, dy]: &[f64; 4]| {
+                let a = DVec2::new(x, y);
+                Segment { a, b: a + DVec2::new(dx, dy) }
+            };
+            let segments: Vec<Segment> = points.iter().map(segment).collect();
+            let found = for_each_texel(&segments, [columns, rows], |_, _, d, k| (d, k));
             let h = 1.0 / rows as f64;
             for (i, &(d, k)) in found.iter().enumerate() {
                 let p = DVec2::new(((i % columns) as f64 + 0.5) * h, 1.0 - ((i / columns) as f64 + 0.5) * h);
@@ -244,7 +210,7 @@ mod tests {
 
     #[test]
     fn no_segments_no_end() {
-        let found = for_each_texel(&[], 3, 2, |_, _, d, _| d);
+        let found = for_each_texel(&[], [3, 2], |_, _, d, _| d);
         assert_eq!(found, [f64::INFINITY; 6]);
     }
 }

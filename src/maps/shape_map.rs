@@ -1,9 +1,74 @@
-//! Bakes a shape map, and samples it as the shaders do.
+//! Shape maps: signed distances on a grid, baked from a profile, and sampled as the shaders do.
 
-use super::{BakeOptions, MAX_SIDE, MapSource, ShapeMap};
+use super::nearest::for_each_texel;
+use super::{MAX_SIDE, round_down};
 use crate::error::{Error, ErrorKind, Result};
-use crate::profile::Profile;
+use crate::profile::{Bounds, Profile, Segment};
 use glam::DVec2;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+/// A method that measures distances, plain data: the library's own is [`MapSource::EXACT`]. Other
+/// crates bring methods for comparison. Two methods of one name are equal.
+#[derive(Clone, Copy)]
+pub struct MapSource {
+    /// Name in options and files.
+    pub name: &'static str,
+    /// Measures a profile on a grid of `columns` x `rows` texels, laid out as in
+    /// [`ShapeMap`](super::ShapeMap).
+    pub measure: fn(profile: &Profile, columns: u32, rows: u32) -> Measured,
+}
+
+/// The signed distance at each texel's centre, object units, and the rectangle that the solid
+/// occupies; `None` if the grid shows no solid.
+pub type Measured = (Vec<f32>, Option<Bounds>);
+
+impl MapSource {
+    /// Exact distance to the outline's segments.
+    pub const EXACT: Self = Self {
+        name: "exact",
+        measure: exact,
+    };
+}
+
+impl Default for MapSource {
+    fn default() -> Self {
+        Self::EXACT
+    }
+}
+
+impl PartialEq for MapSource {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for MapSource {}
+
+impl Hash for MapSource {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+impl fmt::Debug for MapSource {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// Options for baking a shape map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeOptions {
+    /// The method that measures distances.
+    pub source: MapSource,
+    /// Rows of the map: one object unit is this many texels.
+    pub rows: u32,
+    /// The map covers `0 <= r <= reach`, object units; at least the profile's radius. A larger
+    /// reach is needed for solids that extend past their cylinder: polygons wider than their box,
+    /// offsets, an axis off the middle.
+    pub reach: f64,
+}
 
 impl BakeOptions {
     /// Options for `rows` rows over the profile's own box.
@@ -15,6 +80,28 @@ impl BakeOptions {
             reach: 0.0,
         }
     }
+}
+
+/// Signed distances to the profile's boundary on a grid of square texels.
+///
+/// Texel `(i, j)` is sampled at `r = (i + 0.5) h`, `z = 1 - (j + 0.5) h`, with `h = 1 / rows`: row
+/// 0 is the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeMap {
+    /// Texels along `r`.
+    pub columns: u32,
+    /// Texels along `z`.
+    pub rows: u32,
+    /// `R` of the shape box, object units (the map may reach farther).
+    pub radius: f64,
+    /// The method that measured the distances.
+    pub source: MapSource,
+    /// Signed distance in object units, positive outside; row by row from the top.
+    pub distance: Vec<f32>,
+    /// True for texels whose centre is solid; row by row from the top.
+    pub form: Vec<bool>,
+    /// The part of the half-plane that the solid occupies.
+    pub bounds: Bounds,
 }
 
 impl ShapeMap {
@@ -37,26 +124,25 @@ impl ShapeMap {
             return Err(fault(format!("{rows} rows; give 2 to {MAX_SIDE}")).at_key("map_rows"));
         }
         if !reach.is_finite() {
-            return Err(fault(format!(
-                "the map cannot reach to {reach}; give a finite radius"
-            )));
+            let message = format!("the map cannot reach to {reach}; give a finite radius");
+            return Err(fault(message));
         }
         // Slightly less, so that a radius of columns / rows is not rounded up to one more column.
         let wanted = (reach.max(profile.radius) * f64::from(rows) - 1e-6)
             .ceil()
             .max(2.0);
         if wanted > f64::from(MAX_SIDE) {
-            return Err(fault(format!(
+            let message = format!(
                 "the map would have {wanted} columns, {MAX_SIDE} is the most; take fewer rows or a narrower shape"
-            ))
-            .at_key("map_rows"));
+            );
+            return Err(fault(message).at_key("map_rows"));
         }
         let columns = wanted as u32;
         let (distance, Some(bounds)) = (source.measure)(profile, columns, rows) else {
-            return Err(fault(format!(
+            let message = format!(
                 "at {rows} rows the shape covers no texel; take more rows or a thicker shape"
-            ))
-            .at_key("map_rows"));
+            );
+            return Err(fault(message).at_key("map_rows"));
         };
         let form = distance.iter().map(|&d| d <= 0.0).collect();
         Ok(Self {
@@ -131,4 +217,21 @@ impl ShapeMap {
         let row = |j: f64| [texel(x, j), texel(x + 1.0, j)];
         ([row(y), row(y + 1.0)], u - x, v - y)
     }
+}
+
+/// Signed distance of each texel's centre to the outline's surface, object units, never greater
+/// than the true distance.
+fn exact(profile: &Profile, columns: u32, rows: u32) -> Measured {
+    let outline = &profile.outline;
+    let (columns, rows) = (columns as usize, rows as usize);
+    let segments: Vec<Segment> = outline.surface_segments().collect();
+    let heights = (0..rows).map(|row| 1.0 - (row as f64 + 0.5) / rows as f64);
+    // The solid is between an odd and the next even crossing of a row.
+    let crossings = outline.crossings(heights);
+    let distances = for_each_texel(&segments, [columns, rows], |column, row, distance, _| {
+        let r = (column as f64 + 0.5) / rows as f64;
+        let inside = crossings[row].partition_point(|&c| c <= r) % 2 == 1;
+        round_down(if inside { -distance } else { distance })
+    });
+    (distances, outline.bounds())
 }

@@ -9,8 +9,8 @@ use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
 use crate::shader::{Features, Kind, Search, Variant};
+use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
-use crate::solid::outline_cache::OutlineCache;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -65,11 +65,11 @@ pub(crate) struct PlanObject<'a> {
     pub levelled: Option<&'a LevelledCopies>,
     pub shape: Cylinder,
     /// The outline, and the largest distance of the surface from it in object units.
-    pub outline: Option<(&'a OutlineCache, f64)>,
+    pub outline: Option<(&'a Solid, f64)>,
 }
 
 /// Inputs of a plan other than view and objects.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Conditions {
     /// True if tiles are traced in compute; otherwise fragments draw proxies and tiles.
     pub compute: bool,

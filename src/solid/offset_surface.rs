@@ -1,20 +1,60 @@
-//! Surfaces under an offset: the boundary as quadrics or as another search's table, and the GPU
-//! data made from it.
+//! Surfaces under an offset: the boundary as quadrics or as another search's table, and the GPU data
+//! made from it.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::search::{Reads, Search, SearchTable};
-use crate::solid::outline_cache::OffsetContour;
+use crate::solid::cache::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
-use crate::solid::table_slot::{Part, Slot};
-use crate::solid::tables::{self, GpuTables};
+use crate::solid::tables;
 use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
-use std::sync::{Arc, OnceLock};
+use range_alloc::RangeAllocator;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// A range of vectors in the buffer of all tables; freed when dropped.
+#[derive(Debug)]
+pub(crate) struct Slot {
+    pub range: Range<u32>,
+    /// The free ranges of the buffer.
+    pub ranges: Arc<Mutex<RangeAllocator<u32>>>,
+}
+
+impl Slot {
+    /// The first vector.
+    pub fn begin(&self) -> u32 {
+        self.range.start
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        if let Ok(mut ranges) = self.ranges.lock() {
+            ranges.free_range(self.range.clone());
+        }
+    }
+}
+
+/// The parts of a surface that have slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Tables that searches walk.
+    Tables,
+    /// Frusta that the vertex shaders of hulls expand.
+    Frusta,
+    /// Patches that lists are made from.
+    Patches,
+}
+
+impl Part {
+    pub const ALL: [Self; 3] = [Self::Tables, Self::Frusta, Self::Patches];
+}
 
 /// One surface, made on first use, shared by all objects that show it.
 pub(crate) struct OffsetSurface {
+    contour: Arc<OffsetContour>,
     recipe: Recipe,
     made: OnceLock<Result<Made>>,
-    tables: OnceLock<GpuTables>,
+    tables: OnceLock<SearchTable>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
     inner: OnceLock<InnerCylinders>,
@@ -22,12 +62,13 @@ pub(crate) struct OffsetSurface {
     slots: [OnceLock<Slot>; 3],
 }
 
-/// The source of a surface.
+/// The way to make a surface from a contour.
+#[derive(Clone, Copy)]
 pub(crate) enum Recipe {
-    /// Quadrics that follow a contour, at this level, within this tolerance in object units.
-    Patches(Arc<OffsetContour>, u8, f64),
-    /// The table of a search, with this number of rows.
-    Search(&'static Search, Arc<OffsetContour>, u32),
+    /// Quadrics of a level that follow the contour within a tolerance in object units.
+    Patches { level: u8, tolerance: f64 },
+    /// The table of a search of another crate, with this number of rows.
+    Table { search: &'static Search, rows: u32 },
 }
 
 enum Made {
@@ -37,8 +78,9 @@ enum Made {
 }
 
 impl OffsetSurface {
-    pub fn new(recipe: Recipe) -> Self {
+    pub fn new(contour: Arc<OffsetContour>, recipe: Recipe) -> Self {
         Self {
+            contour,
             recipe,
             made: OnceLock::new(),
             tables: OnceLock::new(),
@@ -61,62 +103,75 @@ impl OffsetSurface {
     }
 
     /// The reason why there is no such surface.
-    pub fn failure(&self) -> Option<&crate::error::Error> {
+    pub fn failure(&self) -> Option<&Error> {
         self.made().err()
     }
 
-    fn made(&self) -> std::result::Result<&Made, &crate::error::Error> {
-        self.made.get_or_init(|| self.recipe.follow()).as_ref()
+    fn made(&self) -> std::result::Result<&Made, &Error> {
+        let make = || {
+            let contour = self.contour.get().map_err(Clone::clone)?;
+            Ok(match self.recipe {
+                Recipe::Patches { tolerance, .. } => {
+                    let patches = fit_patches(contour, &FitOptions { tolerance });
+                    let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
+                    let extent = patches.iter().fold(none, |m, p| {
+                        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+                    });
+                    Made::Patches(patches, extent)
+                }
+                Recipe::Table { search, rows } => Made::Table(match search.reads {
+                    Reads::Table(make) => make(contour, rows)?,
+                    Reads::Map { .. } => SearchTable::default(),
+                }),
+            })
+        };
+        self.made.get_or_init(make).as_ref()
+    }
+
+    /// Its patches; `None` for another search's table, and if there is no such surface.
+    fn quadrics(&self) -> Option<&[QuadricPatch]> {
+        match self.made() {
+            Ok(Made::Patches(patches, _)) => Some(patches),
+            _ => None,
+        }
     }
 
     /// The tables that the search walks.
-    pub fn tables(&self) -> &GpuTables {
-        self.tables.get_or_init(|| match self.made() {
-            Ok(Made::Patches(patches, _)) => GpuTables::patches(patches),
-            Ok(Made::Table(table)) => GpuTables::of_search(table),
-            Err(_) => GpuTables::patches(&[]),
-        })
+    pub fn tables(&self) -> &SearchTable {
+        let make = || SearchTable::new(self.quadrics().unwrap_or_default());
+        match self.made() {
+            Ok(Made::Table(table)) => table,
+            _ => self.tables.get_or_init(make),
+        }
     }
 
     /// Patches that lists are made from; empty if there are none, or too many.
     pub fn listed(&self) -> &[[u32; 4]] {
-        self.listed.get_or_init(|| match self.made() {
-            Ok(Made::Patches(patches, _)) => tables::listed(patches),
-            _ => Vec::new(),
-        })
+        let make = || tables::listed(self.quadrics().unwrap_or_default());
+        self.listed.get_or_init(make)
     }
 
     /// The hull that the rasteriser draws; empty for another search's table.
     pub fn hull(&self) -> &GpuProxyHull {
-        self.hull.get_or_init(|| match self.made() {
-            Ok(Made::Patches(patches, _)) => GpuProxyHull::new(patches),
-            _ => GpuProxyHull::new(&[]),
-        })
+        let make = || GpuProxyHull::new(self.quadrics().unwrap_or_default());
+        self.hull.get_or_init(make)
     }
 
     /// Cylinders inside its solid, which hide everything behind them; only for patches.
     pub fn inner(&self) -> Option<&InnerCylinders> {
-        match self.made() {
-            Ok(Made::Patches(patches, _)) => {
-                Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
-            }
-            _ => None,
-        }
+        let patches = self.quadrics()?;
+        Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
     }
 
     /// Cylinders around its solid; only for patches.
     pub fn outer(&self) -> Option<&OuterCylinders> {
-        match self.made() {
-            Ok(Made::Patches(patches, _)) => {
-                Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
-            }
-            _ => None,
-        }
+        let patches = self.quadrics()?;
+        Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
     }
 
     /// True if it is made of patches.
     pub fn is_of_patches(&self) -> bool {
-        matches!(self.recipe, Recipe::Patches(..))
+        matches!(self.recipe, Recipe::Patches { .. })
     }
 
     /// Largest radius, least and largest `z`; only for patches.
@@ -131,17 +186,14 @@ impl OffsetSurface {
     /// for the exact one.
     pub fn slack(&self) -> f64 {
         match self.recipe {
-            Recipe::Patches(_, level, tolerance) if level > 0 => tolerance,
+            Recipe::Patches { level, tolerance } if level > 0 => tolerance,
             _ => 0.0,
         }
     }
 
     /// Number of its patches.
     pub fn patches(&self) -> usize {
-        match self.made() {
-            Ok(Made::Patches(patches, _)) => patches.len(),
-            _ => 0,
-        }
+        self.quadrics().unwrap_or_default().len()
     }
 
     pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
@@ -156,34 +208,8 @@ impl OffsetSurface {
         self.slots[part as usize].get()
     }
 
-    /// Stores the slot of a part and returns its first vector.
-    pub fn keep_slot(&self, part: Part, slot: Slot) -> u32 {
-        self.slots[part as usize].get_or_init(|| slot).begin()
-    }
-}
-
-impl Recipe {
-    fn follow(&self) -> Result<Made> {
-        match self {
-            Self::Patches(contour, _, tolerance) => {
-                let options = FitOptions {
-                    tolerance: *tolerance,
-                };
-                let contour = contour.get().map_err(Clone::clone)?;
-                let patches = fit_patches(contour, &options);
-                let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
-                let extent = patches.iter().fold(none, |m, p| {
-                    [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-                });
-                Ok(Made::Patches(patches, extent))
-            }
-            Self::Search(search, contour, rows) => match search.reads {
-                Reads::Table(make) => {
-                    let contour = contour.get().map_err(Clone::clone)?;
-                    Ok(Made::Table(make(contour, *rows)?))
-                }
-                Reads::Map { .. } => Ok(Made::Table(SearchTable::default())),
-            },
-        }
+    /// Keeps the slot of a part, unless it has one.
+    pub fn keep_slot(&self, part: Part, slot: Slot) {
+        self.slots[part as usize].get_or_init(|| slot);
     }
 }

@@ -1,29 +1,24 @@
-//! Tables of the searches that read no map, as vectors of 16 bytes for a shader.
+//! Tables of the searches that read no map, as vectors of 16 bytes for a shader. A table may be
+//! stored anywhere in a buffer.
 
 use crate::search::SearchTable;
 use crate::shader::generated::{LISTED_PATCHES, PATCH_ROWS};
 use crate::surface::{Contour, FitOptions, GpuPatch, QuadricPatch, Tables, fit_patches};
 
-/// A table that may be stored anywhere in a buffer.
-pub(crate) struct GpuTables {
-    pub vectors: Vec<[u32; 4]>,
-    /// The words of `Object.patches` of `blocks.glsl` after the first vector's number.
-    facts: [u32; 3],
-}
-
-impl GpuTables {
-    /// `Object.patches` of a table whose first vector is number `begin` of the buffer.
-    pub fn block(&self, begin: u32) -> [u32; 4] {
-        let [a, b, c] = self.facts;
-        [begin, a, b, c]
+impl SearchTable {
+    /// The library's own patches of a solid with its offset, exact, in the layout of
+    /// `core/patch_tables.glsl`. GLSL searches them with `search/quadric.glsl`.
+    #[must_use]
+    pub fn of_patches(contour: &Contour) -> Self {
+        Self::new(&fit_patches(contour, &FitOptions::default()))
     }
 
     /// Patches in the layout of `patch_tables.glsl`.
-    pub fn patches(patches: &[QuadricPatch]) -> Self {
+    pub(crate) fn new(patches: &[QuadricPatch]) -> Self {
         let tables = Tables::new(patches, PATCH_ROWS);
         let (mut words, unit) = nodes(&tables.nodes);
         words.extend(&tables.rows);
-        let mut vectors = fours(&words);
+        let mut vectors = words.as_chunks().0.to_vec();
         let first_record = vectors.len();
         for record in &tables.records {
             vectors.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
@@ -44,23 +39,11 @@ impl GpuTables {
         }
     }
 
-    /// A table in the layout of its search.
-    pub fn of_search(table: &SearchTable) -> Self {
-        Self {
-            vectors: table.vectors.clone(),
-            facts: table.facts,
-        }
-    }
-}
-
-impl SearchTable {
-    /// The library's own patches of a solid with its offset, exact, in the layout of
-    /// `core/patch_tables.glsl`. GLSL searches them with `search/quadric.glsl`.
-    #[must_use]
-    pub fn of_patches(contour: &Contour) -> Self {
-        let patches = fit_patches(contour, &FitOptions::default());
-        let GpuTables { vectors, facts, .. } = GpuTables::patches(&patches);
-        Self { vectors, facts }
+    /// `Object.patches` of `blocks.glsl` for a table whose first vector is number `begin` of the
+    /// buffer.
+    pub(crate) fn block(&self, begin: u32) -> [u32; 4] {
+        let [a, b, c] = self.facts;
+        [begin, a, b, c]
     }
 }
 
@@ -82,13 +65,9 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     };
     let record = |(k, p): (usize, &QuadricPatch)| {
         let GpuPatch { quadric, guard, .. } = GpuPatch::new(p, k);
-        let asked = [
-            levels(p),
-            radii(p),
-            (p.quadric[2] as f32).to_bits(),
-            (p.quadric[3] as f32).to_bits(),
-        ];
-        [quadric.map(f32::to_bits), guard.map(f32::to_bits), asked]
+        let [_, _, linear, constant] = p.quadric.map(|v| (v as f32).to_bits());
+        let extents = [levels(p), radii(p), linear, constant];
+        [quadric.map(f32::to_bits), guard.map(f32::to_bits), extents]
     };
     // A guard that no point passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
@@ -110,13 +89,6 @@ fn nodes(extents: &[[f32; 2]]) -> (Vec<u32>, f32) {
         low | high << 16
     };
     (extents.iter().map(word).collect(), unit)
-}
-
-fn fours(words: &[u32]) -> Vec<[u32; 4]> {
-    words
-        .chunks_exact(4)
-        .map(|w| [w[0], w[1], w[2], w[3]])
-        .collect()
 }
 
 fn index(n: usize) -> u32 {

@@ -1,17 +1,14 @@
 //! A renderer's record of an object: its values, and the resources that are derived from them.
 
-use crate::gpu::resources::host_image::ObjectImages;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
-use crate::gpu::resources::solid_cache::Solid;
-use crate::gpu::resources::textures::TextureSet;
+use crate::gpu::resources::textures::{ObjectImages, TextureSet};
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
 use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
-use crate::solid::offset_surface::OffsetSurface;
-use crate::solid::outline_cache::OffsetContour;
-use crate::solid::reach::{farthest_corner, largest_width};
-use crate::solid::table_slot::{Part, Slot};
+use crate::solid::cache::{OffsetContour, Solid};
+use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
+use crate::solid::{farthest_corner, largest_width};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -13,8 +13,7 @@ use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::resources::host_image::ObjectImages;
-use crate::gpu::resources::textures::Textures;
+use crate::gpu::resources::textures::{ObjectImages, Textures};
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
@@ -22,7 +21,7 @@ use crate::shader::{HostLook, Variant};
 use objects::Objects;
 use refresh::{Common, Wanted};
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use view_plan::{Casters, ViewPlan};
 
 /// Objects, lights, and all that is derived from them.
@@ -30,7 +29,7 @@ pub(super) struct Content {
     pub objects: Objects,
     pub textures: Textures,
     pub uploads: Uploads,
-    pub geometry: Arc<Geometry>,
+    pub geometry: Arc<Mutex<Geometry>>,
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
     pub lit: Lighting,
@@ -60,15 +59,14 @@ impl Content {
     /// No objects, for a renderer with this output.
     pub fn new(
         device: &Arc<Shared>,
-        geometry: Arc<Geometry>,
+        geometry: Arc<Mutex<Geometry>>,
         output: Output,
         settings: &SearchSettings,
     ) -> Result<Self> {
-        let objects = Objects::new();
-        let mut uploads = Uploads::of(objects.renderer);
+        let mut uploads = Uploads::new(device);
         Ok(Self {
-            objects,
-            textures: Textures::new(device, &mut uploads, settings.map_format)?,
+            objects: Objects::new(),
+            textures: Textures::new(&mut uploads, settings.map_format)?,
             uploads,
             geometry,
             lighting: Lighting::default(),

@@ -4,15 +4,16 @@
 
 use super::Content;
 use super::entry::{Boundary, Derived, Values};
-use crate::error::{Error, Result, content};
+use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
-use crate::gpu::resources::textures::{ObjectTextures, ShadowMaps};
+use crate::gpu::resources::textures::{BoundTextures, ShadowMaps};
 use crate::maps::Projection;
 use crate::scene::Object;
 use crate::settings::Solver;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{ShadowCasters, is_beveled};
+use crate::solid::offset_surface::Recipe;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -99,7 +100,7 @@ impl Content {
     /// Finds or makes the boundaries that are missing, on all cores.
     fn find_boundaries(&mut self, wanted: &mut Wanted) -> Result<()> {
         let solver = self.settings.solver;
-        let mut geometry = self.geometry.lock()?;
+        let mut geometry = lock(&self.geometry)?;
         let (mut contours, mut tables) = (Vec::new(), Vec::new());
         for values in wanted.values_mut().filter(|v| v.boundary.is_none()) {
             values.grown = geometry.solids.grown.grown(&values.object);
@@ -110,7 +111,8 @@ impl Content {
                 contour = Some(solid.contour(&object.offset)?);
             } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
                 let rows = MapKey::new(object, &values.growth(), &self.settings).rows;
-                table = Some((0, solid.search_table(search, &object.offset, rows)?));
+                let recipe = Recipe::Table { search, rows };
+                table = Some((0, solid.surface(&object.offset, recipe)?));
             }
             contours.extend(contour.clone());
             tables.extend(table.clone().map(|(_, table)| table));
@@ -206,7 +208,10 @@ impl Content {
         boundary.map = match known {
             _ if !self.solver_of(&boundary).reads_map() => None,
             Some(known) => Some(known),
-            None => Some(boundary.solid.map(&self.device, &mut self.uploads, key)?),
+            None => {
+                let (uploads, profile) = (&mut self.uploads, &values.drawn().profile);
+                Some(self.textures.shape(uploads, profile, key)?)
+            }
         };
         values.boundary = Some(boundary);
         Ok(())
@@ -234,13 +239,11 @@ impl Content {
             || MapKey::new(object, &values.growth(), &self.settings).unbaked(&object.profile),
             |map| map.facts,
         );
-        let arc = match object.texturing.projection {
-            Projection::Arc => Some(
-                boundary
-                    .solid
-                    .arc(&self.device, &mut self.uploads, &facts)?,
-            ),
-            _ => None,
+        let arc = if object.texturing.projection == Projection::Arc {
+            let (uploads, profile) = (&mut self.uploads, &object.profile);
+            Some(self.textures.arc(uploads, profile, &facts)?)
+        } else {
+            None
         };
         let shadows = &self.common.shadow_maps;
         let mut numbered = (0u32..).zip(&shadows.maps);
@@ -248,14 +251,14 @@ impl Content {
             let found = numbered.find(|(_, known)| Arc::ptr_eq(known, map));
             found.map(|(number, _)| number)
         });
-        let bound = ObjectTextures {
-            look: &object.texturing,
-            images: &values.images,
+        let bound = BoundTextures {
+            images: values.images.clone(),
             shape: map.clone(),
             arc: arc.clone(),
-            shadows,
+            shadows: shadows.clone(),
         };
-        let textures = (self.textures).set(&self.device, &mut self.uploads, bound)?;
+        let (uploads, look) = (&mut self.uploads, &object.texturing);
+        let textures = self.textures.set(uploads, look, bound)?;
         let steps = self.settings.max_steps;
         let steps = steps.unwrap_or_else(|| solver.default_steps(is_beveled(object)));
         values.derived = Some(Derived {

@@ -10,9 +10,8 @@ use crate::plan::levels::{
 };
 use crate::plan::{Conditions, FramePlan, MOST_PROXIES, Parts, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
-use crate::solid::offset_surface::OffsetSurface;
-use crate::solid::reach::largest_width;
-use crate::solid::table_slot::Part;
+use crate::solid::largest_width;
+use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -272,7 +271,8 @@ impl Entry {
         if known.is_some() || !derived.solver.follows_tolerance() {
             return Ok(known.map(|(_, surface)| surface.clone()));
         }
-        let surface = solid.patches(&offset, &growth, level)?;
+        let tolerance = levels::bound(level) / growth.height().max(1.0);
+        let surface = solid.surface(&offset, Recipe::Patches { level, tolerance })?;
         levels.push((level, surface.clone()));
         new.push(surface.clone());
         Ok(Some(surface))
@@ -306,7 +306,7 @@ impl Entry {
             takes_patches: derived.takes_patches && surface.is_some(),
             levelled: planned.levelled.as_ref(),
             shape: shape_of(object, bounds.map(f64::from)),
-            outline: Some((boundary.solid.outline.as_ref(), away)),
+            outline: Some((boundary.solid.as_ref(), away)),
         })
     }
 }

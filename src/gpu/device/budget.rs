@@ -2,7 +2,6 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use ash::vk::MemoryPropertyFlags as Flags;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Bytes that all buffers and images on a device take, by kind of heap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,81 +22,48 @@ impl MemoryUse {
     pub fn total(&self) -> u64 {
         self.device + self.visible + self.host
     }
+
+    /// The bytes of the heap with these flags.
+    pub(in crate::gpu) fn heap(&mut self, flags: Flags) -> &mut u64 {
+        if !flags.contains(Flags::DEVICE_LOCAL) {
+            &mut self.host
+        } else if flags.contains(Flags::HOST_VISIBLE) {
+            &mut self.visible
+        } else {
+            &mut self.device
+        }
+    }
 }
 
-/// Bytes that buffers and images take, and the limit on them.
+/// The memory in use, and the limit on it in bytes.
 #[derive(Default)]
 pub(crate) struct MemoryBudget {
-    /// Bytes in use, including allocations in progress.
-    used: AtomicU64,
-    /// 0 allows as much as the device has.
-    limit: AtomicU64,
-    /// Bytes in use by heap, in the order of [`MemoryUse`].
-    by_heap: [AtomicU64; 3],
+    pub used: MemoryUse,
+    /// `None` allows as much as the device has.
+    pub limit: Option<u64>,
 }
 
 impl MemoryBudget {
-    pub fn set(&self, bytes: Option<u64>) {
-        // A budget of zero is stored as one byte: nothing fits.
-        self.limit.store(bytes.map_or(0, |b| b.max(1)), Relaxed);
-    }
-
-    pub fn memory_use(&self) -> MemoryUse {
-        let [device, visible, host] = [0, 1, 2].map(|heap| self.by_heap[heap].load(Relaxed));
-        MemoryUse {
-            device,
-            visible,
-            host,
-        }
-    }
-
     /// Allocates this many bytes by `make`, if the budget has them. `make` returns the result and
     /// the flags of its memory.
     pub fn take<T>(
-        &self,
+        &mut self,
         name: &str,
         bytes: u64,
         make: impl FnOnce() -> Result<(T, Flags)>,
     ) -> Result<T> {
-        let used = self.used.fetch_add(bytes, Relaxed);
-        let limit = self.limit.load(Relaxed);
-        let made = if limit == 0 || used + bytes <= limit {
-            make()
-        } else {
-            let mib = |bytes: u64| bytes as f64 / f64::from(1u32 << 20);
+        let used = self.used.total();
+        if let Some(limit) = self.limit.filter(|limit| used + bytes > *limit) {
+            let [bytes, used, limit] =
+                [bytes, used, limit].map(|bytes| bytes as f64 / f64::from(1u32 << 20));
             let message = format!(
-                "{name}: {:.2} MiB on top of {:.2} exceed the memory budget of {:.2} MiB; give more, or take a smaller picture, fewer objects or fewer map rows",
-                mib(bytes),
-                mib(used),
-                mib(limit)
+                "{name}: {bytes:.2} MiB on top of {used:.2} exceed the memory budget of {limit:.2} MiB; give more, or take a smaller picture, fewer objects or fewer map rows"
             );
-            Err(Error::new(ErrorKind::OutOfDeviceMemory, message))
-        };
-        match made {
-            Ok((made, flags)) => {
-                self.by_heap[heap(flags)].fetch_add(bytes, Relaxed);
-                Ok(made)
-            }
-            Err(error) => {
-                self.used.fetch_sub(bytes, Relaxed);
-                Err(error)
-            }
+            return Err(Error::new(ErrorKind::OutOfDeviceMemory, message));
         }
-    }
-
-    /// Returns bytes to the budget.
-    pub fn give(&self, bytes: u64, flags: Flags) {
-        self.used.fetch_sub(bytes, Relaxed);
-        self.by_heap[heap(flags)].fetch_sub(bytes, Relaxed);
-    }
-}
-
-/// The index of a kind of heap in [`MemoryUse`].
-fn heap(flags: Flags) -> usize {
-    if !flags.contains(Flags::DEVICE_LOCAL) {
-        2
-    } else {
-        usize::from(flags.contains(Flags::HOST_VISIBLE))
+        let (made, flags) = make()?;
+        *self.used.heap(flags) += bytes;
+        Ok(made)
     }
 }
 
@@ -107,33 +73,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_taken_counts_in_its_heap_until_it_is_given_back() {
-        let (budget, seen) = (MemoryBudget::default(), Flags::HOST_VISIBLE);
+    fn what_is_taken_counts_in_its_heap() {
+        let (mut budget, seen) = (MemoryBudget::default(), Flags::HOST_VISIBLE);
         let kinds = [
             Flags::DEVICE_LOCAL,
             Flags::DEVICE_LOCAL | seen,
             seen | Flags::HOST_COHERENT,
         ];
+        for (bytes, flags) in (1..).zip(kinds) {
+            budget.take("a", bytes, || Ok(((), flags))).unwrap();
+        }
         let all = MemoryUse {
             device: 1,
             visible: 2,
             host: 3,
         };
-        for (bytes, flags) in (1..).zip(kinds) {
-            budget.take("a", bytes, || Ok(((), flags))).unwrap();
-        }
-        assert_eq!((budget.memory_use(), all.total()), (all, 6));
-        budget.set(Some(7));
+        assert_eq!((budget.used, all.total()), (all, 6));
+        budget.limit = Some(7);
         let full = budget.take("a", 2, || Ok(((), seen))).unwrap_err();
         assert_eq!(full.kind, ErrorKind::OutOfDeviceMemory);
         // A failed allocation is not counted, either.
         let failed = || Err::<((), Flags), _>(Error::new(ErrorKind::DeviceLost, "planted"));
         budget.take("a", 1, failed).unwrap_err();
-        assert_eq!(budget.memory_use(), all);
-        for (bytes, flags) in (1..).zip(kinds) {
-            budget.give(bytes, flags);
-        }
-        assert_eq!(budget.memory_use(), MemoryUse::default());
-        budget.take("a", 7, || Ok(((), seen))).unwrap();
+        assert_eq!(budget.used, all);
+        budget.take("a", 1, || Ok(((), seen))).unwrap();
     }
 }

@@ -17,11 +17,16 @@ pub(crate) const API_VERSION: u32 = vk::API_VERSION_1_2;
 pub const VALIDATION_VARIABLE: &str = "REVMAP_VALIDATION";
 
 pub(crate) struct Instance {
-    pub messages: Option<Messages>,
     pub raw: ash::Instance,
+    /// The messenger that keeps every warning and error; `None` without validation.
+    messenger: Option<(debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    // Boxed: the driver holds its address.
+    messages: Box<Messages>,
     // Keeps the loader's library open.
-    _entry: ash::Entry,
+    entry: ash::Entry,
 }
+
+type Messages = Mutex<Vec<String>>;
 
 impl Instance {
     /// Loads Vulkan. `validate` turns on the layers' core and synchronization checks. Missing
@@ -29,31 +34,23 @@ impl Instance {
     pub fn new(validate: bool) -> Result<Self> {
         // SAFETY: the loader is the system's; nothing else in this process replaces it meanwhile.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
-            Error::new(
-                ErrorKind::Unsupported,
-                format!("no Vulkan loader ({e}); install libvulkan1 and a driver such as mesa-vulkan-drivers"),
-            )
+            let message = format!(
+                "no Vulkan loader ({e}); install libvulkan1 and a driver such as mesa-vulkan-drivers"
+            );
+            Error::new(ErrorKind::Unsupported, message)
         })?;
-        let layers = if validate {
-            require_layer(&entry)?;
-            vec![VALIDATION.as_ptr()]
-        } else {
-            Vec::new()
-        };
         // SAFETY: plain query.
         let offered = unsafe { entry.enumerate_instance_extension_properties(None) }
             .call("vkEnumerateInstanceExtensionProperties")?;
-        let portability = offered.iter().any(|e| {
-            e.extension_name_as_c_str()
-                .is_ok_and(|name| name == khr::portability_enumeration::NAME)
-        });
-        let mut extensions = Vec::new();
+        let (mut layers, mut extensions) = (Vec::new(), Vec::new());
         let mut flags = vk::InstanceCreateFlags::empty();
-        if portability {
+        if is_among(&offered, khr::portability_enumeration::NAME) {
             extensions.push(khr::portability_enumeration::NAME.as_ptr());
             flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
         }
         if validate {
+            require_layer(&entry)?;
+            layers.push(VALIDATION.as_ptr());
             extensions.push(ext::debug_utils::NAME.as_ptr());
             extensions.push(ext::validation_features::NAME.as_ptr());
         }
@@ -74,28 +71,51 @@ impl Instance {
         }
         // SAFETY: `info` and all it points to live until the call returns.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|code| {
-            Error::new(
-                kind_of(code),
-                format!("no Vulkan driver answered (vkCreateInstance: {code:?}); install one, e.g. mesa-vulkan-drivers"),
-            )
+            let message = format!(
+                "no Vulkan driver answered (vkCreateInstance: {code:?}); install one, e.g. mesa-vulkan-drivers"
+            );
+            Error::new(kind_of(code), message)
         })?;
-        let messages = if validate {
-            match Messages::new(&entry, &raw) {
-                Ok(messages) => Some(messages),
-                Err(error) => {
-                    // SAFETY: nothing was made of the instance yet.
-                    unsafe { raw.destroy_instance(None) };
-                    return Err(error);
-                }
-            }
-        } else {
-            None
-        };
-        Ok(Self {
-            messages,
+        let mut made = Self {
             raw,
-            _entry: entry,
-        })
+            messenger: None,
+            messages: Box::default(),
+            entry,
+        };
+        if validate {
+            made.listen()?;
+        }
+        Ok(made)
+    }
+
+    /// Makes the messenger.
+    fn listen(&mut self) -> Result<()> {
+        use vk::{
+            DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Kind,
+        };
+        let functions = debug_utils::Instance::new(&self.entry, &self.raw);
+        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
+            .message_severity(Severity::WARNING | Severity::ERROR)
+            .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
+            .pfn_user_callback(Some(keep))
+            .user_data((&raw const *self.messages).cast_mut().cast::<c_void>());
+        // SAFETY: the messages outlive the messenger, which Drop destroys first.
+        let messenger = unsafe { functions.create_debug_utils_messenger(&info, None) }
+            .call("vkCreateDebugUtilsMessengerEXT")?;
+        self.messenger = Some((functions, messenger));
+        Ok(())
+    }
+
+    /// True if the validation layers are on.
+    pub fn validated(&self) -> bool {
+        self.messenger.is_some()
+    }
+
+    /// Takes all messages since the last call.
+    pub fn take_messages(&self) -> Vec<String> {
+        let all = self.messages.lock();
+        all.map(|mut all| std::mem::take(&mut *all))
+            .unwrap_or_default()
     }
 
     /// An instance with the validation that the environment variable sets.
@@ -106,104 +126,52 @@ impl Instance {
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        self.messages = None;
-        // SAFETY: the owner destroyed the device before.
-        unsafe { self.raw.destroy_instance(None) };
+        // SAFETY: the owner destroyed the device before, and no other thread makes Vulkan calls.
+        unsafe {
+            if let Some((functions, messenger)) = self.messenger.take() {
+                functions.destroy_debug_utils_messenger(messenger, None);
+            }
+            self.raw.destroy_instance(None);
+        }
     }
+}
+
+/// True if an extension is among these.
+pub(crate) fn is_among(offered: &[vk::ExtensionProperties], extension: &CStr) -> bool {
+    let is = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
+    offered.iter().any(is)
 }
 
 fn require_layer(entry: &ash::Entry) -> Result<()> {
     // SAFETY: plain query.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }
         .call("vkEnumerateInstanceLayerProperties")?;
-    let there = layers.iter().any(|layer| {
-        layer
-            .layer_name_as_c_str()
-            .is_ok_and(|name| name == VALIDATION)
-    });
-    if there {
+    let is = |layer: &vk::LayerProperties| layer.layer_name_as_c_str() == Ok(VALIDATION);
+    if layers.iter().any(is) {
         return Ok(());
     }
-    Err(Error::new(
-        ErrorKind::Unsupported,
-        format!(
-            "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; install vulkan-validationlayers"
-        ),
-    ))
-}
-
-type Store = Mutex<Vec<String>>;
-
-/// A messenger that keeps every warning and error.
-pub(crate) struct Messages {
-    functions: debug_utils::Instance,
-    messenger: vk::DebugUtilsMessengerEXT,
-    // Boxed: the driver holds its address.
-    store: Box<Store>,
-}
-
-impl Messages {
-    pub fn new(entry: &ash::Entry, instance: &ash::Instance) -> Result<Self> {
-        let store = Box::<Store>::default();
-        let functions = debug_utils::Instance::new(entry, instance);
-        let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
-            .message_severity(
-                vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
-                    | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
-            )
-            .message_type(
-                vk::DebugUtilsMessageTypeFlagsEXT::GENERAL
-                    | vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
-                    | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
-            )
-            .pfn_user_callback(Some(keep))
-            .user_data((&raw const *store).cast_mut().cast::<c_void>());
-        // SAFETY: the store outlives the messenger, which Drop destroys first.
-        let messenger = unsafe { functions.create_debug_utils_messenger(&info, None) }
-            .call("vkCreateDebugUtilsMessengerEXT")?;
-        Ok(Self {
-            functions,
-            messenger,
-            store,
-        })
-    }
-
-    /// Takes all messages since the last call.
-    pub fn take(&self) -> Vec<String> {
-        self.store
-            .lock()
-            .map(|mut all| std::mem::take(&mut *all))
-            .unwrap_or_default()
-    }
-}
-
-impl Drop for Messages {
-    fn drop(&mut self) {
-        // SAFETY: the owner drops this before the instance, and no other thread makes Vulkan calls
-        // then.
-        unsafe {
-            self.functions
-                .destroy_debug_utils_messenger(self.messenger, None);
-        }
-    }
+    let message = format!(
+        "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; install vulkan-validationlayers"
+    );
+    Err(Error::new(ErrorKind::Unsupported, message))
 }
 
 /// # Safety
-/// Only the driver may call this, with the data that `new` registered.
+/// Only the driver may call this, with the data that `listen` registered.
 unsafe extern "system" fn keep(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
     user: *mut c_void,
 ) -> vk::Bool32 {
-    // SAFETY: both pointers are valid for the call: `data` by the specification, `user` by `new`.
-    let (data, store) = unsafe { (data.as_ref(), user.cast::<Store>().as_ref()) };
-    if let (Some(data), Some(store)) = (data, store)
+    // SAFETY: both pointers are valid for the call: `data` by the specification, `user` by `listen`.
+    let (data, messages) = unsafe { (data.as_ref(), user.cast::<Messages>().as_ref()) };
+    if let (Some(data), Some(messages)) = (data, messages)
         && !data.p_message.is_null()
     {
         // SAFETY: a non-null message is a NUL-terminated string.
         let text = unsafe { CStr::from_ptr(data.p_message) };
-        if let Ok(mut all) = store.lock() {
+        if let Ok(mut all) = messages.lock() {
             all.push(text.to_string_lossy().into_owned());
         }
     }

@@ -4,31 +4,34 @@ pub(crate) mod budget;
 pub(crate) mod instance;
 pub(crate) mod report;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::gpu::vk::call::Call;
-use crate::gpu::vk::debug::DebugLabels;
 use crate::gpu::vk::pipelines::Pipelines;
+use ash::ext::debug_utils;
 use ash::vk;
 use budget::MemoryBudget;
 use gpu_allocator::vulkan::Allocator;
 use instance::Instance;
 use report::Candidate;
-use std::ffi::CStr;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::ffi::{CStr, CString};
+use std::mem::ManuallyDrop;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// The state of a device, which everything made on it keeps alive.
 pub(crate) struct Shared {
     // Dropped before the device: see Drop.
-    pub allocator: Option<Arc<Mutex<Allocator>>>,
-    pub pipelines: Option<Pipelines>,
+    pub allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,
+    pub pipelines: ManuallyDrop<Pipelines>,
     pub raw: ash::Device,
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
     /// The functions of the instance.
     pub functions: ash::Instance,
     /// The physical device, with the features that are on.
     pub chosen: Candidate,
-    pub budget: MemoryBudget,
-    pub debug_labels: DebugLabels,
+    pub budget: Mutex<MemoryBudget>,
+    /// The functions that label commands and name handles (`VK_EXT_debug_utils`); empty if the host
+    /// has not enabled them.
+    pub debug_labels: OnceLock<debug_utils::Device>,
     /// Bits of the memory types that are host-visible and coherent, but not device-local.
     pub host_types: u32,
     /// `None` for a borrowed device.
@@ -80,12 +83,12 @@ impl Shared {
     ) -> Result<Self> {
         let pipelines = Pipelines::new(raw.clone(), pipeline_cache, chosen.constants())?;
         Ok(Self {
-            allocator: Some(memory),
-            pipelines: Some(pipelines),
+            allocator: ManuallyDrop::new(memory),
+            pipelines: ManuallyDrop::new(pipelines),
             queue: queue.map(|queue| Arc::new(Mutex::new(queue))),
             functions: instance.clone(),
-            budget: MemoryBudget::default(),
-            debug_labels: DebugLabels::default(),
+            budget: Mutex::default(),
+            debug_labels: OnceLock::new(),
             host_types: host_types(instance, chosen.physical),
             chosen,
             raw,
@@ -99,36 +102,52 @@ impl Shared {
         &self.chosen.properties.limits
     }
 
-    pub fn allocator(&self) -> Result<MutexGuard<'_, Allocator>> {
-        self.allocator
-            .as_ref()
-            .and_then(|a| a.lock().ok())
-            .ok_or_else(|| {
-                Error::new(
-                    ErrorKind::Other,
-                    "the device's allocator is gone after a panic",
-                )
-            })
+    /// Names a handle.
+    pub fn name(&self, handle: impl vk::Handle, name: &str) {
+        if let (Some(functions), Ok(name)) = (self.debug_labels.get(), CString::new(name)) {
+            let info = vk::DebugUtilsObjectNameInfoEXT::default()
+                .object_handle(handle)
+                .object_name(&name);
+            // A name is no reason to fail.
+            // SAFETY: the handle is live, and of the device of the functions.
+            let _ = unsafe { functions.set_debug_utils_object_name(&info) };
+        }
     }
 
-    pub fn pipelines(&self) -> Result<&Pipelines> {
-        self.pipelines
-            .as_ref()
-            .ok_or_else(|| Error::new(ErrorKind::Other, "the device is being closed"))
+    /// Records `commands` under a label.
+    pub fn labelled<T>(
+        &self,
+        cmd: vk::CommandBuffer,
+        label: &CStr,
+        commands: impl FnOnce() -> T,
+    ) -> T {
+        let functions = self.debug_labels.get();
+        if let Some(functions) = functions {
+            let info = vk::DebugUtilsLabelEXT::default().label_name(label);
+            // SAFETY: `cmd` is recording, as the callers' callers promised.
+            unsafe { functions.cmd_begin_debug_utils_label(cmd, &info) };
+        }
+        let result = commands();
+        if let Some(functions) = functions {
+            // SAFETY: as above; the label was begun.
+            unsafe { functions.cmd_end_debug_utils_label(cmd) };
+        }
+        result
     }
 }
 
 impl Drop for Shared {
     fn drop(&mut self) {
+        let owned = self.instance.is_some();
         // SAFETY: everything made on the device kept this alive and is gone by now; a host has
-        // waited for its own work.
+        // waited for its own work. What is dropped here is not used again.
         unsafe {
-            if self.instance.is_some() {
+            if owned {
                 let _ = self.raw.device_wait_idle();
             }
-            self.pipelines = None;
-            self.allocator = None;
-            if self.instance.is_some() {
+            ManuallyDrop::drop(&mut self.pipelines);
+            ManuallyDrop::drop(&mut self.allocator);
+            if owned {
                 self.raw.destroy_device(None);
             }
         }
@@ -136,7 +155,7 @@ impl Drop for Shared {
 }
 
 /// Bits of the memory types that are host-visible and coherent, but not device-local.
-pub(crate) fn host_types(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
+fn host_types(instance: &ash::Instance, physical: vk::PhysicalDevice) -> u32 {
     use vk::MemoryPropertyFlags as Flags;
     // SAFETY: plain query of a live physical device.
     let all = unsafe { instance.get_physical_device_memory_properties(physical) };

@@ -1,12 +1,12 @@
 //! The capabilities of each Vulkan device, and the choice of one.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::device::instance::{API_VERSION, Instance};
+use crate::gpu::device::instance::{API_VERSION, Instance, is_among};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::pipelines::DeviceConstants;
 use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
 use ash::vk;
-use std::ffi::CStr;
+use std::ffi::{CStr, FromBytesUntilNulError};
 
 /// The environment variable that names the device to open.
 pub const DEVICE_VARIABLE: &str = "REVMAP_DEVICE";
@@ -85,21 +85,19 @@ impl Candidate {
 
     /// The largest number of indexed draws in one indirect command; 0 without the needed features.
     pub fn most_draws(&self) -> u32 {
-        let both = [
-            self.features.multi_draw_indirect,
-            self.features.draw_indirect_first_instance,
-        ];
-        if both == [vk::TRUE; 2] {
-            self.properties.limits.max_draw_indirect_count
-        } else {
-            0
+        let features = &self.features;
+        match [
+            features.multi_draw_indirect,
+            features.draw_indirect_first_instance,
+        ] {
+            [vk::TRUE, vk::TRUE] => self.properties.limits.max_draw_indirect_count,
+            _ => 0,
         }
     }
 
     /// Returns true if the device offers an extension.
     pub fn offers(&self, extension: &CStr) -> bool {
-        let named = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
-        self.extensions.iter().any(named)
+        is_among(&self.extensions, extension)
     }
 
     /// The constants of all pipelines.
@@ -129,25 +127,20 @@ impl Candidate {
 
     /// The rows of [`DeviceReport::uses`].
     fn uses(&self) -> Vec<(String, String)> {
-        let yes_no = |b: bool| if b { "yes" } else { "no" }.to_owned();
+        let flag = |what, is| (what, if is { "yes" } else { "no" }.to_owned());
         let limits = &self.properties.limits;
-        let timestamps = if self.timestamp_bits > 0 {
-            let (bits, period) = (self.timestamp_bits, limits.timestamp_period);
-            format!("{bits} bits of {period} ns")
-        } else {
-            "no: times are the wall clock's alone".to_owned()
+        let timestamps = match self.timestamp_bits {
+            0 => "no: times are the wall clock's alone".to_owned(),
+            bits => format!("{bits} bits of {} ns", limits.timestamp_period),
         };
         let (width, height) = (limits.max_framebuffer_width, limits.max_framebuffer_height);
         let side = limits.max_image_dimension2_d;
         [
             ("GPU timestamps", timestamps),
-            ("anisotropic filtering", yes_no(self.anisotropy().is_some())),
-            ("hulls of solids that their box cuts", yes_no(self.clips())),
-            ("quads of crowds as points", yes_no(self.large_points())),
-            (
-                "tiles of crowds listed by device",
-                yes_no(self.lists_crowds()),
-            ),
+            flag("anisotropic filtering", self.anisotropy().is_some()),
+            flag("hulls of solids that their box cuts", self.clips()),
+            flag("quads of crowds as points", self.large_points()),
+            flag("tiles of crowds listed by device", self.lists_crowds()),
             ("largest map", format!("{side} texels a side")),
             ("largest picture", format!("{width} x {height}")),
         ]
@@ -175,61 +168,46 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
 }
 
 /// The device that the environment names.
-pub(crate) fn variable() -> Option<String> {
-    std::env::var(DEVICE_VARIABLE)
-        .ok()
-        .filter(|v| !v.is_empty())
+fn variable() -> Option<String> {
+    let set = std::env::var(DEVICE_VARIABLE).ok();
+    set.filter(|device| !device.is_empty())
 }
 
 fn none() -> Error {
-    Error::new(
-        ErrorKind::Unsupported,
-        "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers",
-    )
+    let message = "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers";
+    Error::new(ErrorKind::Unsupported, message)
 }
 
-pub(crate) fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
+fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
     // SAFETY: plain query of a live instance.
     let all =
         unsafe { instance.raw.enumerate_physical_devices() }.call("vkEnumeratePhysicalDevices")?;
-    Ok(all
-        .into_iter()
-        .enumerate()
-        .map(|(index, physical)| inspect(&instance.raw, index, physical))
-        .collect())
+    let inspected = |(index, physical)| inspect(&instance.raw, index, physical);
+    Ok(all.into_iter().enumerate().map(inspected).collect())
 }
 
-/// The candidate that `choice` names (an index, or part of a name, in any case). The default is
-/// the first by kind.
-pub(crate) fn choose(mut all: Vec<Candidate>, choice: Option<&str>) -> Result<Candidate> {
-    let chosen = all.swap_remove(position(&all, choice)?);
+/// The device that `choice` names, else the environment: an index, or part of a name, in any case.
+/// The default is the first by kind.
+pub(crate) fn choose(instance: &Instance, choice: Option<&str>) -> Result<Candidate> {
+    let (mut all, variable) = (candidates(instance)?, variable());
+    let chosen = all.swap_remove(position(&all, choice.or(variable.as_deref()))?);
     refuse(&chosen)?;
     Ok(chosen)
 }
 
 fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
     let Some(wanted) = choice else {
-        return all
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| c.report.missing.is_empty())
-            .min_by_key(|(_, c)| rank(c.properties.device_type))
-            .or_else(|| all.iter().enumerate().next())
-            .map(|(position, _)| position)
-            .ok_or_else(none);
+        let usable = (0..all.len()).filter(|&k| all[k].report.missing.is_empty());
+        let first = usable.min_by_key(|&k| rank(all[k].properties.device_type));
+        return first.or((!all.is_empty()).then_some(0)).ok_or_else(none);
     };
     let part = wanted.to_lowercase();
     let index = wanted.parse::<usize>().ok().filter(|i| *i < all.len());
-    let named = || {
-        all.iter()
-            .position(|c| c.report.name.to_lowercase().contains(&part))
-    };
+    let is_named = |c: &Candidate| c.report.name.to_lowercase().contains(&part);
+    let named = || all.iter().position(is_named);
     index.or_else(named).ok_or_else(|| {
-        let names: Vec<_> = all
-            .iter()
-            .map(|c| format!("{} {}", c.report.index, c.report.name))
-            .collect();
-        let names = names.join(", ");
+        let name = |c: &Candidate| format!("{} {}", c.report.index, c.report.name);
+        let names = all.iter().map(name).collect::<Vec<_>>().join(", ");
         let message = format!("no device is called '{wanted}'; there are: {names}");
         Error::new(ErrorKind::Usage, message).at_key("device")
     })
@@ -246,43 +224,28 @@ pub(crate) fn refuse(candidate: &Candidate) -> Result<()> {
     Err(Error::new(ErrorKind::Unsupported, message).at_key("device"))
 }
 
-fn rank(kind: vk::PhysicalDeviceType) -> u8 {
-    match kind {
-        vk::PhysicalDeviceType::DISCRETE_GPU => 0,
-        vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
-        vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
-        vk::PhysicalDeviceType::CPU => 3,
-        _ => 4,
-    }
-}
+/// Kinds of devices, the preferred first.
+const KINDS: [(vk::PhysicalDeviceType, &str); 4] = [
+    (vk::PhysicalDeviceType::DISCRETE_GPU, "discrete"),
+    (vk::PhysicalDeviceType::INTEGRATED_GPU, "integrated"),
+    (vk::PhysicalDeviceType::VIRTUAL_GPU, "virtual"),
+    (vk::PhysicalDeviceType::CPU, "cpu"),
+];
 
-fn kind_name(kind: vk::PhysicalDeviceType) -> &'static str {
-    match kind {
-        vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
-        vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
-        vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
-        vk::PhysicalDeviceType::CPU => "cpu",
-        _ => "other",
-    }
+/// The number of a kind in [`KINDS`], or one more.
+fn rank(kind: vk::PhysicalDeviceType) -> usize {
+    let found = KINDS.iter().position(|(known, _)| *known == kind);
+    found.unwrap_or(KINDS.len())
 }
 
 fn version(v: u32) -> String {
-    format!(
-        "{}.{}.{}",
-        vk::api_version_major(v),
-        vk::api_version_minor(v),
-        vk::api_version_patch(v)
-    )
+    use vk::{api_version_major as major, api_version_minor as minor, api_version_patch as patch};
+    format!("{}.{}.{}", major(v), minor(v), patch(v))
 }
 
-/// A driver's text, up to its terminating zero.
-pub(crate) fn text(raw: &[std::ffi::c_char]) -> String {
-    let bytes: Vec<u8> = raw
-        .iter()
-        .take_while(|c| **c != 0)
-        .map(|c| c.to_ne_bytes()[0])
-        .collect();
-    String::from_utf8_lossy(&bytes).into_owned()
+/// A driver's text.
+pub(crate) fn text(raw: std::result::Result<&CStr, FromBytesUntilNulError>) -> String {
+    raw.unwrap_or_default().to_string_lossy().into_owned()
 }
 
 pub(crate) fn inspect(
@@ -319,25 +282,23 @@ pub(crate) fn inspect(
     if features.fragment_stores_and_atomics == vk::FALSE {
         missing.push("fragmentStoresAndAtomics".to_owned());
     }
-    for (format, wanted, what) in FORMATS {
+    for (format, wanted, what) in formats() {
         // SAFETY: plain query.
-        let offered = unsafe { raw.get_physical_device_format_properties(physical, *format) };
-        if !offered.optimal_tiling_features.contains(*wanted) {
-            missing.push((*what).to_owned());
+        let offered = unsafe { raw.get_physical_device_format_properties(physical, format) };
+        if !offered.optimal_tiling_features.contains(wanted) {
+            missing.push(what.to_owned());
         }
     }
     let timestamp_bits = family.map_or(0, |f| families[f].timestamp_valid_bits);
-    let driver_text = format!(
-        "{} {}",
-        text(&driver.driver_name),
-        text(&driver.driver_info)
-    );
+    let driver = [driver.driver_name_as_c_str(), driver.driver_info_as_c_str()].map(text);
     let mut candidate = Candidate {
         report: DeviceReport {
             index,
-            name: text(&basic.device_name),
-            kind: kind_name(basic.device_type),
-            driver: driver_text.trim().to_owned(),
+            name: text(basic.device_name_as_c_str()),
+            kind: KINDS
+                .get(rank(basic.device_type))
+                .map_or("other", |kind| kind.1),
+            driver: driver.join(" ").trim().to_owned(),
             api_version: version(basic.api_version),
             uses: Vec::new(),
             missing,
@@ -355,28 +316,17 @@ pub(crate) fn inspect(
     candidate
 }
 
-const FORMATS: &[(vk::Format, vk::FormatFeatureFlags, &str)] = &[
-    (
-        vk::Format::R16_SFLOAT,
-        vk::FormatFeatureFlags::SAMPLED_IMAGE,
-        "sampled 16-bit float images",
-    ),
-    (
-        vk::Format::R32_SFLOAT,
-        vk::FormatFeatureFlags::SAMPLED_IMAGE,
-        "sampled 32-bit float images",
-    ),
-    (
-        vk::Format::R32G32B32A32_SFLOAT,
-        vk::FormatFeatureFlags::from_raw(
-            vk::FormatFeatureFlags::COLOR_ATTACHMENT.as_raw()
-                | vk::FormatFeatureFlags::STORAGE_IMAGE.as_raw(),
-        ),
-        "render targets and storage images of 32-bit floats",
-    ),
-    (
-        vk::Format::D32_SFLOAT,
-        vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT,
-        "a 32-bit float depth buffer",
-    ),
-];
+/// Formats with the uses that a renderer needs of them.
+fn formats() -> [(vk::Format, vk::FormatFeatureFlags, &'static str); 4] {
+    use vk::{Format as F, FormatFeatureFlags as Use};
+    let sampled = Use::SAMPLED_IMAGE;
+    let drawn = Use::COLOR_ATTACHMENT | Use::STORAGE_IMAGE;
+    let tested = Use::DEPTH_STENCIL_ATTACHMENT;
+    let targets = "render targets and storage images of 32-bit floats";
+    [
+        (F::R16_SFLOAT, sampled, "sampled 16-bit float images"),
+        (F::R32_SFLOAT, sampled, "sampled 32-bit float images"),
+        (F::R32G32B32A32_SFLOAT, drawn, targets),
+        (F::D32_SFLOAT, tested, "a 32-bit float depth buffer"),
+    ]
+}

@@ -40,10 +40,9 @@ impl Buffer {
                 format!("the {name} take {bytes} bytes, and {device} takes {limit}; draw fewer");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
-        let types = if to == Use::Upload {
-            device.host_types
-        } else {
-            u32::MAX
+        let types = match to {
+            Use::Upload => device.host_types,
+            _ => u32::MAX,
         };
         Self::new(device, name, bytes, usage, to.location(), types)
     }
@@ -67,7 +66,7 @@ impl Buffer {
             allocation: None,
             device: device.clone(),
         };
-        device.debug_labels.name(raw, name);
+        device.name(raw, name);
         // SAFETY: the buffer is live.
         let mut requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         if requirements.memory_type_bits & types != 0 {

@@ -32,10 +32,9 @@ pub struct ImageKind {
 impl ImageKind {
     /// Colour or depth.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
-        if self.format == vk::Format::D32_SFLOAT {
-            vk::ImageAspectFlags::DEPTH
-        } else {
-            vk::ImageAspectFlags::COLOR
+        match self.format {
+            vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
+            _ => vk::ImageAspectFlags::COLOR,
         }
     }
 
@@ -65,11 +64,7 @@ impl Image {
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(kind.format)
-            .extent(vk::Extent3D {
-                width: kind.width,
-                height: kind.height,
-                depth: 1,
-            })
+            .extent(extent(kind.width, kind.height))
             .mip_levels(kind.mips)
             .array_layers(1)
             .samples(kind.samples)
@@ -133,10 +128,18 @@ impl Drop for Image {
     }
 }
 
+fn extent(width: u32, height: u32) -> vk::Extent3D {
+    vk::Extent3D {
+        width,
+        height,
+        depth: 1,
+    }
+}
+
 /// Copies that wait for a renderer's commands.
 pub(crate) struct Uploads {
     waiting: Vec<Upload>,
-    owner: u32,
+    pub device: Arc<Shared>,
 }
 
 /// The copy of one image.
@@ -147,36 +150,29 @@ pub(crate) struct Upload {
 }
 
 impl Uploads {
-    /// No copies yet, for the renderer of this identity.
-    pub fn of(owner: u32) -> Self {
+    /// No copies yet.
+    pub fn new(device: &Arc<Shared>) -> Self {
         Self {
             waiting: Vec::new(),
-            owner,
+            device: device.clone(),
         }
-    }
-
-    /// The renderer's identity.
-    pub fn owner(&self) -> u32 {
-        self.owner
     }
 
     /// Makes a sampled image of `levels`: the bytes of each mip level, the largest first.
     pub fn image(
         &mut self,
-        device: &Arc<Shared>,
         name: &str,
         format: vk::Format,
         (width, height): (u32, u32),
         levels: &[&[u8]],
     ) -> Result<Arc<Image>> {
+        let device = &self.device;
         let limit = device.limits().max_image_dimension2_d;
         if width > limit || height > limit {
-            return Err(Error::new(
-                ErrorKind::TooLarge,
-                format!(
-                    "{name}: {width} x {height} texels, and the device takes {limit} a side; use fewer map rows"
-                ),
-            ));
+            let message = format!(
+                "{name}: {width} x {height} texels, and the device takes {limit} a side; use fewer map rows"
+            );
+            return Err(Error::new(ErrorKind::TooLarge, message));
         }
         let kind = ImageKind {
             format,
@@ -197,16 +193,11 @@ impl Uploads {
                 .aspect_mask(vk::ImageAspectFlags::COLOR)
                 .mip_level(level)
                 .layer_count(1);
-            regions.push(
-                vk::BufferImageCopy::default()
-                    .buffer_offset(at as u64)
-                    .image_subresource(layers)
-                    .image_extent(vk::Extent3D {
-                        width: (width >> level).max(1),
-                        height: (height >> level).max(1),
-                        depth: 1,
-                    }),
-            );
+            let region = vk::BufferImageCopy::default()
+                .buffer_offset(at as u64)
+                .image_subresource(layers)
+                .image_extent(extent((width >> level).max(1), (height >> level).max(1)));
+            regions.push(region);
             at += bytes.len().next_multiple_of(16);
         }
         self.waiting.push(Upload {
@@ -219,14 +210,14 @@ impl Uploads {
 
     /// Records all copies. The returned values must live until the copies have run.
     #[must_use]
-    pub fn record(&mut self, device: &Shared, cmd: vk::CommandBuffer) -> Vec<Upload> {
+    pub fn record(&mut self, cmd: vk::CommandBuffer) -> Vec<Upload> {
         for upload in &self.waiting {
             let image = &upload.image;
             image.barrier(cmd, Usage::Nothing, Usage::TransferWrite);
             // SAFETY: `cmd` is recording, outside a render pass; the regions are within buffer and
             // image.
             unsafe {
-                device.raw.cmd_copy_buffer_to_image(
+                self.device.raw.cmd_copy_buffer_to_image(
                     cmd,
                     upload.staging.raw,
                     image.raw,

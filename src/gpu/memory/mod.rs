@@ -3,7 +3,7 @@
 pub(crate) mod buffers;
 pub(crate) mod images;
 
-use crate::error::Result;
+use crate::error::{Result, lock};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::allocation_error;
 use ash::vk;
@@ -21,8 +21,9 @@ fn allocate(
     linear: bool,
 ) -> Result<Allocation> {
     let bytes = requirements.size;
-    device.budget.take(name, bytes, || {
-        let made = device.allocator()?.allocate(&AllocationCreateDesc {
+    // The lock is held so that allocations on other threads count.
+    lock(&device.budget)?.take(name, bytes, || {
+        let made = lock(&device.allocator)?.allocate(&AllocationCreateDesc {
             name,
             requirements,
             location,
@@ -47,9 +48,10 @@ fn free(device: &Shared, allocation: Option<Allocation>) {
     let Some(allocation) = allocation else {
         return;
     };
-    let (bytes, flags) = (allocation.size(), allocation.memory_properties());
-    device.budget.give(bytes, flags);
-    if let Ok(mut allocator) = device.allocator() {
+    if let Ok(mut budget) = device.budget.lock() {
+        *budget.used.heap(allocation.memory_properties()) -= allocation.size();
+    }
+    if let Ok(mut allocator) = device.allocator.lock() {
         // An error here can only be reported, and no caller is left to receive it.
         let _ = allocator.free(allocation);
     }

@@ -7,7 +7,7 @@ use crate::gpu::resources::block::instance_block;
 use crate::plan::levels::COPY_LEVELS;
 use crate::plan::{DrawPath, View};
 use crate::shader::InstanceBlock;
-use crate::solid::table_slot::Part;
+use crate::solid::offset_surface::Part;
 
 /// The draw path of an object in the last prepared frame, and its memory on the device.
 ///

@@ -18,9 +18,8 @@ use crate::gpu::content::refresh::distinct;
 use crate::gpu::device::Shared;
 use crate::gpu::open::Device;
 use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::vk::output::{ComputeTarget, Output};
+use crate::gpu::vk::output::{ComputeTarget, HostShading, Output};
 use crate::gpu::vk::pipelines::Owner;
-use crate::gpu::vk::shading::HostShading;
 use crate::plan::DrawPath;
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
@@ -120,7 +119,7 @@ impl Renderer {
         settings.check()?;
         let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();
-        let owner = device.pipelines()?.owner(&output, shading)?;
+        let owner = device.pipelines.owner(&output, shading)?;
         let mut content = Content::new(&device, geometry, output, settings)?;
         content.host_shades = shading.is_some();
         Ok(Self {
@@ -201,9 +200,9 @@ impl Renderer {
     /// as the renderer.
     ///
     /// # Errors
-    /// [`ErrorKind::Other`] while the device is being closed.
+    /// None in this version.
     pub fn pipeline_layout(&self) -> Result<vk::PipelineLayout> {
-        let shared = self.device.pipelines()?.layout;
+        let shared = self.device.pipelines.layout;
         Ok(self.owner.shading.as_ref().map_or(shared, |own| own.layout))
     }
 
@@ -231,8 +230,6 @@ impl Renderer {
 
 impl Drop for Renderer {
     fn drop(&mut self) {
-        if let Ok(pipelines) = self.device.pipelines() {
-            pipelines.forget(&self.owner);
-        }
+        self.device.pipelines.forget(&self.owner);
     }
 }

@@ -4,7 +4,7 @@ use super::Renderer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::objects::ObjectId;
 use crate::gpu::resources::block::check_lights;
-use crate::gpu::resources::host_image::{HostImage, ObjectImages};
+use crate::gpu::resources::textures::{HostImage, ObjectImages};
 use crate::scene::{Copies, Lighting, Object, Offset, Placement, Shadow};
 
 impl Renderer {

@@ -4,14 +4,13 @@
 
 use super::Renderer;
 use super::slot::{BoundPlan, BoundStep, SlotBuffer, Written};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::gpu::resources::block::{add_casters, frame_block, instance_block};
-use crate::gpu::resources::motion::last_block;
+use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
 use crate::plan::View;
 use crate::settings::Planes;
 use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
-use crate::solid::table_slot::{Part, Slot};
+use crate::solid::offset_surface::{Part, Slot};
 use ash::vk;
 use std::borrow::Cow;
 use std::iter;
@@ -100,7 +99,7 @@ impl Renderer {
         let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
         let plan = self.content.plan(view, known)?;
         let to = &mut self.slots[slot];
-        to.staging = self.content.uploads.record(&self.device, cmd);
+        to.staging = self.content.uploads.record(cmd);
         let stale = |bound: &BoundPlan| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0;
         if to.bound.as_ref().is_none_or(stale) {
             to.bound = None;
@@ -154,9 +153,8 @@ impl Renderer {
         let parts = plan.objects.iter().zip(&frame.parts);
         let read =
             parts.flat_map(|(object, parts)| object.surfaces().map(|surface| (surface, *parts)));
-        let buffers = self.content.geometry.lock()?.store(read)?;
-        let pipelines = self.device.pipelines()?;
-        let output = &self.content.output;
+        let buffers = lock(&self.content.geometry)?.store(read)?;
+        let pipelines = &self.device.pipelines;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
         let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
@@ -186,8 +184,8 @@ impl Renderer {
             let hides = self.hides && n < frame.steps.len();
             steps.push(BoundStep {
                 pipeline: match hides {
-                    true => pipelines.known(variant, step.kind, output, &self.owner)?,
-                    false => Some(pipelines.get(variant, step.kind, output, &self.owner)?),
+                    true => pipelines.known(variant, step.kind, &self.owner)?,
+                    false => Some(pipelines.get(variant, step.kind, &self.owner)?),
                 },
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],

@@ -8,7 +8,6 @@ use crate::gpu::content::entry::Entry;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
-use crate::gpu::vk::output::Output;
 use crate::gpu::vk::pipelines::Owner;
 use crate::plan::levels::LevelledCopies;
 use crate::plan::{PlanObject, variants};
@@ -19,7 +18,6 @@ use std::sync::Arc;
 /// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
-    output: Output,
     owner: Owner,
     device: Arc<Shared>,
 }
@@ -42,9 +40,9 @@ impl Prewarm {
     /// # Errors
     /// Errors of Vulkan calls.
     pub fn compile(&self) -> Result<()> {
-        let pipelines = self.device.pipelines()?;
+        let pipelines = &self.device.pipelines;
         for &(variant, kind) in &self.wanted {
-            pipelines.get(variant, kind, &self.output, &self.owner)?;
+            pipelines.get(variant, kind, &self.owner)?;
         }
         Ok(())
     }
@@ -64,7 +62,6 @@ impl Renderer {
         let reachable = self.content.reachable();
         Ok(Prewarm {
             wanted: reachable.into_iter().map(|(key, _)| key).collect(),
-            output: self.content.output.clone(),
             owner: self.owner.clone(),
             device: self.device.clone(),
         })
@@ -89,7 +86,7 @@ impl Renderer {
         frame: &PreparedFrame,
     ) -> Result<()> {
         let (slot, _) = self.frame(frame)?;
-        let pipelines = self.device.pipelines()?;
+        let pipelines = &self.device.pipelines;
         let raw = &self.device.raw;
         let (compute, point) = match self.content.is_compute() {
             true => (true, vk::PipelineBindPoint::COMPUTE),
@@ -103,7 +100,7 @@ impl Renderer {
             if !compute && kind.makes_lists() {
                 continue;
             }
-            let pipeline = pipelines.get(variant, kind, &self.content.output, &self.owner)?;
+            let pipeline = pipelines.get(variant, kind, &self.owner)?;
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
                 self.push(cmd, &Pushed::default());

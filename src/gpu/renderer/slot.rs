@@ -113,7 +113,7 @@ impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
         let buffer = |&(to, name, bytes): &_| Buffer::for_use(device, to, name, bytes as u64);
         let buffers = BUFFERS.iter().map(buffer).collect::<Result<_>>()?;
-        let layouts = &device.pipelines()?.set_layouts;
+        let layouts = &device.pipelines.set_layouts;
         let sets = [FRAME_SET, TARGET_SET];
         let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
         Ok(Self {

@@ -1,6 +1,7 @@
 //! Conversion of scene values to the blocks that shaders read.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::content::entry::Entry;
 use crate::maps::MapFormat;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{DepthOrder, View};
@@ -8,7 +9,7 @@ use crate::scene::{Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
 use crate::shader::{FrameBlock, InstanceBlock, LightBlock};
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// Returns an error if a map's format cannot show the object's offset.
 pub(crate) fn check_format(
@@ -28,7 +29,6 @@ pub(crate) fn check_format(
 
 /// The block of one copy of `object` in a view. World coordinates are subtracted here, in double
 /// precision.
-#[allow(clippy::cast_possible_truncation)]
 pub(crate) fn instance_block(
     object: &Object,
     placement: &Placement,
@@ -43,34 +43,65 @@ pub(crate) fn instance_block(
     let clip = view.clip_of(middle);
     let to_plane = view.dir_00 * depth.max(0.0);
     let origin = rotation.conjugate() * (to_plane - p) / placement.scale - DVec3::new(x, y, 0.0);
-    let (p, s, q, o) = (
-        p.as_vec3(),
-        placement.scale.as_vec3(),
-        rotation.as_quat(),
-        origin.as_vec3(),
-    );
+    let [p, s, o] = [p, placement.scale, origin].map(|v| v.as_vec3());
     InstanceBlock {
         position_sx: [p.x, p.y, p.z, s.x],
-        rotation: q.to_array(),
+        rotation: rotation.as_quat().to_array(),
         scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
         origin: [o.x, o.y, o.z, clip.y as f32],
         object: [number, 0, 0, 0],
     }
 }
 
+/// The record from which `motion_of` of `stage/outputs.glsl` projects a point of a copy into the
+/// last frame: three rows of the map from object space to `(x w, y w, w)`, then this frame's jitter
+/// and the distance along the normal by which the surface was farther out.
+///
+/// The map is exact. A point moves along its normal if the extension changes, which is exact where
+/// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
+pub(crate) fn last_block(entry: &Entry, copy: usize, view: &View) -> InstanceBlock {
+    let (object, growth) = (&entry.values.object, entry.values.growth());
+    let all = object.placements();
+    let last = entry.last.as_ref();
+    let last = last.and_then(|last| Some((&last.placements(all.len())?[copy], last.extend)));
+    let (placement, extend) = last.unwrap_or((&all[copy], object.offset.extend));
+    let rows = view
+        .last
+        .map_or_else(|| view.pixel_rows(), |last| last.rows);
+    // A point `p` of the drawn box is `height p + origin` in the object's own units.
+    let height = growth.height();
+    let [x, y] = object.axis_offset();
+    let rotation = placement.rotation.normalize();
+    let moved = |v: DVec3| rotation * (placement.scale * v);
+    let origin = placement.position + moved(DVec3::new(x, y, -growth.low));
+    let ways = DVec3::AXES.map(|axis| moved(axis * height));
+    let [row_x, row_y, row_w] = rows.map(|row| {
+        let [a, b, c] = ways.map(|way| row.truncate().dot(way));
+        let at = row.dot(origin.extend(1.0));
+        DVec4::new(a, b, c, at).as_vec4().to_array()
+    });
+    let farther = (extend - object.offset.extend) / height;
+    // Positions of the shader count from the centre of pixel (0, 0).
+    let [jitter_x, jitter_y] = (0.5 - view.jitter).to_array();
+    InstanceBlock {
+        position_sx: row_x,
+        rotation: row_y,
+        scale_depth: row_w,
+        origin: [jitter_x as f32, jitter_y as f32, farther as f32, 0.0],
+        object: [0; 4],
+    }
+}
+
 /// The frame's block: eye, rays, lights, depths. `last_record`: first of the records of
-/// [`last_block`](super::motion::last_block) among instances.
+/// [`last_block`] among instances.
 pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) -> FrameBlock {
+    let vector = |v: DVec3, w: f64| v.as_vec3().extend(w as f32).to_array();
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
-        let towards = -light.direction.normalize_or_zero().as_vec3();
-        #[allow(clippy::cast_possible_truncation)]
-        let cap = light.cap() as f32;
-        block.towards = towards.extend(cap).to_array();
-        block.color = [light.color[0], light.color[1], light.color[2], 0.0];
+        let [red, green, blue] = light.color;
+        block.towards = vector(-light.direction.normalize_or_zero(), light.cap());
+        block.color = [red, green, blue, 0.0];
     }
-    #[allow(clippy::cast_possible_truncation)]
-    let vector = |v: DVec3, w: f64| v.as_vec3().extend(w as f32).to_array();
     let [constant, factor] = view.depth;
     let (sense, near_value) = match view.order {
         DepthOrder::Normal => (1.0, 0.0),
@@ -78,9 +109,9 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
     };
     let [clip_x, clip_y] = view.clip_rows();
     let [red, green, blue] = lighting.ambient;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // pixels
-    let size = [view.viewport.width, view.viewport.height.abs()].map(|v| v as u32);
     let v = &view.viewport;
+    let [width, height] = [v.width, v.height.abs()].map(|side| side as u32);
+    let lit = u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS);
     FrameBlock {
         clip_x: vector(clip_x, f64::from(u8::from(view.parallel))),
         clip_y: vector(clip_y, view.near),
@@ -89,19 +120,14 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
         dir_y: vector(view.dir_y, factor),
         forward: vector(view.forward, sense),
         ambient: [red, green, blue, near_value],
-        size: [
-            size[0],
-            size[1],
-            u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS),
-            last_record,
-        ],
-        #[allow(clippy::cast_possible_truncation)]
+        size: [width, height, lit, last_record],
         pixels: [
-            (2.0 / v.width) as f32,
-            (-2.0 * v.x / v.width - 1.0) as f32,
-            (2.0 / v.height) as f32,
-            (-2.0 * v.y / v.height - 1.0) as f32,
-        ],
+            2.0 / v.width,
+            -2.0 * v.x / v.width - 1.0,
+            2.0 / v.height,
+            -2.0 * v.y / v.height - 1.0,
+        ]
+        .map(|side| side as f32),
         view: [view.layer, 0, 0, 0],
         lights,
         ..bytemuck::Zeroable::zeroed()

@@ -2,27 +2,25 @@
 //! one storage buffer, and the indices of proxies. A surface's parts keep their positions in the
 //! buffer as long as they live.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::device::Shared;
 use crate::gpu::memory::buffers::{Buffer, Use, write_slice};
-use crate::gpu::resources::solid_cache::SolidCache;
 use crate::plan::Parts;
-use crate::solid::offset_surface::OffsetSurface;
+use crate::solid::cache::SolidCache;
+use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
 use crate::solid::proxy_hull;
-use crate::solid::table_slot::{Part, Ranges, Slot};
 use range_alloc::RangeAllocator;
-use std::sync::{Arc, Mutex, MutexGuard, Weak};
-
-/// The shared state, behind one lock.
-pub(crate) struct Geometry {
-    state: Mutex<State>,
-}
+use std::sync::{Arc, Mutex, Weak};
 
 /// Solids and buffers.
-pub(crate) struct State {
+pub(crate) struct Geometry {
     pub solids: SolidCache,
-    arena: TableArena,
-    indices: Arc<Buffer>,
+    buffers: TableBuffers,
+    /// Free ranges of the tables, in vectors of 16 bytes.
+    ranges: Arc<Mutex<RangeAllocator<u32>>>,
+    /// Every slot is as long as so many vectors, or a multiple of it, and so begins where a window
+    /// of a uniform buffer may.
+    unit: u32,
     /// The number of frusta that have indices.
     frusta: u32,
     device: Arc<Shared>,
@@ -35,192 +33,135 @@ pub(crate) struct TableBuffers {
     pub indices: Arc<Buffer>,
 }
 
+/// Units of new tables.
+const FIRST_UNITS: u32 = 1024;
+
 impl Geometry {
     /// The geometry that `known` holds for a device; made now if there is none.
-    pub fn of(device: &Arc<Shared>, known: &Mutex<Weak<Self>>) -> Result<Arc<Self>> {
-        let mut known = known.lock().map_err(|_| poisoned())?;
+    pub fn of(device: &Arc<Shared>, known: &Mutex<Weak<Mutex<Self>>>) -> Result<Arc<Mutex<Self>>> {
+        let mut known = lock(known)?;
         if let Some(geometry) = known.upgrade() {
             return Ok(geometry);
         }
-        let made = Arc::new(Self {
-            state: Mutex::new(State {
-                solids: SolidCache::default(),
-                arena: TableArena::new(device)?,
-                indices: Arc::new(indices(device, 0)?),
-                frusta: 0,
-                device: device.clone(),
-            }),
-        });
+        let align = device.limits().min_uniform_buffer_offset_alignment.max(16);
+        let unit = u32::try_from(align / 16).unwrap_or(16);
+        let vectors = FIRST_UNITS * unit;
+        let made = Self {
+            solids: SolidCache::default(),
+            buffers: TableBuffers {
+                tables: table_buffer(device, vectors)?,
+                indices: indices(device, 0)?,
+            },
+            ranges: Arc::new(Mutex::new(RangeAllocator::new(0..vectors))),
+            unit,
+            frusta: 0,
+            device: device.clone(),
+        };
+        let made = Arc::new(Mutex::new(made));
         *known = Arc::downgrade(&made);
         Ok(made)
     }
 
-    pub fn lock(&self) -> Result<MutexGuard<'_, State>> {
-        self.state.lock().map_err(|_| poisoned())
-    }
-}
-
-impl State {
     /// Stores parts of surfaces. Frames that were prepared earlier keep their buffers.
     pub fn store<'a>(
         &mut self,
         surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, Parts)>,
     ) -> Result<TableBuffers> {
         for (surface, parts) in surfaces {
-            let wanted = [
-                (parts.tables, Part::Tables),
-                (parts.frusta, Part::Frusta),
-                (parts.patches, Part::Patches),
-            ];
-            for (_, part) in wanted.into_iter().filter(|(is, _)| *is) {
-                self.arena.store(surface, part)?;
+            let wanted = [parts.tables, parts.frusta, parts.patches];
+            for (_, part) in wanted.into_iter().zip(Part::ALL).filter(|(is, _)| *is) {
+                self.store_part(surface, part)?;
             }
             if parts.frusta {
                 self.fit(surface.hull().hull.frusta.len() as u32)?;
             }
         }
-        Ok(TableBuffers {
-            tables: self.arena.buffer.clone(),
-            indices: self.indices.clone(),
-        })
+        Ok(self.buffers.clone())
     }
 
     /// Bytes of the shared buffers.
     pub fn bytes(&self) -> u64 {
-        self.arena.buffer.bytes + self.indices.bytes
+        self.buffers.tables.bytes + self.buffers.indices.bytes
     }
 
     /// Makes indices for this many frusta, if there are fewer.
     fn fit(&mut self, frusta: u32) -> Result<()> {
         if frusta > self.frusta {
             let frusta = frusta.next_power_of_two();
-            self.indices = Arc::new(indices(&self.device, frusta)?);
+            self.buffers.indices = indices(&self.device, frusta)?;
             self.frusta = frusta;
         }
         Ok(())
     }
-}
-
-fn indices(device: &Arc<Shared>, frusta: u32) -> Result<Buffer> {
-    let all = proxy_hull::indices(frusta);
-    let mut buffer = Buffer::for_use(
-        device,
-        Use::Indices,
-        "corners of proxies",
-        4 * all.len() as u64,
-    )?;
-    write_slice(&mut buffer, &all)?;
-    Ok(buffer)
-}
-
-fn poisoned() -> Error {
-    Error::new(
-        ErrorKind::Other,
-        "the lock of the device's geometry is poisoned",
-    )
-}
-
-/// The buffer and its free ranges.
-struct TableArena {
-    pub buffer: Arc<Buffer>,
-    ranges: Ranges,
-    /// The number of 16-byte vectors in a unit. Every slot begins at a whole unit.
-    unit: u32,
-    stored: Vec<(Weak<OffsetSurface>, Part)>,
-    /// The length of `stored` above which dead entries are removed.
-    crowded: usize,
-    device: Arc<Shared>,
-}
-
-/// Units of a new arena.
-const FIRST_UNITS: u32 = 1024;
-
-impl TableArena {
-    pub fn new(device: &Arc<Shared>) -> Result<Self> {
-        let align = device.limits().min_uniform_buffer_offset_alignment.max(16);
-        let unit = u32::try_from(align / 16).unwrap_or(16);
-        Ok(Self {
-            buffer: Arc::new(table_buffer(device, unit, FIRST_UNITS)?),
-            ranges: Arc::new(Mutex::new(RangeAllocator::new(0..FIRST_UNITS))),
-            unit,
-            stored: Vec::new(),
-            crowded: 64,
-            device: device.clone(),
-        })
-    }
 
     /// Writes a part of a surface to a free range, unless it has one.
-    pub fn store(&mut self, surface: &Arc<OffsetSurface>, part: Part) -> Result<()> {
+    fn store_part(&mut self, surface: &OffsetSurface, part: Part) -> Result<()> {
         if surface.slot(part).is_some() {
             return Ok(());
         }
         let vectors = surface.vectors(part);
-        let units = u32::try_from(vectors.len().max(1))
-            .unwrap_or(u32::MAX)
-            .div_ceil(self.unit);
-        let free = self.ranges()?.allocate_range(units);
-        let range = match free {
-            Ok(range) => range,
-            Err(_) => {
-                self.grow(units)?;
-                self.ranges()?.allocate_range(units).map_err(|_| full())?
-            }
-        };
-        let slot = Slot::new(range, self.unit, &self.ranges);
-        let begin = slot.begin();
-        self.write(begin, vectors)?;
-        surface.keep_slot(part, slot);
-        self.stored.push((Arc::downgrade(surface), part));
-        if self.stored.len() > self.crowded {
-            self.stored
-                .retain(|(surface, _)| surface.strong_count() > 0);
-            self.crowded = 2 * self.stored.len().max(32);
+        let length = u32::try_from(vectors.len().max(1))
+            .ok()
+            .and_then(|length| length.checked_next_multiple_of(self.unit))
+            .ok_or_else(full)?;
+        let free = |of: &Self| Ok(lock(&of.ranges)?.allocate_range(length).ok());
+        let mut range = free(self)?;
+        if range.is_none() {
+            self.grow(length)?;
+            range = free(self)?;
         }
+        let slot = Slot {
+            range: range.ok_or_else(full)?,
+            ranges: self.ranges.clone(),
+        };
+        self.write(slot.begin(), vectors)?;
+        surface.keep_slot(part, slot);
         Ok(())
-    }
-
-    fn ranges(&self) -> Result<std::sync::MutexGuard<'_, RangeAllocator<u32>>> {
-        self.ranges.lock().map_err(|_| full())
     }
 
     /// Makes at least twice the room. Everything that lives keeps its position.
     fn grow(&mut self, more: u32) -> Result<()> {
-        let units = self.ranges()?.initial_range().end;
-        let wanted = units.saturating_mul(2).max(units.saturating_add(more));
-        let bigger = table_buffer(&self.device, self.unit, wanted)?;
-        self.ranges()?.grow_to(wanted);
-        self.buffer = Arc::new(bigger);
-        let stored = std::mem::take(&mut self.stored);
-        for (surface, part) in &stored {
-            if let Some(surface) = surface.upgrade()
-                && let Some(slot) = surface.slot(*part)
-            {
-                self.write(slot.begin(), surface.vectors(*part))?;
+        let end = lock(&self.ranges)?.initial_range().end;
+        let wanted = end.checked_mul(2).ok_or_else(full)?;
+        let wanted = wanted.max(end.checked_add(more).ok_or_else(full)?);
+        self.buffers.tables = table_buffer(&self.device, wanted)?;
+        lock(&self.ranges)?.grow_to(wanted);
+        for surface in self.solids.surfaces()? {
+            for part in Part::ALL {
+                if let Some(slot) = surface.slot(part) {
+                    self.write(slot.begin(), surface.vectors(part))?;
+                }
             }
         }
-        self.stored = stored;
         Ok(())
     }
 
-    fn write(&mut self, begin: u32, vectors: &[[u32; 4]]) -> Result<()> {
+    fn write(&self, begin: u32, vectors: &[[u32; 4]]) -> Result<()> {
         let bytes: &[u8] = bytemuck::cast_slice(vectors);
         // SAFETY: the range belongs to one surface, whose parts are written once in a buffer,
-        // before any frame reads them; the arena is behind a lock.
-        unsafe { self.buffer.write_shared(16 * begin as usize, bytes) }
+        // before any frame reads them; the geometry is behind a lock.
+        unsafe { self.buffers.tables.write_shared(16 * begin as usize, bytes) }
     }
 }
 
 fn full() -> Error {
-    Error::new(
-        ErrorKind::TooLarge,
-        "the tables of all solids do not fit; draw fewer different ones",
-    )
+    let message = "the tables of all solids do not fit; draw fewer different ones";
+    Error::new(ErrorKind::TooLarge, message)
 }
 
-/// Makes a buffer with a window's length after the last unit. The window on the last tables is then
-/// as long as all others.
-fn table_buffer(device: &Arc<Shared>, unit: u32, units: u32) -> Result<Buffer> {
-    let vectors =
-        u64::from(unit) * u64::from(units) + u64::from(device.chosen.constants().own_vectors);
-    Buffer::for_use(device, Use::Storage, "tables", 16 * vectors)
+/// The corners of a box and of this many frusta.
+fn indices(device: &Arc<Shared>, frusta: u32) -> Result<Arc<Buffer>> {
+    let all = proxy_hull::indices(frusta);
+    let bytes = size_of_val(all.as_slice()) as u64;
+    let mut buffer = Buffer::for_use(device, Use::Indices, "corners of proxies", bytes)?;
+    write_slice(&mut buffer, &all)?;
+    Ok(Arc::new(buffer))
+}
+
+/// Makes a buffer with a window's length after the last vector. The window on the last tables is
+/// then as long as all others.
+fn table_buffer(device: &Arc<Shared>, vectors: u32) -> Result<Arc<Buffer>> {
+    let vectors = u64::from(vectors) + u64::from(device.chosen.constants().own_vectors);
+    let buffer = Buffer::for_use(device, Use::Storage, "tables", 16 * vectors)?;
+    Ok(Arc::new(buffer))
 }

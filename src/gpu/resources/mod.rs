@@ -2,9 +2,5 @@
 
 pub(crate) mod block;
 pub(crate) mod geometry;
-pub(crate) mod host_image;
-pub(crate) mod motion;
 pub(crate) mod shape_texture;
-pub(crate) mod solid_cache;
-pub(crate) mod texture_binding;
 pub(crate) mod textures;

@@ -2,19 +2,14 @@
 //! its outline.
 
 use crate::error::Result;
-use crate::gpu::device::Shared;
-use crate::gpu::memory::Image;
-use crate::gpu::memory::images::Uploads;
-use crate::maps::{ArcLength, BakeOptions, MapFormat, MapSource, ShapeMap};
+use crate::gpu::memory::images::{Image, Uploads};
+use crate::maps::{ArcLength, BakeOptions, MAX_SIDE, MapFormat, MapSource, ShapeMap};
 use crate::profile::{Bounds, Profile};
 use crate::scene::{Growth, Object};
 use crate::settings::SearchSettings;
-use crate::solid::reach::reach;
+use crate::solid::reach;
 use ash::vk;
 use std::sync::Arc;
-
-/// Upper limit on rows of a map whose box has grown.
-const MOST_ROWS: f64 = 16384.0;
 
 /// The parameters that a shape map is baked from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,16 +37,13 @@ impl MapKey {
         let rows = settings.map_rows.unwrap_or(object.map_rows);
         // Texels of a grown box are as large as texels of the object's own box, those of a shrunk
         // box smaller.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
-        let rows = (f64::from(rows) * growth.height().max(1.0))
-            .ceil()
-            .min(MOST_ROWS.max(f64::from(rows))) as u32;
+        let grown = (f64::from(rows) * growth.height().max(1.0)).ceil() as u32;
+        let rows = grown.min(MAX_SIDE.max(rows));
         let reach = reach(object, 2.0 / f64::from(rows.max(1)));
         Self {
             rows,
             source,
             format: settings.map_format,
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
             columns: (reach.max(object.profile.radius) * f64::from(rows) - 1e-9).ceil() as u32,
         }
     }
@@ -59,11 +51,8 @@ impl MapKey {
     /// Returns true if a map of this key can replace a map of the key `other`. Such a map may reach
     /// farther.
     pub fn holds(&self, other: &Self) -> bool {
-        self.columns >= other.columns
-            && Self {
-                columns: other.columns,
-                ..*self
-            } == *other
+        let columns = self.columns.min(other.columns);
+        Self { columns, ..*self } == *other
     }
 
     /// The facts for a shader if no map is baked: the map's size, and the bounds of the solid.
@@ -85,6 +74,8 @@ impl MapKey {
 
 /// A shape map on the device.
 pub(crate) struct ShapeTexture {
+    // Kept because its address is the key of its textures.
+    _profile: Arc<Profile>,
     pub key: MapKey,
     pub facts: MapFacts,
     pub texture: Arc<Image>,
@@ -92,6 +83,8 @@ pub(crate) struct ShapeTexture {
 
 /// Lengths along the outline on the device, for a map of the same size.
 pub(crate) struct ArcTexture {
+    // Kept because its address is the key of its textures.
+    _profile: Arc<Profile>,
     /// Length of the longest part of the outline, in object units.
     pub length: f64,
     pub texture: Arc<Image>,
@@ -99,12 +92,7 @@ pub(crate) struct ArcTexture {
 
 impl ShapeTexture {
     /// Bakes the map, and queues its upload to the device.
-    pub fn bake(
-        device: &Arc<Shared>,
-        uploads: &mut Uploads,
-        profile: &Profile,
-        key: MapKey,
-    ) -> Result<Self> {
+    pub fn bake(uploads: &mut Uploads, profile: &Arc<Profile>, key: MapKey) -> Result<Self> {
         let options = BakeOptions {
             source: key.source,
             rows: key.rows,
@@ -119,6 +107,7 @@ impl ShapeTexture {
         };
         let size = (encoded.columns, encoded.rows);
         Ok(Self {
+            _profile: profile.clone(),
             key,
             facts: MapFacts {
                 columns: encoded.columns,
@@ -126,33 +115,26 @@ impl ShapeTexture {
                 scale: encoded.scale,
                 bounds: map.bounds,
             },
-            texture: uploads.image(device, "shape map", format, size, &[&encoded.bytes])?,
+            texture: uploads.image("shape map", format, size, &[&encoded.bytes])?,
         })
     }
 }
 
 impl ArcTexture {
     /// Makes the lengths for a map with these facts.
-    pub fn new(
-        device: &Arc<Shared>,
-        uploads: &mut Uploads,
-        profile: &Profile,
-        facts: &MapFacts,
-    ) -> Result<Self> {
+    pub fn new(uploads: &mut Uploads, profile: &Arc<Profile>, facts: &MapFacts) -> Result<Self> {
         let lengths = ArcLength::new(profile)?;
         let table = lengths.table(facts.columns, facts.rows);
         // Not every device has 16-bit normalised textures; all have 32-bit floats.
-        let texels: Vec<f32> = table
-            .texels
-            .iter()
-            .map(|t| f32::from(*t) / f32::from(u16::MAX))
-            .collect();
+        let fraction = |texel: &u16| f32::from(*texel) / f32::from(u16::MAX);
+        let texels: Vec<f32> = table.texels.iter().map(fraction).collect();
         let size = (table.columns, table.rows);
         let bytes: &[u8] = bytemuck::cast_slice(&texels);
         let format = vk::Format::R32_SFLOAT;
         Ok(Self {
+            _profile: profile.clone(),
             length: lengths.total(),
-            texture: uploads.image(device, "arc lengths", format, size, &[bytes])?,
+            texture: uploads.image("arc lengths", format, size, &[bytes])?,
         })
     }
 }

@@ -1,35 +1,89 @@
-//! The textures that an object's shader samples: colour and displacement maps, each on the device
-//! once. The sets that bind them.
+//! The textures that an object's shader samples: images of the host, colour and displacement maps,
+//! each on the device once. The samplers and descriptor sets that bind them.
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::device::Shared;
-use crate::gpu::memory::Image;
-use crate::gpu::memory::images::Uploads;
-use crate::gpu::resources::host_image::{HostImage, ObjectImages};
-use crate::gpu::resources::shape_texture::{ArcTexture, ShapeTexture};
-use crate::gpu::resources::texture_binding::{Sampler, SetPool, Wrap};
-use crate::maps::{ColorMap, DisplacementMap, MapFormat, Projection};
+use crate::gpu::memory::images::{Image, Uploads};
+use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, MapKey, ShapeTexture};
+use crate::gpu::vk::call::Call;
+use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
+use crate::maps::{Level, MapFormat, Projection};
+use crate::profile::Profile;
 use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::solid::kept::Kept;
+use crate::solid::cache::Kept;
 use ash::vk;
-use std::sync::Arc;
+use std::any::Any;
+use std::sync::{Arc, Mutex};
+
+/// An image of the host, for [`Renderer::set_color_image`](crate::gpu::Renderer::set_color_image),
+/// [`Renderer::set_slope_image`](crate::gpu::Renderer::set_slope_image) and
+/// [`Renderer::set_height_image`](crate::gpu::Renderer::set_height_image). Clones are the same image.
+/// Objects with the same image share draws.
+#[derive(Clone, Debug)]
+pub struct HostImage(Arc<(vk::ImageView, vk::Sampler)>);
+
+impl HostImage {
+    /// An image of a 2D view and a sampler.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for null handles.
+    ///
+    /// # Safety
+    /// The call keeps the handles. Renderers bind them.
+    ///
+    /// The caller must ensure that
+    /// * both are of the renderer's device, and stay valid while [`HostImage::is_held`] is true and
+    ///   until commands that were recorded before have run;
+    /// * the format is of floats or fractions, with linear filter if the sampler has one;
+    /// * the image is in `SHADER_READ_ONLY_OPTIMAL` while recorded frames run, and its writes are
+    ///   visible to the stage that draws.
+    pub unsafe fn new(view: vk::ImageView, sampler: vk::Sampler) -> Result<Self> {
+        if view == vk::ImageView::null() || sampler == vk::Sampler::null() {
+            let message = "the image's view or sampler is null; give both";
+            return Err(Error::new(ErrorKind::Usage, message));
+        }
+        Ok(Self(Arc::new((view, sampler))))
+    }
+
+    /// True while another clone is alive: of the host, of an object, or of a slot. A slot holds the
+    /// images of its last frame until it is prepared again.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        Arc::strong_count(&self.0) > 1
+    }
+
+    fn address(&self) -> usize {
+        address(&self.0)
+    }
+
+    fn info(&self) -> vk::DescriptorImageInfo {
+        sampled(self.0.0, self.0.1)
+    }
+}
+
+/// The images of an object. An image replaces the object's own map.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ObjectImages {
+    pub color: Option<HostImage>,
+    /// Slopes, or the heights that they are differences of.
+    pub relief: Option<HostImage>,
+    /// True if `relief` holds heights.
+    pub heights: bool,
+}
 
 /// A colour or displacement map on the device. The map is kept because its address is the key.
-struct Covering<M> {
-    _map: Arc<M>,
+struct Covering {
+    _map: Arc<dyn Any + Send + Sync>,
     image: Arc<Image>,
 }
 
 /// The textures of one object or of many that look alike, and the descriptor set that binds them.
 pub(crate) struct TextureSet {
     pub set: vk::DescriptorSet,
-    color: Option<Arc<Covering<ColorMap>>>,
-    slopes: Option<Arc<Covering<DisplacementMap>>>,
-    images: ObjectImages,
-    shape: Option<Arc<ShapeTexture>>,
-    arc: Option<Arc<ArcTexture>>,
-    shadows: Arc<ShadowMaps>,
+    color: Option<Arc<Covering>>,
+    slopes: Option<Arc<Covering>>,
+    bound: BoundTextures,
     pool: Arc<SetPool>,
 }
 
@@ -42,180 +96,146 @@ pub(crate) struct ShadowMaps {
 /// Addresses of the textures of a set, and the address mode of its surface textures.
 type Key = ([usize; 5], bool);
 
-/// All textures of a renderer.
+/// All textures of a renderer. No other renderer has them: commands of two renderers may run in any
+/// order, those of uploads, too.
 pub(crate) struct Textures {
-    colors: Kept<usize, Covering<ColorMap>>,
-    slopes: Kept<usize, Covering<DisplacementMap>>,
+    /// By the address of the profile.
+    shapes: Kept<(usize, MapKey), ShapeTexture>,
+    /// By the address of the profile, columns and rows.
+    arcs: Kept<(usize, u32, u32), ArcTexture>,
+    coverings: Kept<usize, Covering>,
     sets: Kept<Key, TextureSet>,
     /// The texture that is bound if an object has none of a kind.
     blank: Arc<Image>,
-    map_sampler: Sampler,
-    /// First repeats around and along; second repeats around and clamps along.
-    surface_samplers: [Sampler; 2],
     pool: Arc<SetPool>,
 }
 
-/// The textures that an object binds.
-pub(crate) struct ObjectTextures<'a> {
-    pub look: &'a Texturing,
-    pub images: &'a ObjectImages,
+/// The textures that an object binds, besides its colour and displacement maps.
+pub(crate) struct BoundTextures {
+    pub images: ObjectImages,
     pub shape: Option<Arc<ShapeTexture>>,
     pub arc: Option<Arc<ArcTexture>>,
-    pub shadows: &'a Arc<ShadowMaps>,
+    pub shadows: Arc<ShadowMaps>,
 }
 
 impl Textures {
-    pub fn new(device: &Arc<Shared>, uploads: &mut Uploads, format: MapFormat) -> Result<Self> {
-        let wrap = if format == MapFormat::Rgba8 {
-            Wrap::MapLinear
-        } else {
-            Wrap::MapNearest
-        };
+    pub fn new(uploads: &mut Uploads, format: MapFormat) -> Result<Self> {
         let texel = vk::Format::R32_SFLOAT;
         Ok(Self {
-            colors: Kept::default(),
-            slopes: Kept::default(),
+            shapes: Kept::default(),
+            arcs: Kept::default(),
+            coverings: Kept::default(),
             sets: Kept::default(),
-            blank: uploads.image(device, "blank", texel, (1, 1), &[&[0; 4]])?,
-            map_sampler: Sampler::new(device, wrap)?,
-            surface_samplers: [
-                Sampler::new(device, Wrap::SurfaceRepeated)?,
-                Sampler::new(device, Wrap::SurfaceAround)?,
-            ],
-            pool: Arc::new(SetPool::new(device)),
+            blank: uploads.image("blank", texel, (1, 1), &[&[0; 4]])?,
+            pool: Arc::new(SetPool::new(&uploads.device, format)?),
         })
     }
 
-    /// The set of an object, shared by all objects that bind the same textures.
+    /// The shape map of a profile. A new map is baked, and its upload is queued.
+    pub fn shape(
+        &mut self,
+        uploads: &mut Uploads,
+        profile: &Arc<Profile>,
+        key: MapKey,
+    ) -> Result<Arc<ShapeTexture>> {
+        let make = || ShapeTexture::bake(uploads, profile, key);
+        self.shapes.get((address(profile), key), make)
+    }
+
+    /// The lengths along the outline of a profile, for a map with these facts.
+    pub fn arc(
+        &mut self,
+        uploads: &mut Uploads,
+        profile: &Arc<Profile>,
+        facts: &MapFacts,
+    ) -> Result<Arc<ArcTexture>> {
+        let make = || ArcTexture::new(uploads, profile, facts);
+        let key = (address(profile), facts.columns, facts.rows);
+        self.arcs.get(key, make)
+    }
+
+    /// The set of an object of this look, shared by all objects that bind the same textures.
     pub fn set(
         &mut self,
-        device: &Arc<Shared>,
         uploads: &mut Uploads,
-        bound: ObjectTextures,
+        look: &Texturing,
+        bound: BoundTextures,
     ) -> Result<Arc<TextureSet>> {
-        let ObjectTextures {
-            look,
+        let BoundTextures {
             images,
             shape,
             arc,
             shadows,
-        } = bound;
+        } = &bound;
         let color_map = look.color_map.as_ref().filter(|_| images.color.is_none());
         let slope_map = look.displacement_map.as_ref();
         let slope_map = slope_map.filter(|_| images.relief.is_none());
         let image = |of: &Option<HostImage>| of.as_ref().map(HostImage::address);
         let around =
             (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
-        let address = |of: Option<usize>| of.unwrap_or(0);
-        let key = (
-            [
-                address(shape.as_ref().map(|s| Arc::as_ptr(s) as usize)),
-                address(image(&images.color).or(color_map.map(|m| Arc::as_ptr(m) as usize))),
-                address(image(&images.relief).or(slope_map.map(|m| Arc::as_ptr(m) as usize))),
-                address(arc.as_ref().map(|a| Arc::as_ptr(a) as usize)),
-                Arc::as_ptr(shadows) as usize,
-            ],
-            around,
-        );
+        let addresses = [
+            shape.as_ref().map(address),
+            image(&images.color).or(color_map.map(address)),
+            image(&images.relief).or(slope_map.map(address)),
+            arc.as_ref().map(address),
+            Some(address(shadows)),
+        ];
+        let key = (addresses.map(Option::unwrap_or_default), around);
         if let Some(known) = self.sets.known(&key) {
             return Ok(known);
         }
-        let color = match color_map {
-            Some(map) => Some(self.color(device, uploads, map)?),
-            None => None,
-        };
-        let slopes = match slope_map {
-            Some(map) => Some(self.slopes(device, uploads, map)?),
-            None => None,
-        };
+        let coverings = &mut self.coverings;
+        let color = color_map.map(|map| {
+            let format = vk::Format::R8G8B8A8_SRGB;
+            covering(coverings, map, || {
+                upload(uploads, "colour map", format, &map.levels)
+            })
+        });
+        let color = color.transpose()?;
+        let slopes = slope_map.map(|map| {
+            let format = vk::Format::R16G16_SFLOAT;
+            covering(coverings, map, || {
+                upload(uploads, "displacement map", format, &map.encode())
+            })
+        });
+        let slopes = slopes.transpose()?;
         let made = TextureSet {
             set: self.pool.take()?,
             color,
             slopes,
-            images: images.clone(),
-            shape,
-            arc,
-            shadows: shadows.clone(),
+            bound,
             pool: self.pool.clone(),
         };
-        self.write(device, &made, around);
-        let made = self.sets.keep(key, made);
-        Ok(made)
-    }
-
-    fn color(
-        &mut self,
-        device: &Arc<Shared>,
-        uploads: &mut Uploads,
-        map: &Arc<ColorMap>,
-    ) -> Result<Arc<Covering<ColorMap>>> {
-        covering(&mut self.colors, map, || {
-            let levels: Vec<&[u8]> = map
-                .levels
-                .iter()
-                .map(|l| bytemuck::cast_slice(&l.texels))
-                .collect();
-            let [w, h] = map.size();
-            let format = vk::Format::R8G8B8A8_SRGB;
-            uploads.image(device, "colour map", format, (w, h), &levels)
-        })
-    }
-
-    fn slopes(
-        &mut self,
-        device: &Arc<Shared>,
-        uploads: &mut Uploads,
-        map: &Arc<DisplacementMap>,
-    ) -> Result<Arc<Covering<DisplacementMap>>> {
-        covering(&mut self.slopes, map, || {
-            let encoded = map.encode();
-            let levels: Vec<&[u8]> = encoded
-                .iter()
-                .map(|l| bytemuck::cast_slice(&l.texels))
-                .collect();
-            let [w, h] = map.size();
-            let format = vk::Format::R16G16_SFLOAT;
-            uploads.image(device, "displacement map", format, (w, h), &levels)
-        })
+        self.write(&made, around);
+        Ok(self.sets.keep(key, made))
     }
 
     /// Points a new set to its textures: four of the object, then the maps that shadows read.
-    fn write(&self, device: &Shared, made: &TextureSet, around: bool) {
-        let info = |image: &Image, sampler: &Sampler| {
-            vk::DescriptorImageInfo::default()
-                .image_view(image.view)
-                .sampler(sampler.raw)
-                .image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
-        };
-        let (map, surface) = (
-            &self.map_sampler,
-            &self.surface_samplers[usize::from(around)],
-        );
+    fn write(&self, made: &TextureSet, around: bool) {
+        let [map, repeated, clamped] = self.pool.samplers;
+        let surface = if around { clamped } else { repeated };
+        let info = |image: &Image, sampler| sampled(image.view, sampler);
         let blank = info(&self.blank, map);
         let shape = |s: &Arc<ShapeTexture>| info(&s.texture, map);
-        let covering = |of: Option<&Image>, host: &Option<HostImage>| {
-            let own = of.map(|image| info(image, surface));
+        let look = |host: &Option<HostImage>, own: &Option<Arc<Covering>>| {
+            let own = own.as_ref().map(|covering| info(&covering.image, surface));
             host.as_ref().map(HostImage::info).or(own).unwrap_or(blank)
         };
-        let color = made.color.as_ref().map(|c| c.image.as_ref());
-        let slopes = made.slopes.as_ref().map(|c| c.image.as_ref());
+        let bound = &made.bound;
+        let arc = |arc: &Arc<ArcTexture>| info(&arc.texture, map);
         let own = [
-            made.shape.as_ref().map_or(blank, shape),
-            covering(color, &made.images.color),
-            covering(slopes, &made.images.relief),
-            made.arc.as_ref().map_or(blank, |a| info(&a.texture, map)),
+            bound.shape.as_ref().map_or(blank, shape),
+            look(&bound.images.color, &made.color),
+            look(&bound.images.relief, &made.slopes),
+            bound.arc.as_ref().map_or(blank, arc),
         ];
-        let shadows: Vec<_> = made
-            .shadows
-            .maps
-            .iter()
-            .map(shape)
+        let shadows = bound.shadows.maps.iter().map(shape);
+        let shadows: Vec<_> = shadows
             .chain(std::iter::repeat(blank))
             .take(MAX_SHADOW_MAPS as usize)
             .collect();
         let writes: Vec<_> = (0u32..)
-            .zip(own.chunks(1))
-            .chain([(4, shadows.as_slice())])
+            .zip(own.chunks(1).chain([shadows.as_slice()]))
             .map(|(binding, infos)| {
                 vk::WriteDescriptorSet::default()
                     .dst_set(made.set)
@@ -225,23 +245,27 @@ impl Textures {
             })
             .collect();
         // SAFETY: the set is new, or all frames that used it are done.
-        unsafe { device.raw.update_descriptor_sets(&writes, &[]) };
+        unsafe { self.pool.device.raw.update_descriptor_sets(&writes, &[]) };
     }
 
     /// Bytes of colour and displacement maps on the device.
     pub fn bytes(&self) -> u64 {
-        let colors = self.colors.living().map(|c| c.image.bytes());
-        let slopes = self.slopes.living().map(|c| c.image.bytes());
-        colors.chain(slopes).sum()
+        self.coverings.living().map(|c| c.image.bytes()).sum()
     }
 }
 
-fn covering<M>(
-    all: &mut Kept<usize, Covering<M>>,
+/// The address by which a texture is known.
+fn address<T>(of: &Arc<T>) -> usize {
+    Arc::as_ptr(of) as usize
+}
+
+/// The image of a map; made now if it is not known.
+fn covering<M: Send + Sync + 'static>(
+    all: &mut Kept<usize, Covering>,
     map: &Arc<M>,
     upload: impl FnOnce() -> Result<Arc<Image>>,
-) -> Result<Arc<Covering<M>>> {
-    all.get(Arc::as_ptr(map) as usize, || {
+) -> Result<Arc<Covering>> {
+    all.get(address(map), || {
         Ok(Covering {
             _map: map.clone(),
             image: upload()?,
@@ -249,8 +273,124 @@ fn covering<M>(
     })
 }
 
+/// Makes an image of all levels of a map.
+fn upload<T: bytemuck::Pod>(
+    uploads: &mut Uploads,
+    name: &str,
+    format: vk::Format,
+    levels: &[Level<T>],
+) -> Result<Arc<Image>> {
+    let size = levels.first().map_or((0, 0), |l| (l.width, l.height));
+    let bytes = levels.iter().map(|l| bytemuck::cast_slice(&l.texels));
+    uploads.image(name, format, size, &bytes.collect::<Vec<_>>())
+}
+
+/// The descriptor of an image that shaders sample.
+fn sampled(view: vk::ImageView, sampler: vk::Sampler) -> vk::DescriptorImageInfo {
+    vk::DescriptorImageInfo::default()
+        .image_view(view)
+        .sampler(sampler)
+        .image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+}
+
 impl Drop for TextureSet {
     fn drop(&mut self) {
-        self.pool.give_back(self.set);
+        if let Ok(mut state) = self.pool.state.lock() {
+            state.free.push(self.set);
+        }
+    }
+}
+
+/// Samplers, and descriptor sets of textures. New pools are made as sets are needed, and returned
+/// sets are used again.
+struct SetPool {
+    /// The sampler of maps; that of surface textures, which repeats around and along the axis; one
+    /// that repeats only around, so that the poles' rows do not run into each other.
+    samplers: [vk::Sampler; 3],
+    state: Mutex<Sets>,
+    device: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Sets {
+    pools: Vec<vk::DescriptorPool>,
+    free: Vec<vk::DescriptorSet>,
+}
+
+/// Number of sets in one pool.
+const SETS: u32 = 64;
+
+impl SetPool {
+    /// No sets yet, and samplers for maps of this format.
+    fn new(device: &Arc<Shared>, format: MapFormat) -> Result<Self> {
+        use vk::{Filter, SamplerAddressMode as Address};
+        let mut pool = Self {
+            samplers: [vk::Sampler::null(); 3],
+            state: Mutex::default(),
+            device: device.clone(),
+        };
+        // Shaders gather and weigh texels themselves, but those of the papers' map.
+        let filter = match format {
+            MapFormat::Rgba8 => Filter::LINEAR,
+            MapFormat::R16 | MapFormat::R32 => Filter::NEAREST,
+        };
+        let map = vk::SamplerCreateInfo::default()
+            .mag_filter(filter)
+            .min_filter(filter)
+            .address_mode_u(Address::CLAMP_TO_EDGE)
+            .address_mode_v(Address::CLAMP_TO_EDGE);
+        let mut repeated = vk::SamplerCreateInfo::default()
+            .mag_filter(Filter::LINEAR)
+            .min_filter(Filter::LINEAR)
+            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
+            .max_lod(vk::LOD_CLAMP_NONE)
+            .address_mode_u(Address::REPEAT)
+            .address_mode_v(Address::REPEAT);
+        if let Some(most) = device.chosen.anisotropy() {
+            repeated = repeated
+                .anisotropy_enable(true)
+                .max_anisotropy(most.min(8.0));
+        }
+        let infos = [
+            map,
+            repeated,
+            repeated.address_mode_v(Address::CLAMP_TO_EDGE),
+        ];
+        for (sampler, info) in pool.samplers.iter_mut().zip(infos) {
+            // SAFETY: a plain creation, destroyed in Drop.
+            *sampler = unsafe { device.raw.create_sampler(&info, None) }.call("vkCreateSampler")?;
+        }
+        Ok(pool)
+    }
+
+    fn take(&self) -> Result<vk::DescriptorSet> {
+        let mut state = lock(&self.state)?;
+        if state.free.is_empty() {
+            let layouts = &self.device.pipelines.set_layouts;
+            let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
+            state.pools.push(pool);
+            state.free = sets;
+        }
+        let none = || Error::new(ErrorKind::Other, "a pool of textures gave no set");
+        state.free.pop().ok_or_else(none)
+    }
+}
+
+impl Drop for SetPool {
+    fn drop(&mut self) {
+        let pools = self
+            .state
+            .get_mut()
+            .map(|sets| std::mem::take(&mut sets.pools));
+        // SAFETY: the renderer's frames are done, and no set is left; a pool frees its sets, and
+        // null samplers may be destroyed.
+        unsafe {
+            for pool in pools.unwrap_or_default() {
+                self.device.raw.destroy_descriptor_pool(pool, None);
+            }
+            for sampler in self.samplers {
+                self.device.raw.destroy_sampler(sampler, None);
+            }
+        }
     }
 }

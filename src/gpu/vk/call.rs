@@ -34,18 +34,14 @@ pub fn allocation_error(name: &str, bytes: u64, error: &AllocationError) -> Erro
             let says = |code: &vk::Result| {
                 words.contains(&format!("{code:?}")) || words.contains(&code.to_string())
             };
-            ALLOCATIONS
-                .into_iter()
-                .find(says)
-                .map_or(ErrorKind::Other, kind_of)
+            let code = ALLOCATIONS.into_iter().find(says);
+            code.map_or(ErrorKind::Other, kind_of)
         }
         _ => ErrorKind::Other,
     };
     let mib = bytes as f64 / f64::from(1u32 << 20);
-    let message = format!(
-        "{name}: {mib:.2} MiB cannot be allocated ({error}){}",
-        remedy(kind)
-    );
+    let remedy = remedy(kind);
+    let message = format!("{name}: {mib:.2} MiB cannot be allocated ({error}){remedy}");
     Error::new(kind, message)
 }
 
@@ -97,23 +93,16 @@ mod tests {
 
     #[test]
     fn every_failure_of_an_allocation_has_its_kind_and_remedy() {
+        use {ErrorKind as K, vk::Result as R};
         for (code, kind, words) in [
-            (vk::Result::ERROR_DEVICE_LOST, ErrorKind::DeviceLost, "lost"),
+            (R::ERROR_DEVICE_LOST, K::DeviceLost, "lost"),
+            (R::ERROR_OUT_OF_HOST_MEMORY, K::OutOfHostMemory, "host"),
             (
-                vk::Result::ERROR_OUT_OF_HOST_MEMORY,
-                ErrorKind::OutOfHostMemory,
-                "host",
-            ),
-            (
-                vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
-                ErrorKind::OutOfDeviceMemory,
+                R::ERROR_OUT_OF_DEVICE_MEMORY,
+                K::OutOfDeviceMemory,
                 "smaller",
             ),
-            (
-                vk::Result::ERROR_TOO_MANY_OBJECTS,
-                ErrorKind::TooLarge,
-                "fewer",
-            ),
+            (R::ERROR_TOO_MANY_OBJECTS, K::TooLarge, "fewer"),
         ] {
             // The allocator writes results in these two forms.
             let told = AllocationError::Internal(format!("in vkAllocateMemory: {code:?}"));

@@ -5,25 +5,21 @@ use crate::error::Result;
 use crate::gpu::vk::call::Call;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use ash::vk;
+use vk::{DescriptorType as Kind, ShaderStageFlags as Stages};
 
 /// One binding of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Binding {
-    pub kind: vk::DescriptorType,
+    pub kind: Kind,
     pub count: u32,
-    pub stages: vk::ShaderStageFlags,
+    pub stages: Stages,
 }
 
-const EVERY: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
-    vk::ShaderStageFlags::VERTEX.as_raw()
-        | vk::ShaderStageFlags::FRAGMENT.as_raw()
-        | vk::ShaderStageFlags::COMPUTE.as_raw(),
-);
-const PIXEL: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
-    vk::ShaderStageFlags::FRAGMENT.as_raw() | vk::ShaderStageFlags::COMPUTE.as_raw(),
-);
+const COMPUTE: Stages = Stages::COMPUTE;
+const PIXEL: Stages = Stages::from_raw(Stages::FRAGMENT.as_raw() | COMPUTE.as_raw());
+const EVERY: Stages = Stages::from_raw(Stages::VERTEX.as_raw() | PIXEL.as_raw());
 
-const fn one(kind: vk::DescriptorType, stages: vk::ShaderStageFlags) -> Binding {
+const fn one(kind: Kind, stages: Stages) -> Binding {
     Binding {
         kind,
         count: 1,
@@ -31,11 +27,8 @@ const fn one(kind: vk::DescriptorType, stages: vk::ShaderStageFlags) -> Binding 
     }
 }
 
-const TEXTURE: Binding = one(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, PIXEL);
-const PLANE: Binding = one(
-    vk::DescriptorType::STORAGE_IMAGE,
-    vk::ShaderStageFlags::COMPUTE,
-);
+const TEXTURE: Binding = one(Kind::COMBINED_IMAGE_SAMPLER, PIXEL);
+const PLANE: Binding = one(Kind::STORAGE_IMAGE, COMPUTE);
 
 /// Set 0: buffers of a frame.
 pub(crate) const FRAME_SET: usize = 0;
@@ -47,13 +40,13 @@ pub(crate) const TARGET_SET: usize = 2;
 /// The bindings of every set, by their numbers.
 pub(crate) const SETS: [&[Binding]; 3] = [
     &[
-        one(vk::DescriptorType::UNIFORM_BUFFER, EVERY), // the frame
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // objects
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // instances
-        one(vk::DescriptorType::STORAGE_BUFFER, PIXEL), // copies that may cast shadows
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tables of all solids
-        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
-        one(vk::DescriptorType::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
+        one(Kind::UNIFORM_BUFFER, EVERY),         // the frame
+        one(Kind::STORAGE_BUFFER, EVERY),         // objects
+        one(Kind::STORAGE_BUFFER, EVERY),         // instances
+        one(Kind::STORAGE_BUFFER, PIXEL),         // copies that may cast shadows
+        one(Kind::STORAGE_BUFFER, EVERY),         // tables of all solids
+        one(Kind::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
+        one(Kind::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
     ],
     &[
         TEXTURE, // shape map
@@ -66,24 +59,15 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         }, // shape maps that shadows read
     ],
     &[
-        one(vk::DescriptorType::STORAGE_BUFFER, PIXEL), // words of pixels
-        one(vk::DescriptorType::STORAGE_BUFFER, EVERY), // tiles
+        one(Kind::STORAGE_BUFFER, PIXEL), // words of pixels
+        one(Kind::STORAGE_BUFFER, EVERY), // tiles
         PLANE,
         PLANE,
         PLANE,
         PLANE,
-        one(
-            vk::DescriptorType::STORAGE_BUFFER,
-            vk::ShaderStageFlags::COMPUTE,
-        ), // bins of tiles
-        one(
-            vk::DescriptorType::STORAGE_BUFFER,
-            vk::ShaderStageFlags::COMPUTE,
-        ), // placements of crowds
-        one(
-            vk::DescriptorType::STORAGE_BUFFER,
-            vk::ShaderStageFlags::COMPUTE,
-        ), // crowds
+        one(Kind::STORAGE_BUFFER, COMPUTE), // bins of tiles
+        one(Kind::STORAGE_BUFFER, COMPUTE), // placements of crowds
+        one(Kind::STORAGE_BUFFER, COMPUTE), // crowds
     ],
 ];
 
@@ -167,15 +151,16 @@ pub(crate) unsafe fn write(
             .dst_set(set)
             .dst_binding(binding)
             .descriptor_type(kind);
-        let mut buffer = [vk::DescriptorBufferInfo::default()];
-        let mut image = [vk::DescriptorImageInfo::default().image_layout(vk::ImageLayout::GENERAL)];
+        let (buffer, image);
         let to = match resource {
             Resource::Buffer(raw, range) => {
-                buffer[0] = buffer[0].buffer(raw).range(range);
+                buffer = [vk::DescriptorBufferInfo::default().buffer(raw).range(range)];
                 to.buffer_info(&buffer)
             }
             Resource::Image(view) => {
-                image[0] = image[0].image_view(view);
+                let layout = vk::ImageLayout::GENERAL;
+                let info = vk::DescriptorImageInfo::default().image_view(view);
+                image = [info.image_layout(layout)];
                 to.image_info(&image)
             }
         };
@@ -187,7 +172,7 @@ pub(crate) unsafe fn write(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::SETS;
+    use super::{Kind, SETS};
     use crate::shader::tests::{instructions, op};
     use crate::shader::{modules, words};
     use std::collections::BTreeSet;
@@ -195,28 +180,30 @@ mod tests {
     /// The table of descriptors agrees with every binding that a module reads.
     #[test]
     fn descriptors_are_those_of_the_shaders() {
-        const VARIABLE: u32 = 59;
-        const POINTER: u32 = 32;
-        const SAMPLED: u32 = 27;
+        // Opcodes, decorations and a storage class of the SPIR-V specification.
         const IMAGE: u32 = 25;
+        const SAMPLED: u32 = 27;
         const ARRAY: u32 = 28;
+        const POINTER: u32 = 32;
+        const VARIABLE: u32 = 59;
+        const UNIFORM: u32 = 2;
+        let [binding_is, set_is] = [33, 34];
         let mut seen = BTreeSet::new();
         for module in modules() {
             let words = words(&module).unwrap();
             let all = instructions(&words);
-            let decorated = |id: u32, what: u32| {
-                let of = |(code, w): &&(u32, &[u32])| {
-                    *code == op::DECORATE && w[0] == id && w[1] == what
-                };
-                all.iter().find(of).map(|(_, w)| w[2])
+            let decorated = |id: u32, by: u32| {
+                let mut found = all.iter().filter(|(code, _)| *code == op::DECORATE);
+                found.find(|(_, w)| w[..2] == [id, by]).map(|(_, w)| w[2])
             };
             let defined = |id: u32| {
-                *all.iter()
-                    .find(|(code, w)| is_type(*code) && w[0] == id)
-                    .unwrap()
+                let mut types = all.iter().filter(|(code, _)| (19..=39).contains(code));
+                *types.find(|(_, w)| w[0] == id).unwrap()
             };
             for (_, w) in all.iter().filter(|(code, _)| *code == VARIABLE) {
-                let (Some(set), Some(binding)) = (decorated(w[1], 34), decorated(w[1], 33)) else {
+                let (Some(set), Some(binding)) =
+                    (decorated(w[1], set_is), decorated(w[1], binding_is))
+                else {
                     continue;
                 };
                 let (code, pointer) = defined(w[0]);
@@ -225,16 +212,15 @@ mod tests {
                 if of.0 == ARRAY {
                     of = defined(of.1[1]);
                 }
-                use ash::vk::DescriptorType as T;
-                let wanted: &[T] = match (w[2], of.0) {
-                    (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
-                    (_, IMAGE) => &[T::STORAGE_IMAGE],
-                    (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
-                    _ => &[T::STORAGE_BUFFER],
+                let wanted: &[Kind] = match (w[2], of.0) {
+                    (_, SAMPLED) => &[Kind::COMBINED_IMAGE_SAMPLER],
+                    (_, IMAGE) => &[Kind::STORAGE_IMAGE],
+                    (UNIFORM, _) => &[Kind::UNIFORM_BUFFER, Kind::UNIFORM_BUFFER_DYNAMIC],
+                    _ => &[Kind::STORAGE_BUFFER],
                 };
-                let known = SETS[set as usize][binding as usize];
+                let known = SETS[set as usize][binding as usize].kind;
                 assert!(
-                    wanted.contains(&known.kind),
+                    wanted.contains(&known),
                     "{}: {set}, {binding}",
                     module.name()
                 );
@@ -243,10 +229,5 @@ mod tests {
         }
         let all: usize = SETS.iter().map(|set| set.len()).sum();
         assert_eq!(seen.len(), all, "bindings that no shader reads");
-    }
-
-    /// True if an opcode defines a type.
-    fn is_type(code: u32) -> bool {
-        (19..=39).contains(&code)
     }
 }

@@ -2,10 +2,8 @@
 //! of descriptors, outputs, pipelines.
 
 pub(crate) mod call;
-pub(crate) mod debug;
 pub(crate) mod descriptors;
 pub(crate) mod output;
 pub(crate) mod pipelines;
 pub(crate) mod render_pass;
-pub(crate) mod shading;
 pub(crate) mod usage;

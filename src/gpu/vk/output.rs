@@ -1,12 +1,17 @@
-//! The output of a renderer: formats and conventions, set once, and the memory that compute writes
-//! to.
+//! The output of a renderer, set once: formats and conventions, the memory that compute writes to,
+//! and a host's function of shading.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::srgb_from_linear;
+use crate::gpu::vk::descriptors::SETS;
+use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
-use crate::settings::Planes;
+use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::generated::{EXHAUSTED_BIT, SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
+use crate::shading::Shading;
 use ash::vk;
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
 
 /// The destination of a renderer's work, fixed when the renderer is made.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -168,28 +173,27 @@ impl Output {
         }
     }
 
+    fn pass(&self) -> Option<&PassFormats> {
+        match self {
+            Self::Pass(pass) => Some(pass),
+            Self::Compute(_) => None,
+        }
+    }
+
     /// The views of a pass.
     pub(crate) fn views(&self) -> u32 {
-        match self {
-            Self::Pass(pass) => pass.views,
-            Self::Compute(_) => 1,
-        }
+        self.pass().map_or(1, |pass| pass.views)
     }
 
     /// Largest distance of a ray from its pixel's centre, pixels.
     pub(crate) fn ray_spread(&self) -> f64 {
-        match self {
-            Self::Pass(pass) if pass.sample_rays => std::f64::consts::FRAC_1_SQRT_2,
-            _ => 0.0,
-        }
+        let spreads = self.pass().is_some_and(|pass| pass.sample_rays);
+        if spreads { FRAC_1_SQRT_2 } else { 0.0 }
     }
 
     /// `(constant_id, value)` of the specialisation constants of a pass.
     pub(crate) fn constants(&self) -> [(u32, u32); 3] {
-        let bias = match self {
-            Self::Pass(pass) => pass.slope_bias,
-            Self::Compute(_) => SlopeBias::default(),
-        };
+        let bias = self.pass().map(|pass| pass.slope_bias).unwrap_or_default();
         [
             (VIEWS_ID, self.views()),
             (SLOPE_BIAS_ID, bias.factor),
@@ -200,10 +204,7 @@ impl Output {
     /// The end of the depth range that is near.
     #[must_use]
     pub fn depth_order(&self) -> DepthOrder {
-        match self {
-            Self::Pass(pass) => pass.depth,
-            Self::Compute(_) => DepthOrder::Normal,
-        }
+        self.pass().map_or(DepthOrder::Normal, |pass| pass.depth)
     }
 }
 
@@ -238,5 +239,65 @@ impl ComputeTarget {
         let byte = |v: f64| (v.clamp(0.0, 1.0) * 255.0).round() as u32;
         let [r, g, b] = [0, 1, 2].map(|i| byte(srgb_from_linear(f64::from(linear[i]))));
         r | g << 8 | b << 16 | byte(f64::from(linear[3])) << 24
+    }
+}
+
+/// The number of the host's descriptor set.
+pub(crate) const HOST_SET: u32 = SETS.len() as u32;
+
+/// A host's function of shading, and the layout of the descriptor set that the function reads.
+#[derive(Clone, Debug)]
+pub struct HostShading {
+    /// The function.
+    pub shading: Arc<Shading>,
+    /// The layout of set 3, for the stage of the shading; null if the function reads no set.
+    pub set_layout: vk::DescriptorSetLayout,
+}
+
+impl HostShading {
+    /// Returns an error for an output or a search that the function does not shade, and for a function
+    /// that does not fit the sets.
+    pub(crate) fn check(&self, output: &Output, settings: &SearchSettings) -> Result<()> {
+        let usage =
+            |key: &str, message: String| Err(Error::new(ErrorKind::Usage, message).at_key(key));
+        let (stage, name) = match output {
+            Output::Pass(_) => (DrawStage::Fragment, "a pass"),
+            Output::Compute(_) => (DrawStage::Compute, "a compute target"),
+        };
+        if self.shading.stage() != stage {
+            let (own, stage) = (self.shading.stage().name(), stage.name());
+            let message = format!("is of the stage {own}, and {name} needs {stage}; compile it so");
+            return usage("shading", message);
+        }
+        let has_color = match output.planes() {
+            Planes::Color => true,
+            Planes::List(list) => list.has(Plane::Color),
+            Planes::All | Planes::Depth { .. } => false,
+        };
+        if !has_color {
+            let message =
+                "a host's function shades colour, or a list with colour; give one of them";
+            return usage("planes", message.into());
+        }
+        let exact = matches!(
+            settings.solver,
+            Solver::Exact | Solver::Quadric | Solver::Live
+        );
+        if !exact || settings.map_format == MapFormat::Rgba8 {
+            let message = "a host's function shades hits of exact, quadric or live, with maps in r16 or r32; give one of them";
+            return usage("solver", message.into());
+        }
+        for (set, binding) in self.shading.bindings() {
+            let known = SETS.get(set as usize).map(|own| binding < own.len() as u32);
+            if set > HOST_SET || known == Some(false) {
+                let message = format!("reads set {set}, binding {binding}; declare data in set 3");
+                return usage("shading", message);
+            }
+            if set == HOST_SET && self.set_layout == vk::DescriptorSetLayout::null() {
+                let message = "is null, and the shading reads set 3; give one";
+                return usage("set_layout", message.into());
+            }
+        }
+        Ok(())
     }
 }

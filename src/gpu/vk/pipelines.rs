@@ -3,18 +3,18 @@
 
 mod compile;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Result, lock};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors;
-use crate::gpu::vk::output::{Output, PassFormats, PassKind};
-use crate::gpu::vk::shading::{BoundShading, HostShading};
+use crate::gpu::vk::output::{HostShading, Output, PassFormats, PassKind};
 use crate::shader::Pushed;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID};
 use crate::shader::{Kind, Variant};
+use crate::shading::Shading;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex};
 
 /// Specialisation constants that are the same for all pipelines of a device.
 #[derive(Clone, Copy, Debug)]
@@ -44,13 +44,14 @@ pub(crate) struct Pipelines {
     /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
     pub layout: vk::PipelineLayout,
-    cache: vk::PipelineCache,
+    pub cache: vk::PipelineCache,
     /// True if this value made `cache` and destroys it.
     owns_cache: bool,
     made: Mutex<HashMap<Key, vk::Pipeline>>,
-    compiled: AtomicU64,
+    /// The number of pipelines that were compiled.
+    pub compiled: AtomicU64,
     owners: AtomicU64,
-    flags: vk::PipelineCreateFlags,
+    pub flags: vk::PipelineCreateFlags,
     /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
     /// The source of modules that replace the embedded ones.
@@ -65,22 +66,48 @@ pub(crate) struct Pipelines {
 pub type ShaderSource =
     Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
 
-/// The renderer that pipelines are for, and the host's shading in them.
-#[derive(Clone, Default)]
+/// The renderer that pipelines are for: its output, and the host's shading in them.
+#[derive(Clone)]
 pub(crate) struct Owner {
     /// 0 if all renderers may share the pipelines.
     number: u64,
+    output: Output,
     pub shading: Option<Arc<BoundShading>>,
 }
 
-#[derive(Clone, PartialEq, Eq, Hash)]
-struct Key {
-    variant: Variant,
-    kind: Kind,
-    output: Output,
-    /// [`Owner::number`]; it also determines the shading.
-    owner: u64,
+/// A host's shading with the layout of its pipelines.
+pub(crate) struct BoundShading {
+    pub shading: Arc<Shading>,
+    pub layout: vk::PipelineLayout,
+    raw: ash::Device,
 }
+
+impl BoundShading {
+    /// `sets`: layouts of the library's sets.
+    fn new(
+        raw: &ash::Device,
+        host: &HostShading,
+        sets: &[vk::DescriptorSetLayout],
+    ) -> Result<Self> {
+        let own = Some(host.set_layout).filter(|own| *own != vk::DescriptorSetLayout::null());
+        let sets: Vec<_> = sets.iter().copied().chain(own).collect();
+        Ok(Self {
+            shading: host.shading.clone(),
+            layout: layout(raw, &sets)?,
+            raw: raw.clone(),
+        })
+    }
+}
+
+impl Drop for BoundShading {
+    fn drop(&mut self) {
+        // SAFETY: the renderer's frames are done, and its pipelines need no layout.
+        unsafe { self.raw.destroy_pipeline_layout(self.layout, None) };
+    }
+}
+
+/// The owner's number, which also determines the shading, is last.
+type Key = (Variant, Kind, Output, u64);
 
 impl Pipelines {
     /// Makes the layouts, without pipelines. `cache` is a host's, if it gives one.
@@ -107,53 +134,25 @@ impl Pipelines {
         for (set, layout) in all.set_layouts.iter_mut().enumerate() {
             *layout = descriptors::layout(raw, set)?;
         }
-        let pushed = [pushed()];
-        let info = vk::PipelineLayoutCreateInfo::default()
-            .set_layouts(&all.set_layouts)
-            .push_constant_ranges(&pushed);
-        // SAFETY: plain creations, destroyed in Drop.
-        unsafe {
-            all.layout = raw
-                .create_pipeline_layout(&info, None)
-                .call("vkCreatePipelineLayout")?;
-            if all.owns_cache {
-                let empty = vk::PipelineCacheCreateInfo::default();
-                all.cache = raw
-                    .create_pipeline_cache(&empty, None)
-                    .call("vkCreatePipelineCache")?;
-            }
+        all.layout = layout(raw, &all.set_layouts)?;
+        if all.owns_cache {
+            let empty = vk::PipelineCacheCreateInfo::default();
+            // SAFETY: a plain creation, destroyed in Drop.
+            let made = unsafe { raw.create_pipeline_cache(&empty, None) };
+            all.cache = made.call("vkCreatePipelineCache")?;
         }
         Ok(all)
     }
 
-    /// Makes the driver keep its compiler's statistics of everything compiled from now on.
-    #[cfg(feature = "other-shaders")]
-    pub fn capturing_statistics(mut self) -> Self {
-        self.flags |= vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
-        self
-    }
-
-    /// Returns the pipeline of `variant` and `kind` for `output`, compiled now if it is new.
-    /// [`Pipelines::owner`] returns `owner`.
-    pub fn get(
-        &self,
-        variant: Variant,
-        kind: Kind,
-        output: &Output,
-        owner: &Owner,
-    ) -> Result<vk::Pipeline> {
-        if let Some(made) = self.known(variant, kind, output, owner)? {
-            return Ok(made);
+    /// Returns the pipeline of `variant` and `kind` for an owner, compiled now if it is new.
+    pub fn get(&self, variant: Variant, kind: Kind, owner: &Owner) -> Result<vk::Pipeline> {
+        if let Some(known) = self.known(variant, kind, owner)? {
+            return Ok(known);
         }
         // Compilation holds no lock, so that others can compile meanwhile.
-        let made = self.compile(&variant, kind, output, owner.shading.as_deref())?;
-        let key = Key {
-            variant,
-            kind,
-            output: output.clone(),
-            owner: owner.number,
-        };
-        let mut all = self.made()?;
+        let made = self.compile(&variant, kind, owner)?;
+        let key = (variant, kind, owner.output.clone(), owner.number);
+        let mut all = lock(&self.made)?;
         if let Some(before) = all.get(&key) {
             // SAFETY: nothing else has seen the new pipeline.
             unsafe { self.raw.destroy_pipeline(made, None) };
@@ -169,16 +168,10 @@ impl Pipelines {
         &self,
         variant: Variant,
         kind: Kind,
-        output: &Output,
         owner: &Owner,
     ) -> Result<Option<vk::Pipeline>> {
-        let key = Key {
-            variant,
-            kind,
-            output: output.clone(),
-            owner: owner.number,
-        };
-        Ok(self.made()?.get(&key).copied())
+        let key = (variant, kind, owner.output.clone(), owner.number);
+        Ok(lock(&self.made)?.get(&key).copied())
     }
 
     /// Returns the owner of a renderer's pipelines. The pipelines of a host's render pass or shading
@@ -192,10 +185,11 @@ impl Pipelines {
                 ..
             })
         );
-        let bound = |host| BoundShading::new(&self.raw, host, &self.set_layouts, pushed());
+        let bound = |host| BoundShading::new(&self.raw, host, &self.set_layouts);
         let number = || self.owners.fetch_add(1, Ordering::Relaxed) + 1;
         Ok(Owner {
             number: (of_host || host.is_some()).then(number).unwrap_or_default(),
+            output: output.clone(),
             shading: host.map(bound).transpose()?.map(Arc::new),
         })
     }
@@ -207,63 +201,32 @@ impl Pipelines {
             return;
         }
         if let Ok(mut made) = self.made.lock() {
-            made.retain(|key, pipeline| {
-                if key.owner == owner {
-                    // SAFETY: the frames that used the pipeline are done.
-                    unsafe { self.raw.destroy_pipeline(*pipeline, None) };
-                }
-                key.owner != owner
-            });
+            // SAFETY: the frames that used the pipelines are done.
+            let destroy = |pipeline| unsafe { self.raw.destroy_pipeline(pipeline, None) };
+            let mine = made.extract_if(|(.., number), _| *number == owner);
+            mine.for_each(|(_, pipeline)| destroy(pipeline));
         }
-    }
-
-    /// The number of pipelines that were compiled.
-    pub fn compiled(&self) -> u64 {
-        self.compiled.load(Ordering::Relaxed)
-    }
-
-    /// Adds data that [`Pipelines::cache_data`] returned at another time.
-    pub fn add_cache(&self, data: &[u8]) -> Result<()> {
-        let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: drivers read the data's header and ignore data of other drivers; the second cache
-        // is gone again.
-        unsafe {
-            let other = self
-                .raw
-                .create_pipeline_cache(&with, None)
-                .call("vkCreatePipelineCache")?;
-            let merged = self.raw.merge_pipeline_caches(self.cache, &[other]);
-            self.raw.destroy_pipeline_cache(other, None);
-            merged.call("vkMergePipelineCaches")
-        }
-    }
-
-    /// The driver's data to keep for another process.
-    pub fn cache_data(&self) -> Result<Vec<u8>> {
-        // SAFETY: the cache is live.
-        unsafe { self.raw.get_pipeline_cache_data(self.cache) }.call("vkGetPipelineCacheData")
-    }
-
-    fn made(&self) -> Result<MutexGuard<'_, HashMap<Key, vk::Pipeline>>> {
-        self.made
-            .lock()
-            .map_err(|_| Error::new(ErrorKind::Other, "the pipelines' lock is poisoned"))
     }
 }
 
-/// The range of push constants in every layout.
-fn pushed() -> vk::PushConstantRange {
-    vk::PushConstantRange::default()
+/// Makes a pipeline layout of these sets, with the library's push constants. The caller destroys it.
+fn layout(raw: &ash::Device, sets: &[vk::DescriptorSetLayout]) -> Result<vk::PipelineLayout> {
+    let pushed = [vk::PushConstantRange::default()
         .stage_flags(vk::ShaderStageFlags::COMPUTE)
-        .size(size_of::<Pushed>() as u32)
+        .size(size_of::<Pushed>() as u32)];
+    let info = vk::PipelineLayoutCreateInfo::default()
+        .set_layouts(sets)
+        .push_constant_ranges(&pushed);
+    // SAFETY: a plain creation.
+    unsafe { raw.create_pipeline_layout(&info, None) }.call("vkCreatePipelineLayout")
 }
 
 impl Drop for Pipelines {
     fn drop(&mut self) {
-        let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
+        let made = self.made.get_mut().map(std::mem::take);
         // SAFETY: the device's last user is gone; null handles may be destroyed.
         unsafe {
-            for pipeline in made.into_values() {
+            for pipeline in made.unwrap_or_default().into_values() {
                 self.raw.destroy_pipeline(pipeline, None);
             }
             if self.owns_cache {

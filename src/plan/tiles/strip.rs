@@ -120,8 +120,8 @@ mod tests {
     use crate::plan::tiles::{Cylinder, Drawer, Placements, Visible};
     use crate::profile::Profile;
     use crate::scene::{Camera, Copies, Offset, Placement};
+    use crate::solid::cache::Solid;
     use crate::solid::offset_surface::{OffsetSurface, Recipe};
-    use crate::solid::outline_cache::{OffsetContour, OutlineCache};
     use crate::surface::FitOptions;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
@@ -141,10 +141,13 @@ mod tests {
 
     fn surface(points: &[[f64; 2]]) -> Arc<OffsetSurface> {
         let profile = Arc::new(Profile::polygon(points, 0.5).unwrap());
-        let outline = Arc::new(OutlineCache::new(&profile));
-        let contour = OffsetContour::new(&outline, &Offset::default()).into();
-        let recipe = Recipe::Patches(contour, 0, FitOptions::default().tolerance);
-        OffsetSurface::new(recipe).into()
+        let solid = Arc::new(Solid::new(&profile));
+        let FitOptions { tolerance } = FitOptions::default();
+        let exact = Recipe::Patches {
+            level: 0,
+            tolerance,
+        };
+        solid.surface(&Offset::default(), exact).unwrap()
     }
 
     /// A field of 20 x 20 world units with copies of about this size. `tall`: ratio of height to

@@ -1,11 +1,10 @@
 //! One pipeline: its modules, constants and fixed state.
 
-use super::Pipelines;
+use super::{BoundShading, Owner, Pipelines};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::render_pass::CompatiblePass;
-use crate::gpu::vk::shading::BoundShading;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
@@ -19,25 +18,18 @@ impl Pipelines {
         &self,
         variant: &Variant,
         kind: Kind,
-        output: &Output,
-        host: Option<&BoundShading>,
+        owner: &Owner,
     ) -> Result<vk::Pipeline> {
-        let own = variant.constants();
-        let constants = || {
-            own.into_iter()
-                .chain(output.constants())
-                .chain(self.constants.values())
+        let (output, host) = (&owner.output, owner.shading.as_deref());
+        let own = variant.constants().into_iter();
+        let constants = own.chain(output.constants()).chain(self.constants.values());
+        let (ids, values): (Vec<u32>, Vec<u32>) = constants.unzip();
+        let entry = |(id, n): (&u32, u32)| vk::SpecializationMapEntry {
+            constant_id: *id,
+            offset: 4 * n,
+            size: 4,
         };
-        let entries: Vec<_> = constants()
-            .zip(0u32..)
-            .map(|((id, _), n)| {
-                vk::SpecializationMapEntry::default()
-                    .constant_id(id)
-                    .offset(4 * n)
-                    .size(4)
-            })
-            .collect();
-        let values: Vec<u32> = constants().map(|(_, value)| value).collect();
+        let entries: Vec<_> = ids.iter().zip(0..).map(entry).collect();
         let specialization = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
@@ -48,10 +40,10 @@ impl Pipelines {
                 let modules = [&vertices, &module];
                 self.graphics((variant, kind), pass, modules, host, &specialization)
             }
-            (Some(_), Output::Compute(_)) => Err(Error::new(
-                ErrorKind::Other,
-                "fragments are drawn in a pass, not in compute",
-            )),
+            (Some(_), Output::Compute(_)) => {
+                let message = "fragments are drawn in a pass, not in compute";
+                Err(Error::new(ErrorKind::Other, message))
+            }
         }
     }
 
@@ -163,7 +155,14 @@ impl Pipelines {
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = rasterization(matches!(kind, Kind::Quads | Kind::Tiles));
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .cull_mode(match kind {
+                // Quads have no back.
+                Kind::Quads | Kind::Tiles => vk::CullModeFlags::NONE,
+                _ => vk::CullModeFlags::BACK,
+            })
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples))
             .sample_shading_enable(pass.sample_rays)
@@ -175,11 +174,9 @@ impl Pipelines {
                 DepthOrder::Normal => vk::CompareOp::LESS,
                 DepthOrder::Reversed => vk::CompareOp::GREATER,
             }));
-        let blends = vec![
-            vk::PipelineColorBlendAttachmentState::default()
-                .color_write_mask(vk::ColorComponentFlags::RGBA);
-            pass.planes.attachments()
-        ];
+        let written = vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA);
+        let blends = vec![written; pass.planes.attachments()];
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
@@ -210,13 +207,9 @@ impl Pipelines {
                 depth,
                 stencil,
             } => {
-                let mask = if pass.views > 1 {
-                    (1 << pass.views) - 1
-                } else {
-                    0
-                };
+                let views = if pass.views > 1 { pass.views } else { 0 };
                 rendering = rendering
-                    .view_mask(mask)
+                    .view_mask((1 << views) - 1)
                     .color_attachment_formats(color)
                     .depth_attachment_format(*depth)
                     .stencil_attachment_format(*stencil);
@@ -229,18 +222,6 @@ impl Pipelines {
         let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
-}
-
-/// Filled triangles; quads have no back.
-fn rasterization(is_quads: bool) -> vk::PipelineRasterizationStateCreateInfo<'static> {
-    vk::PipelineRasterizationStateCreateInfo::default()
-        .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(match is_quads {
-            true => vk::CullModeFlags::NONE,
-            false => vk::CullModeFlags::BACK,
-        })
-        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-        .line_width(1.0)
 }
 
 fn first(

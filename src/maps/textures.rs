@@ -1,20 +1,69 @@
-//! Displacement maps: the slopes of a height map, computed once and scaled when the picture is
-//! drawn (Blinn 1978).
+//! Textures of surfaces: colours, and the slopes of a height map, which are computed once and scaled
+//! when the picture is drawn (Blinn 1978).
 
-use super::half::to_half;
-use super::halving;
+use super::mips::{self, Level, check_count};
+use super::store::to_half;
 use crate::error::{Error, ErrorKind, Result};
+use crate::frame::{linear_from_srgb, srgb_from_linear};
 use rayon::prelude::*;
 
-/// A level of a mip chain, row 0 on top.
+/// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
+///
+/// Smaller levels hold the mean light of the texels that they cover, weighted by alpha, so that
+/// transparent texels add no colour to their neighbours.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Level<T> {
-    /// Texels across.
-    pub width: u32,
-    /// Texels down.
-    pub height: u32,
-    /// `width * height` texels, row by row from the top.
-    pub texels: Vec<T>,
+pub struct ColorMap {
+    /// Levels from the full size down to 1 x 1.
+    pub levels: Vec<Level<[u8; 4]>>,
+}
+
+impl ColorMap {
+    /// Builds a map from sRGB texels with straight (not premultiplied) alpha, row by row from the
+    /// top.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content): no texels, or not `width * height`
+    /// of them.
+    pub fn from_texels(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self> {
+        check_count("colours", texels.len(), width, height)?;
+        let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
+        let premultiplied = |&[r, g, b, a]: &[u8; 4]| {
+            let alpha = f32::from(a) / 255.0;
+            let [r, g, b] = [r, g, b].map(|v| linear[usize::from(v)] * alpha);
+            [r, g, b, alpha]
+        };
+        let light = mips::chain(width, height, texels.iter().map(premultiplied).collect());
+        // The full size is stored unchanged, including the colours of transparent texels.
+        let full = Level {
+            width,
+            height,
+            texels,
+        };
+        let smaller = light[1..].iter().map(|level| level.map(from_light));
+        Ok(Self {
+            levels: std::iter::once(full).chain(smaller).collect(),
+        })
+    }
+
+    /// Texels across and down of the full size.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        mips::size(&self.levels)
+    }
+}
+
+/// Linear light of an sRGB value.
+fn light_of_byte(v: u8) -> f32 {
+    linear_from_srgb(f64::from(v) / 255.0) as f32
+}
+
+/// The sRGB texel of premultiplied linear light.
+fn from_light(&[r, g, b, a]: &[f32; 4]) -> [u8; 4] {
+    let encode = |v: f32| {
+        let v = if a > 0.0 { v / a } else { 0.0 };
+        (srgb_from_linear(f64::from(v)) * 255.0).round() as u8
+    };
+    [encode(r), encode(g), encode(b), (a * 255.0).round() as u8]
 }
 
 /// The filter that computes slopes from heights.
@@ -82,22 +131,15 @@ impl DisplacementMap {
     /// Texels across and down of the full size.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
-        self.levels.first().map_or([0, 0], |l| [l.width, l.height])
+        mips::size(&self.levels)
     }
 
     /// The levels as `R16G16_SFLOAT` texels, native byte order, each rounded to the nearest half
     /// float.
     #[must_use]
     pub fn encode(&self) -> Vec<Level<[u16; 2]>> {
-        let pack = |t: &[f32; 2]| t.map(to_half);
-        self.levels
-            .iter()
-            .map(|l| Level {
-                width: l.width,
-                height: l.height,
-                texels: l.texels.iter().map(pack).collect(),
-            })
-            .collect()
+        let pack = |texel: &[f32; 2]| texel.map(to_half);
+        self.levels.iter().map(|level| level.map(pack)).collect()
     }
 
     /// Bytes of the full size, and of all levels, as [`DisplacementMap::encode`] gives them.
@@ -116,38 +158,9 @@ impl DisplacementMap {
     /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
     pub fn from_slopes(width: u32, height: u32, slopes: Vec<[f32; 2]>) -> Result<Self> {
         check_count("slopes", slopes.len(), width, height)?;
-        Ok(Self {
-            levels: levels(width, height, slopes, |texel| *texel),
-        })
+        let levels = mips::chain(width, height, slopes);
+        Ok(Self { levels })
     }
-}
-
-/// Refuses a list that does not hold one value for each texel.
-pub(super) fn check_count(what: &str, count: usize, width: u32, height: u32) -> Result<()> {
-    if count > 0 && count == width as usize * height as usize {
-        return Ok(());
-    }
-    Err(Error::new(
-        ErrorKind::Content,
-        format!("{count} {what} for {width} x {height} texels; give as many as there are texels"),
-    ))
-}
-
-/// The mip chain of a picture, each texel turned into its stored form by `stored`.
-pub(super) fn levels<const N: usize, T>(
-    width: u32,
-    height: u32,
-    texels: Vec<[f32; N]>,
-    stored: impl Fn(&[f32; N]) -> T,
-) -> Vec<Level<T>> {
-    halving::chain(width as usize, height as usize, texels)
-        .into_iter()
-        .map(|(w, h, texels)| Level {
-            width: w as u32,
-            height: h as u32,
-            texels: texels.iter().map(&stored).collect(),
-        })
-        .collect()
 }
 
 #[cfg(test)]
@@ -174,39 +187,27 @@ mod tests {
             for (k, &[du, dv]) in map.levels[0].texels.iter().enumerate() {
                 let u = ((k % 256) as f32 + 0.5) / 256.0;
                 let v = 1.0 - ((k / 256) as f32 + 0.5) / 128.0;
-                let (eu, ev) = (
-                    0.2 * TAU * 2.0 * (TAU * 2.0 * u).cos(),
-                    0.1 * TAU * 3.0 * (TAU * 3.0 * v).cos(),
-                );
+                let eu = 0.2 * TAU * 2.0 * (TAU * 2.0 * u).cos();
+                let ev = 0.1 * TAU * 3.0 * (TAU * 3.0 * v).cos();
                 // The second-order error is (k h)^2 / 6 of the slope; smoothing across adds as much
                 // again.
-                assert!(
-                    (du - eu).abs() < 0.01 && (dv - ev).abs() < 0.015,
-                    "{filter:?} {k}"
-                );
+                let near = (du - eu).abs() < 0.01 && (dv - ev).abs() < 0.015;
+                assert!(near, "{filter:?} {k}");
             }
         }
     }
 
+    /// The papers claim this memory.
     #[test]
     fn a_chain_down_to_one_texel_whose_mean_is_flat() {
+        let map = waves(512, 512, SlopeFilter::Scharr);
+        assert_eq!(map.encoded_bytes(), [1 << 20, 1_398_100]);
         let map = waves(96, 40, SlopeFilter::Scharr);
         assert_eq!(map.levels.len(), 7);
-        let last = map.levels.last().unwrap();
-        assert!(
-            last.texels[0].iter().all(|v| v.abs() < 1e-4),
-            "wrapping differences cancel"
-        );
+        // Differences that wrap round cancel.
+        let last = map.levels[6].texels[0];
+        assert!(last.iter().all(|v| v.abs() < 1e-4));
         assert_eq!(map.encode()[3].texels.len(), 12 * 5);
-    }
-
-    #[test]
-    fn memory_is_what_the_papers_claim() {
-        assert_eq!(
-            waves(512, 512, SlopeFilter::Scharr).encoded_bytes(),
-            [1 << 20, 1_398_100]
-        );
-        assert!(waves(1024, 1024, SlopeFilter::Scharr).encoded_bytes()[0] <= 4 << 20);
     }
 
     #[test]
@@ -216,5 +217,34 @@ mod tests {
         assert!(text(new(2, 2, &[0.0; 3])).contains("3 heights"));
         assert!(text(new(0, 0, &[])).contains("0 heights"));
         assert!(text(new(2, 1, &[0.0, f32::NAN])).contains("height 1"));
+        let colors = ColorMap::from_texels(2, 2, vec![[0; 4]; 3]).unwrap_err();
+        assert!(colors.to_string().contains("3 colours"));
+    }
+
+    #[test]
+    fn every_value_survives_the_way_to_light_and_back() {
+        for v in 0..=255 {
+            let l = light_of_byte(v);
+            assert_eq!(from_light(&[l, l, l, 1.0]), [v, v, v, 255]);
+        }
+    }
+
+    #[test]
+    fn the_mean_of_black_and_white_is_half_the_light() {
+        let white = |k: u32| (k + k / 8) % 2 == 0;
+        let board = (0..64).map(|k| if white(k) { [255; 4] } else { [0, 0, 0, 255] });
+        let map = ColorMap::from_texels(8, 8, board.collect()).unwrap();
+        assert_eq!(map.levels.len(), 4);
+        // Half the light of white is 188 in sRGB, not 128.
+        let mut texels = map.levels[1..].iter().flat_map(|level| &level.texels);
+        assert!(texels.all(|texel| *texel == [188, 188, 188, 255]));
+    }
+
+    #[test]
+    fn transparent_texels_lend_no_colour() {
+        let texels = vec![[200, 10, 10, 255], [0, 255, 0, 0]];
+        let map = ColorMap::from_texels(2, 1, texels.clone()).unwrap();
+        assert_eq!(map.levels[0].texels, texels);
+        assert_eq!(map.levels[1].texels, [[200, 10, 10, 128]]);
     }
 }

@@ -1,0 +1,170 @@
+//! Prepared solids: everything that is made from one profile, keyed in one place. All objects that
+//! show the profile share the solid.
+//!
+//! The cache keeps nothing alive. Objects and frames in flight do; a value is dropped with the last
+//! of them.
+
+use crate::error::{Error, Result, lock};
+use crate::profile::Profile;
+use crate::scene::{GrownProfiles, Offset};
+use crate::search::Search;
+use crate::solid::offset_surface::{OffsetSurface, Recipe};
+use crate::surface::{Contour, ContourSource, OuterCylinders};
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::sync::{Arc, Mutex, OnceLock, Weak};
+
+/// Weak references by key: a value stays as long as an owner holds it elsewhere.
+pub(crate) struct Kept<K, V>(HashMap<K, Weak<V>>);
+
+impl<K, V> Default for Kept<K, V> {
+    fn default() -> Self {
+        Self(HashMap::new())
+    }
+}
+
+impl<K: Hash + Eq, V> Kept<K, V> {
+    /// The value of a key, if it is alive.
+    pub fn known(&self, key: &K) -> Option<Arc<V>> {
+        self.0.get(key).and_then(Weak::upgrade)
+    }
+
+    /// Adds a new value. Removes dead entries first if the table would grow.
+    pub fn keep(&mut self, key: K, value: V) -> Arc<V> {
+        if self.0.len() == self.0.capacity() {
+            self.0.retain(|_, known| known.strong_count() > 0);
+        }
+        let made = Arc::new(value);
+        self.0.insert(key, Arc::downgrade(&made));
+        made
+    }
+
+    /// The value of a key; made now if it is not alive.
+    pub fn get(&mut self, key: K, make: impl FnOnce() -> Result<V>) -> Result<Arc<V>> {
+        match self.known(&key) {
+            Some(known) => Ok(known),
+            None => Ok(self.keep(key, make()?)),
+        }
+    }
+
+    /// All values that are alive.
+    pub fn living(&self) -> impl Iterator<Item = Arc<V>> + '_ {
+        self.0.values().filter_map(Weak::upgrade)
+    }
+}
+
+/// Solids by profile.
+#[derive(Default)]
+pub(crate) struct SolidCache {
+    /// The key is the profile's address. A solid keeps its profile, so no other profile gets the
+    /// address.
+    solids: Kept<usize, Solid>,
+    /// Profiles in boxes that have grown with offsets.
+    pub grown: GrownProfiles,
+}
+
+impl SolidCache {
+    /// The solid of a profile.
+    pub fn get(&mut self, profile: &Arc<Profile>) -> Arc<Solid> {
+        let key = Arc::as_ptr(profile) as usize;
+        let known = self.solids.known(&key);
+        known.unwrap_or_else(|| self.solids.keep(key, Solid::new(profile)))
+    }
+
+    /// All surfaces that are alive.
+    pub fn surfaces(&self) -> Result<Vec<Arc<OffsetSurface>>> {
+        let mut all = Vec::new();
+        for solid in self.solids.living() {
+            all.extend(lock(&solid.surfaces)?.living());
+        }
+        Ok(all)
+    }
+}
+
+/// A profile, and everything that is made from it.
+pub(crate) struct Solid {
+    profile: Arc<Profile>,
+    source: OnceLock<Result<ContourSource>>,
+    outer: OnceLock<OuterCylinders>,
+    contours: Mutex<Kept<[u64; 3], OffsetContour>>,
+    surfaces: Mutex<Kept<SurfaceKey, OffsetSurface>>,
+}
+
+/// The search that the table is of, if any; bits of the offset; level, or rows of the table.
+type SurfaceKey = (Option<&'static Search>, [u64; 3], u32);
+
+impl Solid {
+    pub fn new(profile: &Arc<Profile>) -> Self {
+        Self {
+            profile: profile.clone(),
+            source: OnceLock::new(),
+            outer: OnceLock::new(),
+            contours: Mutex::default(),
+            surfaces: Mutex::default(),
+        }
+    }
+
+    /// Cylinders that contain the solid without its offset.
+    pub fn outer(&self) -> &OuterCylinders {
+        let make = || OuterCylinders::of_outline(&self.profile.outline);
+        self.outer.get_or_init(make)
+    }
+
+    /// The contour under an offset. A new contour is not made yet.
+    pub fn contour(self: &Arc<Self>, offset: &Offset) -> Result<Arc<OffsetContour>> {
+        lock(&self.contours)?.get(bits(offset), || {
+            Ok(OffsetContour {
+                solid: self.clone(),
+                offset: *offset,
+                made: OnceLock::new(),
+            })
+        })
+    }
+
+    /// The surface of a recipe under an offset. A new surface is not made yet.
+    pub fn surface(
+        self: &Arc<Self>,
+        offset: &Offset,
+        recipe: Recipe,
+    ) -> Result<Arc<OffsetSurface>> {
+        let (search, part) = match recipe {
+            Recipe::Patches { level, .. } => (None, level.into()),
+            Recipe::Table { search, rows } => (Some(search), rows),
+        };
+        lock(&self.surfaces)?.get((search, bits(offset), part), || {
+            Ok(OffsetSurface::new(self.contour(offset)?, recipe))
+        })
+    }
+}
+
+/// The bits of an offset; both zeros give the same bits.
+fn bits(offset: &Offset) -> [u64; 3] {
+    [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits())
+}
+
+/// The contour of a solid under an offset, made on first use. Surfaces of all levels are made from
+/// it.
+pub(crate) struct OffsetContour {
+    solid: Arc<Solid>,
+    offset: Offset,
+    made: OnceLock<Result<Contour>>,
+}
+
+impl OffsetContour {
+    /// True if it was made, or if making it failed.
+    pub fn is_made(&self) -> bool {
+        self.made.get().is_some()
+    }
+
+    /// The contour. The reason why there is none: the profile has none, or it does not close.
+    pub fn get(&self) -> std::result::Result<&Contour, &Error> {
+        let make = || {
+            let Solid {
+                profile, source, ..
+            } = &*self.solid;
+            let source = source.get_or_init(|| ContourSource::new(&profile.outline));
+            source.as_ref().map_err(Clone::clone)?.contour(&self.offset)
+        };
+        self.made.get_or_init(make).as_ref()
+    }
+}
