@@ -158,7 +158,8 @@ mod tests {
 
     #[test]
     fn impossible_cameras_are_named() {
-        let cases: [(&str, fn(&mut Camera)); 9] = [
+        type Case = (&'static str, fn(&mut Camera));
+        let cases: [Case; 9] = [
             ("target", |c| c.target = c.eye),
             ("fov_y", |c| c.fov_y = 0.0),
             ("fov_y", |c| c.fov_y = 180.0),
