@@ -40,15 +40,6 @@ def write(rows, path):
         table.writerows(rows)
 
 
-def read(path):
-    """The rows that `write` wrote."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:
-        row.update({name: int(row[name] or 0) for name in COUNTS})
-    return rows
-
-
 def total(rows):
     """The sums of all counts."""
     return {name: sum(row[name] for row in rows) for name in COUNTS}

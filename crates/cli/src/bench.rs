@@ -9,15 +9,14 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::DrawStage;
-use revmap_lab::method::Method;
 use revmap_lab::renderer::MethodDevice;
 use revmap_lab::report::flight::{self, FlightTimes};
 use revmap_lab::report::machine::Machine;
-use revmap_lab::report::map_error::{self, MapError, Truths};
 use revmap_lab::report::measure::{Measured, Observer, measure};
 use revmap_lab::report::pictures::{Album, Sheets};
-use revmap_lab::report::plan::{Labels, Plan, PlanFile, embedded};
+use revmap_lab::report::plan::{Plan, PlanFile, embedded};
 use revmap_lab::report::report::Run;
+use revmap_lab::report::series_style::SeriesStyles;
 use revmap_lab::report::{DeviceBench, compare_runs, folder, submission};
 use revmap_searches::folder::of as of_folder;
 use std::path::{Path, PathBuf};
@@ -208,14 +207,10 @@ pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
     file.apply(&given);
     let plan = file.plan(&given)?;
     let session = Session::open(lists)?;
-    let (measured, mut album, truths) = session.measure(&file, &plan)?;
+    let (measured, mut album) = session.measure(&file, &plan)?;
     let (out, machine) = (&session.out, &session.machine);
     folder::write(out, &plan, &measured, machine, file.time.resolved)?;
     let flights = session.flights(&file, &given.lists.stages)?;
-    let maps = match measured.interrupted {
-        true => Vec::new(),
-        false => session.map_errors(&plan, &truths)?,
-    };
     album
         .shots
         .retain(|_| file.show.iter().any(|name| name == "shots"));
@@ -226,7 +221,6 @@ pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
         machine,
         album: &album,
         flights: &flights,
-        maps: &maps,
     };
     print(report.write(out)?.trim_end());
     let summary = out.join("charts/summary-depth-error.png");
@@ -271,11 +265,10 @@ impl Session {
     }
 
     /// Measures with a progress bar; an interrupt ends early and keeps what there is.
-    fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album, Truths)> {
-        let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
-        let mut album = Album::new(&self.out, labels, file.heat_maps)?;
+    fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album)> {
+        let styles = SeriesStyles::new(plan.cases.iter().map(|c| &c.settings));
+        let mut album = Album::new(&self.out, styles, file.heat_maps)?;
         let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.out));
-        let mut truths = Truths::default();
         let progress = Progress::start("measuring", self.quiet);
         let mut bench = DeviceBench::new(self.device.clone(), !file.wall_clock)?;
         let mut observer = Observer {
@@ -288,9 +281,6 @@ impl Session {
                 if let Some(sheets) = &mut sheets {
                     sheets.add(seen)?;
                 }
-                if seen.case.settings.map_rows.is_some() {
-                    truths.keep(seen.case.view, seen.truth);
-                }
                 album.add(seen)
             },
             passed: &mut |rows| {
@@ -301,7 +291,7 @@ impl Session {
         if let Some(sheets) = &mut sheets {
             sheets.finish()?;
         }
-        Ok((measured, album, truths))
+        Ok((measured, album))
     }
 
     /// Flies through the plan's armies, in each stage, and writes the times of every frame.
@@ -329,20 +319,6 @@ impl Session {
             }
         }
         Ok(all)
-    }
-
-    /// The errors of the maps that a plan sweeps over by themselves.
-    fn map_errors(&self, plan: &Plan, truths: &Truths) -> Result<Vec<MapError>> {
-        let swept = plan.cases.iter().map(|c| &c.settings);
-        let mut swept = swept.filter(|s| s.map_source.is_some() && s.map_rows.is_some());
-        let Some(first) = swept.find(|s| s.method != Method::Floor) else {
-            return Ok(Vec::new());
-        };
-        let progress = Progress::start("errors of the maps", self.quiet);
-        let size = (first.width, first.height);
-        map_error::measure(plan, size, truths, &mut |done, all| {
-            progress.report(done, all)
-        })
     }
 
     /// Prints where the results are. A run that was ended early has failed, though its results are

@@ -57,8 +57,8 @@ impl Eye {
     }
 }
 
-/// The mean of a map; 0 of an empty one.
-pub(super) fn mean(map: &[f32]) -> f64 {
+/// The mean of FLIP over a picture, of a map from [`flip_map`]; 0 of an empty one.
+pub fn mean_flip(map: &[f32]) -> f64 {
     map.iter().map(|&v| f64::from(v)).sum::<f64>() / map.len().max(1) as f64
 }
 

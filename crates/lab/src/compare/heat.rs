@@ -32,11 +32,6 @@ impl Heat {
         Self::Silhouette,
         Self::Flip,
     ];
-
-    /// Its name in options and captions.
-    pub fn name(self) -> &'static str {
-        ["wrong", "depth", "normal", "silhouette", "flip"][self as usize]
-    }
 }
 
 /// A logarithmic scale of colours: dark blue at `low` and below, pale yellow at `high` and above.

@@ -5,7 +5,7 @@ mod heat;
 mod pixels;
 mod silhouette;
 
-pub use flip::flip_map;
+pub use flip::{flip_map, mean_flip};
 pub use heat::{EMPTY, GHOST, Heat, MISSED, Scale, heat_map, heat_sheet, ramp};
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
@@ -197,7 +197,7 @@ impl<'a> Reference<'a> {
             texel,
             normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
             silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
-            flip: (self.eye.as_ref()).map(|eye| flip::mean(&eye.flip(frame))),
+            flip: (self.eye.as_ref()).map(|eye| mean_flip(&eye.flip(frame))),
         })
     }
 }

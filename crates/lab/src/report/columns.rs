@@ -298,6 +298,13 @@ pub fn results() -> impl Iterator<Item = &'static str> {
     COLUMNS[..RESULTS].iter().map(|c| c.name)
 }
 
+/// `results.csv`: one record a row.
+pub fn results_table(rows: &[Row], plan: &Plan, machine: &Machine, resolved: f64) -> Result<Table> {
+    let rows: Vec<&Row> = rows.iter().collect();
+    let context = Context::new(&rows, plan, machine, resolved);
+    context.file(&rows, &results().collect::<Vec<_>>())
+}
+
 /// The column of this name.
 pub fn named(name: &str) -> Result<&'static Column> {
     COLUMNS.iter().find(|c| c.name == name).ok_or_else(|| {

@@ -1,6 +1,6 @@
 //! Measuring on a Vulkan device, against the double-precision reference.
 
-use super::measure::{Bench, TimedRenderer};
+use super::measure::{Bench, TimedDraw};
 use super::row::Sample;
 use super::view::View;
 use crate::method::{Edges, MethodSettings};
@@ -36,16 +36,12 @@ enum Drawer {
     Smoothed([MethodRenderer; 2]),
 }
 
-struct Ready {
-    drawer: Drawer,
-    own_clock: bool,
-}
-
-impl TimedRenderer for Ready {
-    fn sample(&mut self) -> Result<Sample> {
+impl Drawer {
+    /// Draws a frame and waits for it.
+    fn draw(&mut self) -> Result<Sample> {
         let (mut gpu_ms, mut frame_ms) = (Some(0.0), 0.0);
-        match &mut self.drawer {
-            Drawer::Rays(renderer, count) => {
+        match self {
+            Self::Rays(renderer, count) => {
                 // One stage per submission: timestamps around both in one are wrong on some
                 // drivers.
                 for _ in 0..*count {
@@ -54,7 +50,7 @@ impl TimedRenderer for Ready {
                     frame_ms += times.frame_ms;
                 }
             }
-            Drawer::Smoothed([smoothed, plain]) => {
+            Self::Smoothed([smoothed, plain]) => {
                 // Reading takes the same for all but what smoothing adds, which is not negative.
                 plain.draw()?;
                 let usual = read_ms(plain)?;
@@ -63,7 +59,6 @@ impl TimedRenderer for Ready {
                 gpu_ms = None;
             }
         }
-        let gpu_ms = gpu_ms.filter(|_| self.own_clock);
         Ok(Sample { gpu_ms, frame_ms })
     }
 }
@@ -76,13 +71,9 @@ fn read_ms(renderer: &mut MethodRenderer) -> Result<f64> {
 }
 
 impl Bench for DeviceBench {
-    fn timed_renderer(
-        &mut self,
-        view: &View,
-        settings: &MethodSettings,
-    ) -> Result<Box<dyn TimedRenderer>> {
+    fn timed(&mut self, view: &View, settings: &MethodSettings) -> Result<TimedDraw> {
         let scene = &view.scene;
-        let drawer = match settings.edges {
+        let mut drawer = match settings.edges {
             Edges::OneRay | Edges::Msaa => Drawer::Rays(self.device.renderer(scene, settings)?, 1),
             Edges::Rays(count) => Drawer::Rays(self.device.renderer(scene, settings)?, count),
             Edges::Silhouettes => {
@@ -96,7 +87,11 @@ impl Bench for DeviceBench {
             }
         };
         let own_clock = self.own_clock;
-        Ok(Box::new(Ready { drawer, own_clock }))
+        Ok(Box::new(move || {
+            let mut sample = drawer.draw()?;
+            sample.gpu_ms = sample.gpu_ms.filter(|_| own_clock);
+            Ok(sample)
+        }))
     }
 
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)> {

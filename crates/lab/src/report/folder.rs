@@ -4,11 +4,11 @@ use super::chart::Figure;
 use super::chart::pdf::pdf;
 use super::chart::raster::raster;
 use super::chart::svg::svg;
+use super::columns::results_table;
 use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
 use super::plan::Plan;
-use super::report::results;
 use super::row::{CLOCKS_APART, Clocks, Row};
 use super::table::Table;
 use crate::method::MethodSettings;
@@ -213,7 +213,7 @@ pub fn write_rows(
     machine: &Machine,
     resolved: f64,
 ) -> Result<()> {
-    let results = results(rows, plan, machine, resolved)?;
+    let results = results_table(rows, plan, machine, resolved)?;
     write_text(&folder.join("results.csv"), &results.csv())?;
     write_text(&folder.join("raw.csv"), &raw(rows).csv())
 }

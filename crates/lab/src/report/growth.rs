@@ -49,7 +49,7 @@ pub fn growth<'a>(
         let of_pass = |pass: usize| {
             let points = points.iter().zip(&passes);
             let points: Vec<_> = points.map(|(p, times)| (p.0, times[pass])).collect();
-            PowerLaw::fit(&points).map(|law| law.exponent.value)
+            PowerLaw::fit(&points).map(|law| law.exponent)
         };
         Growth {
             way,
@@ -90,7 +90,7 @@ mod tests {
             (found.len(), found[0].points.len(), found[0].measured),
             (1, 4, 5)
         );
-        let exponent = found[0].law.unwrap().exponent.value;
+        let exponent = found[0].law.unwrap().exponent;
         assert!((exponent - 0.9).abs() < 1e-9 && (found[0].last.unwrap() - 0.9).abs() < 1e-9);
         assert!(growth(&rows, |_| None, 0.25).is_empty());
     }

@@ -7,12 +7,13 @@
 
 mod bench;
 
-pub use bench::{Bench, Observer, RenderedCase, TimedRenderer};
+pub use bench::{Bench, Observer, RenderedCase, TimedDraw};
 
-use super::plan::{Case, Plan, TimeBudget, Truth};
+use super::plan::{Case, Plan, TimeBudget};
 use super::row::{Row, Sample, Steps};
 use crate::compare::{
-    self, CompareOptions, Comparison, PIXELS_PER_DEGREE, PixelErrors, flip_map, pixel_errors,
+    self, CompareOptions, Comparison, PIXELS_PER_DEGREE, PixelErrors, flip_map, mean_flip,
+    pixel_errors,
 };
 use crate::method::{Edges, Method, MethodSettings};
 use revmap::error::{Error, ErrorKind, Result};
@@ -168,18 +169,16 @@ impl Run<'_> {
     /// The picture that others are compared with; `of`: another method's than the default's.
     fn truth(&mut self, case: Case, of: Option<Method>) -> Result<Frame> {
         let view = &self.plan.views[case.view];
-        match self.plan.truth {
-            Truth::Reference => self.bench.truth(view, &case.settings),
-            Truth::Rays(count) => {
-                let settings = MethodSettings {
-                    method: of.unwrap_or(Method::DEFAULT),
-                    edges: Edges::Rays(count),
-                    planes: Planes::All,
-                    ..case.settings
-                };
-                Ok(self.bench.picture(view, &settings)?.0)
-            }
+        if self.plan.truth_rays == 1 {
+            return self.bench.truth(view, &case.settings);
         }
+        let settings = MethodSettings {
+            method: of.unwrap_or(Method::DEFAULT),
+            edges: Edges::Rays(self.plan.truth_rays),
+            planes: Planes::All,
+            ..case.settings
+        };
+        Ok(self.bench.picture(view, &settings)?.0)
     }
 
     /// Draws each case that shows one picture once with all planes and compares it with the truth.
@@ -191,7 +190,7 @@ impl Run<'_> {
         let view = &plan.views[first.view];
         self.tell(observer, &format!("{}: the reference", view.name));
         let truth = self.truth(first, None)?;
-        let rays = plan.truth != Truth::Reference;
+        let rays = plan.truth_rays > 1;
         let options = CompareOptions::of(view.texel());
         let reference = compare::Reference::new(&truth, &options)?;
         let mut own: Option<(Method, Frame)> = None;
@@ -218,7 +217,8 @@ impl Run<'_> {
                         let reference = &reference;
                         let pixels = plan.pixel_errors && method != Method::Floor;
                         let own = own.as_ref().filter(|o| o.0 == method).map(|o| &o.1);
-                        let flip_own = own.map(|own| mean_flip(own, &frame));
+                        let flip_own =
+                            own.map(|own| mean_flip(&flip_map(own, &frame, PIXELS_PER_DEGREE)));
                         let truth = &truth;
                         let work = scope.spawn(move || Compared {
                             errors: reference.compare(&frame),
@@ -274,7 +274,7 @@ impl Run<'_> {
         end: Instant,
         observer: &Observer,
     ) -> Result<()> {
-        let mut renderers = Vec::new();
+        let mut drawers = Vec::new();
         for &index in group {
             if self.rows[index].is_none() || observer.stop.load(Ordering::Relaxed) {
                 continue;
@@ -282,44 +282,44 @@ impl Run<'_> {
             let case = &self.plan.cases[index];
             let view = &self.plan.views[case.view];
             self.tell(observer, &format!("{}: pass {}", view.name, pass + 1));
-            let made = self.bench.timed_renderer(view, &case.settings);
-            let ready = made.and_then(|mut renderer| {
+            let made = self.bench.timed(view, &case.settings);
+            let ready = made.and_then(|mut draw| {
                 for _ in 0..self.budget.warm_up {
-                    renderer.sample()?;
+                    draw()?;
                 }
-                Ok(renderer)
+                Ok(draw)
             });
             match ready {
-                Ok(renderer) => renderers.push((index, renderer, Vec::new())),
+                Ok(draw) => drawers.push((index, draw, Vec::new())),
                 Err(error) => self.leave_out(index, error)?,
             }
         }
         for round in 0..self.budget.rounds.1 {
             let stop = observer.stop.load(Ordering::Relaxed);
             let known = |s: &[Sample]| settled(s, self.budget.precision);
-            let done = || Instant::now() >= end || renderers.iter().all(|r| known(&r.2));
+            let done = || Instant::now() >= end || drawers.iter().all(|r| known(&r.2));
             if stop || (round >= self.budget.rounds.0 && done()) {
                 break;
             }
-            let count = renderers.len();
+            let count = drawers.len();
             let mut failed = Vec::new();
             for turn in 0..count {
                 // There and back, so that nobody always follows the same neighbour.
                 let there = round % 2 == 0;
                 let place = if there { turn } else { count - 1 - turn };
-                let (_, renderer, samples) = &mut renderers[place];
-                match renderer.sample() {
+                let (_, draw, samples) = &mut drawers[place];
+                match draw() {
                     Ok(sample) => samples.push(sample),
                     Err(error) => failed.push((place, error)),
                 }
             }
             for (place, error) in failed.into_iter().rev() {
-                let (index, _, _) = renderers.remove(place);
+                let (index, _, _) = drawers.remove(place);
                 self.leave_out(index, error)?;
             }
             self.tell(observer, &format!("pass {}, round {}", pass + 1, round + 1));
         }
-        for (index, _, samples) in renderers {
+        for (index, _, samples) in drawers {
             if let Some(row) = &mut self.rows[index] {
                 row.passes.push(samples);
             }
@@ -338,12 +338,6 @@ impl Run<'_> {
         let gone = self.start.elapsed();
         gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time()
     }
-}
-
-/// The mean of FLIP between two frames.
-fn mean_flip(truth: &Frame, frame: &Frame) -> f64 {
-    let map = flip_map(truth, frame, PIXELS_PER_DEGREE);
-    map.iter().map(|v| f64::from(*v)).sum::<f64>() / map.len().max(1) as f64
 }
 
 /// True if the median of these samples is known to within `precision`, by their median deviation.

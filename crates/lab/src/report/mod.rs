@@ -3,15 +3,6 @@
 //! Every time stands beside the error of the picture that was drawn in it: a search that is fast
 //! because it misses the surface is seen to be so. See [`measure`](measure::measure) for how times
 //! are taken, `stats` for what their intervals mean.
-//!
-//! | module | what it holds |
-//! |---|---|
-//! | [`plan`] | what is measured and shown, as TOML files |
-//! | [`measure`] | the engine: a plan becomes rows |
-//! | [`columns`] | the one description of columns, for files, tables and charts |
-//! | [`exhibit`] | tables and charts, as TOML files |
-//! | [`report`] | the page |
-//! | [`submission`] | the figures of one device as a small file, and several side by side |
 
 pub mod chart;
 pub mod columns;
@@ -24,7 +15,6 @@ mod framing;
 pub mod glossary;
 mod growth;
 pub mod machine;
-pub mod map_error;
 pub mod measure;
 pub(crate) mod names;
 pub(crate) mod page;

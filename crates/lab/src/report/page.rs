@@ -66,10 +66,6 @@ impl Page {
         self.add(html! { p.note { (text) } });
     }
 
-    pub fn command(&mut self, what: &str, command: &str) {
-        self.add(html! { p { (what) " " code { (command) } } });
-    }
-
     /// Names and their meanings.
     pub fn facts<T: AsRef<str>>(&mut self, facts: &[(T, String)]) {
         self.add(html! {
@@ -88,14 +84,14 @@ impl Page {
         });
     }
 
-    /// A table; columns named in `left` are aligned left.
-    pub fn table(&mut self, table: &Table, left: &[usize]) {
-        // Sentences wrap; numbers and names stay in one line.
-        let wide = |c: usize| {
+    /// A table. Words are aligned left, and sentences wrap; numbers and names stay in one line.
+    pub fn table(&mut self, table: &Table) {
+        let any = |c: usize, is: &dyn Fn(&str) -> bool| {
             let mut fields = table.records.iter().filter_map(|r| r.get(c));
-            fields.any(|f| f.len() > 60)
+            fields.any(|f| is(f))
         };
-        let class = |c: usize| match (left.contains(&c), wide(c)) {
+        let word = |f: &str| f.starts_with(char::is_alphabetic) && f != "inf" && f != "nan";
+        let class = |c: usize| match (any(c, &word), any(c, &|f| f.len() > 60)) {
             (true, true) => "l w",
             (true, false) => "l",
             (false, true) => "w",
@@ -175,7 +171,7 @@ mod tests {
         page.text("1 < 2, `code`");
         page.note("<script>alert(1)</script>");
         let records = vec![vec!["\"x\"".into(), "1".into()]];
-        page.table(&Table::new(["a<b", "n"], records), &[]);
+        page.table(&Table::new(["a<b", "n"], records));
         let html = page.html();
         for wanted in [
             "A &lt;title&gt; &amp; more",

@@ -4,7 +4,8 @@
 use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
 use super::names::{self, safe};
-use super::plan::{Labels, is_rbm_baseline};
+use super::plan::is_rbm_baseline;
+use super::series_style::SeriesStyles;
 use crate::compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
 use crate::method::{Edges, Method, MethodSettings};
 use crate::mosaic::{enlarged, painted, pixel, tiled, worst_part};
@@ -31,7 +32,7 @@ const NARROW: u32 = 200;
 /// Collects pictures while a plan is measured, and writes each in full into a folder.
 pub struct Album {
     folder: PathBuf,
-    labels: Labels,
+    styles: SeriesStyles,
     heat_maps: bool,
     stage: Option<DrawStage>,
     shown: Vec<usize>,
@@ -41,12 +42,12 @@ pub struct Album {
 
 impl Album {
     /// An album in `folder/pictures`, with heat maps or without.
-    pub fn new(folder: &Path, labels: Labels, heat_maps: bool) -> Result<Self> {
+    pub fn new(folder: &Path, styles: SeriesStyles, heat_maps: bool) -> Result<Self> {
         let folder = folder.join("pictures");
         make(&folder)?;
         Ok(Self {
             folder,
-            labels,
+            styles,
             heat_maps,
             stage: None,
             shown: Vec::new(),
@@ -77,7 +78,7 @@ impl Album {
         if settings.stage != stage || place >= heated || !(self.heat_maps && worth(settings)) {
             return Ok(());
         }
-        let way = self.labels.way(settings);
+        let way = self.styles.way(settings);
         let mut keep = |kind: &str, picture: &Picture, of: &str| {
             let (file, caption) = (format!("{name}-{way}-{kind}"), format!("{way}: {of}"));
             self.keep((view, WIDEST), &file, picture, caption)

@@ -1,12 +1,11 @@
 //! The report of a run: its tables and charts as a page, as files beside it, and as text.
 
-use super::columns::{self, COLUMNS, Column, Context};
+use super::columns::{COLUMNS, Column, Context};
 use super::exhibit::{self, Exhibit};
 use super::flight::{self, FlightTimes};
 use super::folder::{excluded, keep_figure, write_text};
 use super::glossary;
 use super::machine::Machine;
-use super::map_error::MapError;
 use super::measure::Measured;
 use super::names::number;
 use super::page::Page;
@@ -16,7 +15,6 @@ use super::plan::{Plan, PlanFile};
 use super::ratios::Over;
 use super::row::{CLOCKS_APART, Row};
 use super::series_style::SeriesStyles;
-use super::table::Table;
 use revmap::error::Result;
 use std::path::Path;
 
@@ -34,8 +32,6 @@ pub struct Run<'a> {
     pub album: &'a Album,
     /// Flights.
     pub flights: &'a [FlightTimes],
-    /// Errors of maps alone.
-    pub maps: &'a [MapError],
 }
 
 impl Run<'_> {
@@ -82,7 +78,7 @@ impl Run<'_> {
             page.text("None: every measurement could be made, and in every row the device's clock and the wall clock agree.");
         } else {
             page.text("These rows are in no summary, ratio or Pareto front. Row numbers count the records of results.csv; rows without a number could not be drawn.");
-            page.table(&out, &[1, 2, 3, 4]);
+            page.table(&out);
         }
         page.chapter("How this was measured");
         page.facts(&self.machine.lines);
@@ -205,7 +201,7 @@ impl<'a> Writer<'a> {
         if chart.is_timed() {
             caption += &place.untimed();
         }
-        let figures = own.figures(context, &place.rows, self.run.maps)?;
+        let figures = own.figures(context, &place.rows)?;
         for (k, figure) in figures.iter().enumerate() {
             let mut name = place.fill(&chart.file);
             if k > 0 {
@@ -241,7 +237,7 @@ impl<'a> Writer<'a> {
         if !table.heading.is_empty() {
             self.page.heading(&table.heading);
         }
-        self.page.table(&shown, &exhibit::left(&shown));
+        self.page.table(&shown);
         if let Some(file) = &table.csv {
             let table = context.file(&place.rows, &table.columns)?;
             write_text(&self.folder.join(file), &table.csv())?;
@@ -282,11 +278,4 @@ fn capital(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     first.chain(letters).collect()
-}
-
-/// `results.csv`: one record a row.
-pub fn results(rows: &[Row], plan: &Plan, machine: &Machine, resolved: f64) -> Result<Table> {
-    let rows: Vec<&Row> = rows.iter().collect();
-    let context = Context::new(&rows, plan, machine, resolved);
-    context.file(&rows, &columns::results().collect::<Vec<_>>())
 }

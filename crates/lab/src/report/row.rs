@@ -2,7 +2,7 @@
 
 use super::plan::Case;
 use super::stats::{self, Interval};
-use super::view::{Framing, View};
+use super::view::{Framing, View, one};
 use crate::compare::{Comparison, PixelErrors};
 use crate::method::{Method, MethodSettings};
 use revmap::frame::Frame;
@@ -221,12 +221,6 @@ impl Row {
             Clocks::Agree | Clocks::Wall => stats::geometric(&self.pass_medians()),
         }
     }
-}
-
-/// The value that all have, if they do.
-pub(super) fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
-    let first = all.next()?;
-    all.all(|other| other == first).then_some(first)
 }
 
 #[cfg(test)]

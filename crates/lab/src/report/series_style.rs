@@ -1,10 +1,10 @@
-//! Which way of drawing looks how, in every chart of every report.
+//! How ways of drawing are called and look, in every chart of every report.
 
 use super::chart::style::{Dash, Marker, Style, color};
 use super::chart::xy::Guide;
-use super::plan::{Labels, is_rbm_baseline};
+use super::plan::{RBM_BASELINE, is_rbm_baseline};
 use super::row::Row;
-use crate::method::{Method, MethodSettings};
+use crate::method::{Edges, Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::search::Search;
 use revmap::settings::{DrawStage, Solver};
@@ -85,10 +85,11 @@ pub fn of_source(source: MapSource) -> Style {
     }
 }
 
-/// Names and looks of the ways of drawing that one report holds.
+/// Names and looks of the ways of drawing that one report holds; names as brief as tells them apart.
 #[derive(Clone, Debug)]
 pub struct SeriesStyles {
-    labels: Labels,
+    /// True for what differs between the ways: steps, rows, source, format, tolerance.
+    differs: [bool; 5],
     /// Each way's name and its look in the fragment stage.
     ways: Vec<(String, Style)>,
 }
@@ -97,25 +98,41 @@ impl SeriesStyles {
     /// The styles of these ways. One search in several ways, by its steps or its maps, keeps its
     /// colour and takes the next marker that is free; meshes are alike.
     pub fn new<'a>(settings: impl IntoIterator<Item = &'a MethodSettings> + Clone) -> Self {
-        let labels = Labels::new(settings.clone());
-        let mut ways: Vec<(String, Style)> = Vec::new();
+        // The RBM baseline, meshes and the floor have names of their own.
+        let own = |s: &MethodSettings| s.method.is_mesh() || s.method == Method::Floor;
+        let named = settings.clone().into_iter();
+        let named = named.filter(|s| !own(s) && !is_baseline_of_any_rows(s));
+        let named: Vec<&MethodSettings> = named.collect();
+        let differs = |same: fn(&MethodSettings, &MethodSettings) -> bool| {
+            named.windows(2).any(|pair| !same(pair[0], pair[1]))
+        };
+        let mut all = Self {
+            differs: [
+                differs(|a, b| a.max_steps == b.max_steps),
+                differs(|a, b| a.map_rows == b.map_rows),
+                differs(|a, b| a.map_source == b.map_source),
+                differs(|a, b| a.map_format == b.map_format),
+                differs(|a, b| a.tolerance == b.tolerance),
+            ],
+            ways: Vec::new(),
+        };
         for s in settings {
-            let way = labels.way(s);
-            if ways.iter().any(|(known, _)| *known == way) {
+            let way = all.way(s);
+            if all.ways.iter().any(|(known, _)| *known == way) {
                 continue;
             }
             let wanted = style(&s.in_stage(DrawStage::Fragment));
             let free = |marker: &Marker| {
                 let taken = |k: &Style| (k.color, k.marker) == (wanted.color, *marker);
-                !ways.iter().any(|(_, known)| taken(known))
+                !all.ways.iter().any(|(_, known)| taken(known))
             };
-            let mut all = std::iter::once(wanted.marker).chain(Marker::ALL);
+            let mut markers = std::iter::once(wanted.marker).chain(Marker::ALL);
             // Meshes differ by their names alone.
-            let marker = all.find(|m| s.method.is_mesh() || free(m));
+            let marker = markers.find(|m| s.method.is_mesh() || free(m));
             let marker = marker.unwrap_or(wanted.marker);
-            ways.push((way, Style { marker, ..wanted }));
+            all.ways.push((way, Style { marker, ..wanted }));
         }
-        Self { labels, ways }
+        all
     }
 
     /// The styles of the ways in which rows were drawn.
@@ -123,19 +140,56 @@ impl SeriesStyles {
         Self::new(rows.iter().map(|r| &r.settings))
     }
 
-    /// The name of a way, without its stage.
+    /// The search and what else tells a way from the others, without the stage.
     pub fn way(&self, s: &MethodSettings) -> String {
-        self.labels.way(s)
+        let [steps, rows, source, format, tolerance] = self.differs;
+        let rows = s.map_rows.filter(|_| rows);
+        let rows = rows.map_or(String::new(), |n| format!(" {n} rows"));
+        if is_baseline_of_any_rows(s) {
+            return format!("{RBM_BASELINE}{rows}");
+        }
+        let mut name = s.method.to_string();
+        if s.edges != Edges::OneRay {
+            name += &format!(", {}", s.edges.name());
+        }
+        if s.method.is_mesh() {
+            return name; // which has neither steps nor a map
+        }
+        // A search without a loop has no bound to tell.
+        if steps && s.method.default_steps(false) > 1 {
+            let steps = s.max_steps.unwrap_or_else(|| s.method.default_steps(false));
+            name += &format!(" {steps} steps");
+        }
+        name += &rows;
+        let maps = s.method.reads_map();
+        if let (true, Some(source)) = (source && maps, s.map_source) {
+            name += &format!(" {}", source.name);
+        }
+        if format && maps {
+            name += &format!(" {}", s.map_format.name());
+        }
+        if tolerance && s.method.follows_tolerance() {
+            name += &format!(" {} px", s.tolerance);
+        }
+        name
     }
 
-    /// How it looks.
+    /// How a way looks.
     pub fn style(&self, s: &MethodSettings) -> Style {
-        let way = self.labels.way(s);
+        let way = self.way(s);
         let known = self.ways.iter().find(|(name, _)| *name == way);
         let mut own = style(s);
         own.marker = known.map_or(own.marker, |(_, look)| look.marker);
         own
     }
+}
+
+/// True if settings are those of the RBM baseline, whatever rows its map has.
+fn is_baseline_of_any_rows(s: &MethodSettings) -> bool {
+    is_rbm_baseline(&MethodSettings {
+        map_rows: None,
+        ..*s
+    })
 }
 
 #[cfg(test)]
@@ -144,6 +198,7 @@ mod tests {
     use super::super::plan::rbm_baseline;
     use super::super::view::tests::spindle;
     use super::*;
+    use revmap::maps::MapFormat;
     use revmap_searches::CIRCLE;
 
     /// All that a chart can hold: every search, the RBM baseline, meshes of seven finenesses.
@@ -218,5 +273,29 @@ mod tests {
             assert!(seen[..i].iter().all(|b| a.marker != b.marker));
             assert_eq!(a.color, color::ORANGE);
         }
+    }
+
+    #[test]
+    fn names_tell_apart_and_say_no_more() {
+        let circle = MethodSettings::default().by(CIRCLE);
+        let bound = |n, source, map_format| MethodSettings {
+            max_steps: Some(n),
+            map_source: Some(source),
+            map_format,
+            ..circle
+        };
+        let ways = [
+            bound(20, BINARY, MapFormat::R16),
+            bound(48, MapSource::EXACT, MapFormat::Rgba8),
+            rbm_baseline(&spindle(), &circle),
+        ];
+        let names = |ways: &[MethodSettings]| {
+            let styles = SeriesStyles::new(ways);
+            ways.iter().map(|w| styles.way(w)).collect::<Vec<_>>()
+        };
+        let wanted = ["circle 20 steps binary r16", "circle 48 steps exact rgba8"];
+        assert_eq!(names(&ways), [&wanted[..], &[RBM_BASELINE]].concat());
+        let plain = [circle, MethodSettings::default(), ways[2]];
+        assert_eq!(names(&plain), ["circle", "exact", RBM_BASELINE]);
     }
 }

@@ -1,6 +1,5 @@
 //! A scene and its name, seen from one place.
 
-use super::row::one;
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
 use revmap::settings::name_of;
@@ -107,6 +106,12 @@ impl View {
         self.name = format!("{}@{}", self.name, super::names::number(degrees, 4));
         self
     }
+}
+
+/// The value that all have, if they do.
+pub(super) fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
+    let first = all.next()?;
+    all.all(|other| other == first).then_some(first)
 }
 
 #[cfg(test)]

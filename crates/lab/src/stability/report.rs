@@ -214,13 +214,13 @@ pub fn write(
          share of faults in each case, over the pixels that the reference hits: a fault beside the solid can make it more than 100 %. Published searches fail most cases.",
     );
     page.chapter("All cases");
-    page.table(&table(cases, solvers, outcome), &[0, 1]);
+    page.table(&table(cases, solvers, outcome));
     if let Some(flicker) = flicker(cases, solvers, outcome) {
         page.text(
             "Pixels that flicker from one frame of a motion to the next: their fault in the one is none in the other, or errs by another distance. A pixel that is right in \
              both changes as the reference does.",
         );
-        page.table(&flicker, &[0]);
+        page.table(&flicker);
     }
     let pictures = folder.join("pictures");
     make(&pictures)?;
@@ -233,29 +233,23 @@ pub fn write(
         for known in &case.known {
             page.note(&format!("The default fails here: {}", known.reason));
         }
-        if let Some(sheet) = outcome.sheets.iter().find(|s| s.case == k) {
-            page.text(&format!("At {}:", number(sheet.value, 6)));
-            page.shots(&sheet.shots)?;
-        }
         if let Some(glance) = outcome.glances.iter().find(|g| g.case == k) {
             page.text("Where the failure is seen best: the whole picture, and a part of it as drawn, as the reference has it, and the difference.");
-            page.shots(&glance.shots)?;
-            for (strip, caption) in &glance.shots {
-                let file = pictures.join(format!("{}.png", case.name));
-                write_bytes(&file, &png(strip)?)?;
-                let record = vec![case.name.clone(), caption.clone()];
-                captions.records.push(record);
-            }
+            page.shots(std::slice::from_ref(&glance.shot))?;
+            let (strip, caption) = &glance.shot;
+            let file = pictures.join(format!("{}.png", case.name));
+            write_bytes(&file, &png(strip)?)?;
+            let record = vec![case.name.clone(), caption.clone()];
+            captions.records.push(record);
         }
         let figure = chart(case, k, solvers, outcome);
         keep_figure(folder, &case.name, &figure)?;
         page.figure(&figure, &format!("Faults against the {}. Filled markers: fragment, hollow: compute. No faults are drawn at {FLOOR} %.", case.parameter));
         let last = case.values.last().copied().unwrap_or_default();
-        let command = format!(
-            "revmap render scenes/{}-{last}.toml -o frame.png",
+        page.text(&format!(
+            "One of its scenes: `revmap render scenes/{}-{last}.toml -o frame.png`",
             case.name
-        );
-        page.command("One of its scenes:", &command);
+        ));
     }
     write_text(&pictures.join("captions.csv"), &captions.csv())?;
     write_text(&folder.join("report.html"), &page.html())

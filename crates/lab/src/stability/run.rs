@@ -73,16 +73,14 @@ pub struct Trial {
     pub verdict: Verdict,
 }
 
-/// Pictures of one of a case's scenes, with captions.
-pub struct Exhibit {
+/// The failure of a case that is seen best.
+pub struct Glance {
     /// Index of the case.
     pub case: usize,
-    /// The parameter's value.
-    pub value: f64,
-    /// How much of the case's failures it shows.
-    score: f64,
-    /// The pictures.
-    pub shots: Vec<(Picture, String)>,
+    /// How much is seen, as [`Spot::seen`].
+    seen: f64,
+    /// What [`Spot::strip`] shows of it, and its caption.
+    pub shot: (Picture, String),
 }
 
 /// All trials, and what is shown of each case.
@@ -90,10 +88,8 @@ pub struct Exhibit {
 pub struct Outcome {
     /// Every picture that was judged.
     pub trials: Vec<Trial>,
-    /// The worst scene: the reference, the default, and the search that fails most.
-    pub sheets: Vec<Exhibit>,
-    /// The failure that is seen best, as [`Spot::strip`] shows it.
-    pub glances: Vec<Exhibit>,
+    /// One of each case.
+    pub glances: Vec<Glance>,
 }
 
 /// What is drawn.
@@ -127,7 +123,7 @@ pub fn run(
     let mut done = 0;
     let mut outcome = Outcome::default();
     for (number, case) in plan.cases.iter().enumerate() {
-        let mut shown: [Option<Exhibit>; 2] = [None, None];
+        let mut shown: Option<Glance> = None;
         // The faults of each search and stage in the frame before, of motions.
         let mut before: HashMap<(Solver, DrawStage), Faults> = HashMap::new();
         for value in chosen(case) {
@@ -140,7 +136,7 @@ pub fn run(
             write_text(&plan.folder.join(file), &step.scene)?;
             let scene = step.read(plan.folder)?;
             let truth = Truth::new(&scene, &step)?;
-            let mut drawn = Vec::new();
+            let reference = Picture::of(&truth.frame);
             for &solver in plan.solvers {
                 for mut one in both_stages(device, &step, &scene, &truth, solver)? {
                     if let (true, Ok((_, faults, judged))) = (case.motion, &mut one.result) {
@@ -166,33 +162,25 @@ pub fn run(
                         verdict: verdict(&judged, truth.limit, solver, known),
                         judged,
                     });
-                    if let Ok((frame, _, judged)) = one.result {
-                        drawn.push(Drawn {
-                            value,
-                            method: (solver, one.stage),
-                            share: judged.share(),
-                            frame,
-                        });
+                    if let Ok((frame, ..)) = one.result {
+                        let picture = Picture::of(&frame);
+                        let spot = Spot::worst(&picture, &reference);
+                        if shown.as_ref().is_none_or(|shown| spot.seen > shown.seen) {
+                            let strip = spot.strip(&picture, &reference, &truth.heat(&frame)?);
+                            let nothing = [", nothing is seen", ""][usize::from(spot.seen > 0.0)];
+                            let (stage, at) = (one.stage.name(), self::number(value, 6));
+                            let caption = format!("{solver}, {stage}, at {at}{nothing}");
+                            shown = Some(Glance {
+                                case: number,
+                                seen: spot.seen,
+                                shot: (strip, caption),
+                            });
+                        }
                     }
                 }
             }
-            let new = [sheet(&truth, &drawn)?, glance(&truth, &drawn)?];
-            for (kept, new) in shown.iter_mut().zip(new) {
-                if let Some((score, shots)) = new
-                    && kept.as_ref().is_none_or(|kept| score > kept.score)
-                {
-                    *kept = Some(Exhibit {
-                        case: number,
-                        value,
-                        score,
-                        shots,
-                    });
-                }
-            }
         }
-        let [sheet, glance] = shown;
-        outcome.sheets.extend(sheet);
-        outcome.glances.extend(glance);
+        outcome.glances.extend(shown);
     }
     Ok(outcome)
 }
@@ -272,61 +260,4 @@ fn verdict(
         (false, false) if judged.is_err() && !is_default => Verdict::Refused,
         (false, false) => Verdict::Failed,
     }
-}
-
-struct Drawn {
-    /// The parameter's value.
-    value: f64,
-    method: (Solver, DrawStage),
-    /// Faults as a part of the pixels that the reference hits.
-    share: f64,
-    frame: Frame,
-}
-
-/// The picture with the most faults: by the default, or by the others.
-fn most_faults(drawn: &[Drawn], own: bool) -> Option<&Drawn> {
-    let of = drawn.iter();
-    let of = of.filter(|d| (d.method.0 == Solver::DEFAULT) == own);
-    of.max_by(|a, b| a.share.total_cmp(&b.share))
-}
-
-/// A score, and pictures with captions.
-type Scored = Option<(f64, Vec<(Picture, String)>)>;
-
-/// The pictures of a scene, scored: failures of the default come first.
-fn sheet(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
-    let (own, others) = (most_faults(drawn, true), most_faults(drawn, false));
-    let Some(first) = own.or(others) else {
-        return Ok(None);
-    };
-    let share = |drawn: Option<&Drawn>| drawn.map_or(0.0, |d| d.share);
-    let (default, stage) = (Solver::DEFAULT.name(), first.method.1.name());
-    let mut shots = vec![
-        (Picture::of(&truth.frame), "the reference".to_owned()),
-        (Picture::of(&first.frame), format!("{default}, {stage}")),
-        (truth.heat(&first.frame)?, format!("{default}: difference")),
-    ];
-    if let Some(other) = others.filter(|d| d.share > 0.0) {
-        let solver = other.method.0;
-        shots.push((Picture::of(&other.frame), solver.name().to_owned()));
-        shots.push((truth.heat(&other.frame)?, format!("{solver}: difference")));
-    }
-    Ok(Some((1e3 * share(own) + share(others).min(1.0), shots)))
-}
-
-/// The picture that shows a failure best, with its part that differs most.
-fn glance(truth: &Truth, drawn: &[Drawn]) -> Result<Scored> {
-    let reference = Picture::of(&truth.frame);
-    let spots = drawn.iter().map(|drawn| {
-        let picture = Picture::of(&drawn.frame);
-        (Spot::worst(&picture, &reference), picture, drawn)
-    });
-    let Some((spot, picture, drawn)) = spots.max_by(|a, b| a.0.seen.total_cmp(&b.0.seen)) else {
-        return Ok(None);
-    };
-    let strip = spot.strip(&picture, &reference, &truth.heat(&drawn.frame)?);
-    let nothing = [", nothing is seen", ""][usize::from(spot.seen > 0.0)];
-    let ((solver, stage), value) = (drawn.method, number(drawn.value, 6));
-    let caption = format!("{solver}, {}, at {value}{nothing}", stage.name());
-    Ok(Some((spot.seen, vec![(strip, caption)])))
 }

@@ -1,13 +1,14 @@
 //! How a benchmark goes about its plan, with a stand-in for the device.
 
-use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan, run_within};
+use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan};
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Observer, measure};
 use revmap_lab::report::pictures::Album;
-use revmap_lab::report::plan::{Labels, TimeBudget, embedded};
+use revmap_lab::report::plan::{TimeBudget, embedded};
 use revmap_lab::report::report::Run;
+use revmap_lab::report::series_style::SeriesStyles;
 use revmap_lab::report::table::Table;
 use std::sync::atomic::AtomicBool;
 
@@ -36,7 +37,7 @@ fn passes_are_added_until_times_are_resolved() {
         ..LIMITS
     };
     let mut bench = StandIn::new(Fault::Bout);
-    let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
+    let outcome = run_plan(&plan(), &limits, &mut bench, &AtomicBool::new(false)).unwrap();
     let passes: Vec<usize> = outcome.rows.iter().map(|r| r.passes.len()).collect();
     // One slow pass of seven leaves an interval of 0.245 to either side, of six 0.301.
     assert_eq!(passes, [7, 7, 7, 3, 3, 3]);
@@ -60,7 +61,7 @@ fn a_time_that_is_never_resolved_ends_at_the_limit() {
         ..LIMITS
     };
     let mut bench = StandIn::new(Fault::Grows);
-    let outcome = run_within(&limits, &mut bench, &AtomicBool::new(false)).unwrap();
+    let outcome = run_plan(&plan(), &limits, &mut bench, &AtomicBool::new(false)).unwrap();
     let live = &outcome.rows[0];
     assert!(live.passes.len() > 3 && !live.resolved(limits.resolved));
 }
@@ -106,8 +107,8 @@ fn a_runs_folder_is_whole() {
     let driver = "driver 1, with a comma";
     let machine = Machine::here("stand-in", "none", driver, "0", "revmap bench");
     let plan = plan();
-    let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
-    let mut album = Album::new(folder.path(), labels, true).unwrap();
+    let styles = SeriesStyles::new(plan.cases.iter().map(|c| &c.settings));
+    let mut album = Album::new(folder.path(), styles, true).unwrap();
     let mut observer = Observer {
         stop: &AtomicBool::new(false),
         progress: &|_, _, _| {},
@@ -130,7 +131,6 @@ fn a_runs_folder_is_whole() {
         machine: &machine,
         album: &album,
         flights: &[],
-        maps: &[],
     };
     let text = report.write(folder.path()).unwrap();
     for wanted in ["RBM baseline", "2 pictures"] {

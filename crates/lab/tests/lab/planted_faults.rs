@@ -5,13 +5,12 @@ use revmap::error::ErrorKind;
 use revmap::settings::Solver;
 use revmap_lab::method::Method;
 use revmap_lab::report::chart::front::front;
-use revmap_lab::report::columns::Context;
+use revmap_lab::report::columns::{Context, results_table};
 use revmap_lab::report::exhibit;
 use revmap_lab::report::folder;
 use revmap_lab::report::machine::Machine;
 use revmap_lab::report::plan::is_rbm_baseline;
 use revmap_lab::report::ratios::{Over, Ratio, over};
-use revmap_lab::report::report::results;
 use revmap_lab::report::row::{Clocks, Row};
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
@@ -78,7 +77,7 @@ fn a_search_that_sleeps_is_charted_slower() {
     let context = Context::new(&all, &plan, &machine, 0.25);
     let charts = exhibit::all(&[]).unwrap();
     let chart = &charts.iter().find(|e| e.name == "error").unwrap().chart[0];
-    let figures = chart.figures(&context, &rows, &[]);
+    let figures = chart.figures(&context, &rows);
     let figure = figures.unwrap().remove(0);
     let dots = figure.shapes();
     assert!(dots[0][0] > dots[1][0] + 20.0, "{dots:?}");
@@ -113,7 +112,7 @@ fn a_clock_that_lies_is_rejected() {
     assert!(first[4].contains("more than 15 % apart"), "{first:?}");
     // In results.csv the lie is not told.
     let machine = Machine::here("stand-in", "none", "none", "0", "revmap bench");
-    let results = results(&outcome.rows, &plan(), &machine, 0.25).unwrap();
+    let results = results_table(&outcome.rows, &plan(), &machine, 0.25).unwrap();
     let [method, gpu, frame] =
         ["solver", "gpu_ms_median", "frame_ms_median"].map(|c| results.column(c).unwrap());
     for record in &results.records {

@@ -7,7 +7,7 @@ use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_lab::method::{Method, MethodSettings};
-use revmap_lab::report::measure::{Bench, Measured, Observer, TimedRenderer, measure};
+use revmap_lab::report::measure::{Bench, Measured, Observer, TimedDraw, measure};
 use revmap_lab::report::plan::{Measure, Pick, Plan, TimeBudget, is_rbm_baseline};
 use revmap_lab::report::row::Sample;
 use revmap_lab::report::view::View;
@@ -51,35 +51,6 @@ pub struct StandIn {
     pub stop_after: Option<(usize, &'static AtomicBool)>,
 }
 
-struct Timed {
-    gpu_ms: f64,
-    frame_ms: f64,
-    method: Method,
-    /// True on a machine without drift.
-    steady: bool,
-    frames: Rc<RefCell<Vec<Method>>>,
-    stop_after: Option<(usize, &'static AtomicBool)>,
-}
-
-impl TimedRenderer for Timed {
-    fn sample(&mut self) -> Result<Sample> {
-        let mut frames = self.frames.borrow_mut();
-        frames.push(self.method);
-        if let Some((count, stop)) = self.stop_after {
-            stop.fetch_or(frames.len() >= count, Ordering::Relaxed);
-        }
-        // The machine gets slower and faster again, by a third, as machines do.
-        let drift = match self.steady {
-            true => 1.0,
-            false => 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin(),
-        };
-        Ok(Sample {
-            gpu_ms: Some(self.gpu_ms * drift),
-            frame_ms: self.frame_ms * drift,
-        })
-    }
-}
-
 impl StandIn {
     pub fn new(fault: Fault) -> Self {
         Self {
@@ -104,11 +75,7 @@ impl StandIn {
 }
 
 impl Bench for StandIn {
-    fn timed_renderer(
-        &mut self,
-        _: &View,
-        settings: &MethodSettings,
-    ) -> Result<Box<dyn TimedRenderer>> {
+    fn timed(&mut self, _: &View, settings: &MethodSettings) -> Result<TimedDraw> {
         self.refusal(settings)?;
         self.made += 1;
         let live = settings.method == Solver::Live;
@@ -127,13 +94,23 @@ impl Bench for StandIn {
         let frame_ms = base * factor;
         let lies = live && self.fault == Fault::ClockLies;
         let gpu_ms = frame_ms * if lies { 0.01 } else { 0.98 };
-        Ok(Box::new(Timed {
-            gpu_ms,
-            frame_ms,
-            method: settings.method,
-            steady: matches!(self.fault, Fault::Bout | Fault::Grows),
-            frames: self.frames.clone(),
-            stop_after: self.stop_after,
+        let (method, frames, stop_after) = (settings.method, self.frames.clone(), self.stop_after);
+        let steady = matches!(self.fault, Fault::Bout | Fault::Grows);
+        Ok(Box::new(move || {
+            let mut frames = frames.borrow_mut();
+            frames.push(method);
+            if let Some((count, stop)) = stop_after {
+                stop.fetch_or(frames.len() >= count, Ordering::Relaxed);
+            }
+            // The machine gets slower and faster again, by a third, as machines do.
+            let drift = match steady {
+                true => 1.0,
+                false => 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin(),
+            };
+            Ok(Sample {
+                gpu_ms: Some(gpu_ms * drift),
+                frame_ms: frame_ms * drift,
+            })
         }))
     }
 
@@ -203,12 +180,7 @@ pub const LIMITS: TimeBudget = TimeBudget {
 
 /// Measures the plan within [`LIMITS`].
 pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
-    run_within(&LIMITS, bench, stop)
-}
-
-/// Measures the plan.
-pub fn run_within(limits: &TimeBudget, bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
-    run_plan(&plan(), limits, bench, stop)
+    run_plan(&plan(), &LIMITS, bench, stop)
 }
 
 /// Measures a plan.

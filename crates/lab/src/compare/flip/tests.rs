@@ -68,7 +68,7 @@ fn the_authors_figures_come_out() {
     for (a, b, ppd, expected, pixels) in AUTHORS {
         let map = flip_map(&picture(a), &picture(b), ppd);
         let found = [
-            mean(&map),
+            mean_flip(&map),
             map[0].into(),
             map[20 * 64 + 30].into(),
             map[40 * 64 + 50].into(),

@@ -6,7 +6,11 @@ use super::letters::width;
 use super::style::{Dash, INK, PALE, Style};
 use super::{Anchor, Figure};
 use crate::report::names::number;
+use crate::report::plan::grouped;
 use crate::report::stats::Interval;
+
+/// Lines on one page.
+const MOST: usize = 44;
 
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,29 +32,48 @@ impl Line {
     }
 }
 
-/// Lines under a common heading.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Block {
-    /// The heading; may be empty.
-    pub name: String,
-    pub lines: Vec<Line>,
+/// A line, the heading above it, and what it belongs to: lines of one thing stay on one page.
+pub type Placed = ((String, String), Line);
+
+/// Charts of these lines, as many as they need; `mark`: a value to which all are compared.
+pub fn pages(title: &str, axis: &str, mark: Option<f64>, lines: &[Placed]) -> Vec<Figure> {
+    let mut pages: Vec<Vec<Placed>> = Vec::new();
+    for group in lines.chunk_by(|a, b| a.0.1 == b.0.1) {
+        match pages.last_mut() {
+            Some(page) if page.len() + group.len() <= MOST => page.extend_from_slice(group),
+            _ => pages.push(group.to_vec()),
+        }
+    }
+    let figure = |page: Vec<Placed>| {
+        let blocks = grouped(page, |line| line.0.0.clone()).into_iter();
+        let block = |(name, lines): (_, Vec<Placed>)| {
+            (name, lines.into_iter().map(|line| line.1).collect())
+        };
+        let chart = DotChart {
+            title: title.to_owned(),
+            axis: Axis::log(axis),
+            mark,
+            blocks: blocks.map(block).collect(),
+        };
+        chart.figure()
+    };
+    pages.into_iter().map(figure).collect()
 }
 
 /// A chart of values with intervals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DotChart {
-    pub title: String,
-    pub axis: Axis,
-    /// A value to which all are compared.
-    pub mark: Option<f64>,
-    pub blocks: Vec<Block>,
+struct DotChart {
+    title: String,
+    axis: Axis,
+    mark: Option<f64>,
+    /// Lines below their headings, which may be empty.
+    blocks: Vec<(String, Vec<Line>)>,
 }
 
 const STEP: f64 = 22.0;
 
 impl DotChart {
-    pub fn figure(&self) -> Figure {
-        let lines = || self.blocks.iter().flat_map(|b| &b.lines);
+    fn figure(&self) -> Figure {
+        let lines = || self.blocks.iter().flat_map(|b| &b.1);
         // An interval without an end or too wide must not stretch the axis.
         let ends = lines().flat_map(|l| {
             let ends = l.value.ends().filter(|_| !l.unresolved);
@@ -66,7 +89,7 @@ impl DotChart {
         let left = (EDGE + names + 12.0).min(WIDTH * 0.55);
         let right = WIDTH - EDGE - values - 14.0;
         let at = |v: f64| Some((left + scale.place(v)? * (right - left)).clamp(left, right));
-        let heads = self.blocks.iter().filter(|b| !b.name.is_empty()).count();
+        let heads = self.blocks.iter().filter(|b| !b.0.is_empty()).count();
         let bottom = top + STEP * (heads + lines().count()) as f64 + 6.0;
         let mut end = f64::NEG_INFINITY;
         for (value, text) in &scale.ticks {
@@ -97,12 +120,12 @@ impl DotChart {
     /// The lines below `top`, each with its name before `left`, its dot and its number.
     fn lines(&self, sheet: &mut Sheet, (top, left): (f64, f64), at: impl Fn(f64) -> Option<f64>) {
         let mut y = top;
-        for block in &self.blocks {
-            if !block.name.is_empty() {
+        for (name, lines) in &self.blocks {
+            if !name.is_empty() {
                 y += STEP;
-                sheet.word((EDGE, y - 5.0), &block.name, Anchor::Start, PALE);
+                sheet.word((EDGE, y - 5.0), name, Anchor::Start, PALE);
             }
-            for line in &block.lines {
+            for line in lines {
                 y += STEP;
                 let level = y - STEP / 2.0 + 2.0;
                 let base = level + 0.35 * TEXT;
@@ -140,9 +163,9 @@ mod tests {
             },
             unresolved: k == 1,
         };
-        let block = |name: &str| Block {
-            name: name.to_owned(),
-            lines: values.iter().enumerate().map(line).collect(),
+        let block = |name: &str| {
+            let lines = values.iter().enumerate().map(line);
+            (name.to_owned(), lines.collect())
         };
         DotChart {
             title: "Time over that of the RBM baseline".into(),

@@ -3,16 +3,17 @@
 use super::{check_column, tables};
 use crate::method::{Method, MethodSettings};
 use crate::report::chart::Figure;
+use crate::report::chart::dots::{Line, Placed, pages};
 use crate::report::chart::front::{WORTH, front, stairs};
 use crate::report::chart::style::{Dash, Marker, Style, color};
 use crate::report::chart::xy::{Guide, Point, Series, XyChart};
 use crate::report::columns::{self, Cell, Context};
 use crate::report::growth::growing;
-use crate::report::map_error::MapError;
 use crate::report::plan::{grouped, is_rbm_baseline};
 use crate::report::ratios::{Over, over};
 use crate::report::row::Row;
 use crate::report::series_style::{self, floor_line, of_source};
+use crate::report::stats::Interval;
 use revmap::error::Result;
 use revmap::settings::DrawStage;
 
@@ -40,6 +41,10 @@ pub struct Chart {
     /// The rows that share a line.
     #[serde(default)]
     pub series: SeriesBy,
+    /// True if only rows count of the search that is nearest to the truth, of those that read maps:
+    /// what it errs is the map's error.
+    #[serde(default)]
+    pub most_exact: bool,
     /// True if it has the Pareto front.
     #[serde(default)]
     pub front: bool,
@@ -66,8 +71,6 @@ pub enum Kind {
     Points,
     /// A line for each row or way of drawing, its time as a dot.
     Dots,
-    /// The errors of maps alone beside those of the most exact search, over the rows of the map.
-    MapRows,
 }
 
 /// The rows that share a line.
@@ -106,24 +109,22 @@ impl Chart {
     }
 
     /// Draws the chart over these rows: none where there is nothing to show, several where one
-    /// would be longer than a page. `maps`: errors of maps alone, which are not rows.
-    pub fn figures(
-        &self,
-        context: &Context,
-        rows: &[&Row],
-        maps: &[MapError],
-    ) -> Result<Vec<Figure>> {
+    /// would be longer than a page.
+    pub fn figures(&self, context: &Context, rows: &[&Row]) -> Result<Vec<Figure>> {
         if self.kind == Kind::Dots {
             return Ok(self.dots(context, rows));
         }
         let mut rows = rows.to_vec();
+        if self.most_exact {
+            let best = most_exact(&rows);
+            rows.retain(|r| Some(r.settings.method) == best && !is_rbm_baseline(&r.settings));
+        }
         // Meshes from coarse to fine.
         rows.sort_by_key(|r| r.settings.method.quads());
         let rows = rows.as_slice();
-        let (items, floors) = match (self.kind, self.over) {
-            (Kind::MapRows, _) => (self.of_maps(context, rows, maps)?, Vec::new()),
-            (_, Some(reference)) => self.of_ways(context, rows, reference)?,
-            (_, None) => self.of_rows(context, rows)?,
+        let (items, floors) = match self.over {
+            Some(reference) => self.of_ways(context, rows, reference)?,
+            None => self.of_rows(context, rows)?,
         };
         if items.is_empty() {
             return Ok(Vec::new());
@@ -168,7 +169,33 @@ impl Chart {
     /// True if rows without a time have no place in the chart.
     pub fn is_timed(&self) -> bool {
         let timed = self.over.is_some() || is_timed(&self.x) || is_timed(&self.y);
-        self.kind == Kind::Dots || (self.kind == Kind::Points && timed)
+        self.kind == Kind::Dots || timed
+    }
+
+    /// A line for each row, or for each way of drawing over others.
+    fn dots(&self, context: &Context, rows: &[&Row]) -> Vec<Figure> {
+        let line = |settings: &MethodSettings, value: Interval| Line {
+            name: context.styles.way(settings),
+            value,
+            style: context.styles.style(settings),
+            unresolved: value.relative() > context.resolved,
+        };
+        let stage = |s: &MethodSettings| format!("{} stage", s.stage.name());
+        if let Some(reference) = self.over {
+            let ratios = over(rows.iter().copied(), reference).into_iter();
+            let placed =
+                |settings, time| ((stage(&settings), String::new()), line(&settings, time));
+            let lines: Vec<Placed> = ratios.map(|r| placed(r.settings, r.time)).collect();
+            let axis = format!("time / {}", context.baseline());
+            return pages(&self.title, &axis, Some(1.0), &lines);
+        }
+        let placed = |row: &&Row| -> Option<Placed> {
+            let picture = format!("{}, {}", row.scene, row.size());
+            let heading = format!("{picture}, {}", stage(&row.settings));
+            Some(((heading, picture), line(&row.settings, row.time()?)))
+        };
+        let lines: Vec<Placed> = rows.iter().filter_map(placed).collect();
+        pages(&self.title, "time of a frame (ms)", None, &lines)
     }
 
     /// Points that are rows, and the lines of floors.
@@ -259,41 +286,6 @@ impl Chart {
         Ok((items, floors))
     }
 
-    /// The errors of maps alone beside what the most exact search draws from them, over their rows.
-    fn of_maps(&self, context: &Context, rows: &[&Row], maps: &[MapError]) -> Result<Vec<Item>> {
-        let column = columns::named(&self.y)?;
-        let item = |name: &str, style: Style, count: u32, y: f64| Item {
-            name: name.to_owned(),
-            style,
-            joined: true,
-            stage: DrawStage::Fragment,
-            point: Point::at(count.into(), y),
-        };
-        let Some(method) = most_exact(rows) else {
-            return Ok(Vec::new());
-        };
-        let drawn = |row: &&Row| {
-            let (source, count) = (row.settings.map_source?, row.settings.map_rows?);
-            let y = (column.cell)(context, row).value()?;
-            let name = format!("{}, drawn", source.name);
-            Some(item(&name, of_source(source), count, y))
-        };
-        let own = rows.iter().filter(|r| r.settings.method == method);
-        let own = own.filter(|r| !is_rbm_baseline(&r.settings));
-        let mut items: Vec<Item> = own.filter_map(drawn).collect();
-        // Colours and normals of maps are not compared.
-        let compared = self.y == "depth_p99_texels";
-        let alone = |error: &&MapError| compared && rows.iter().any(|r| r.view == error.view);
-        items.extend(maps.iter().filter(alone).filter_map(|error| {
-            let mut style = of_source(error.source);
-            style.filled = false;
-            let name = format!("{}, the map by itself", error.source.name);
-            Some(item(&name, style, error.rows, error.errors.depth?.p99))
-        }));
-        items.sort_by(|a, b| a.point.x.total_cmp(&b.point.x));
-        Ok(items)
-    }
-
     /// The name and look of a row's line, and whether its points are joined.
     fn line(&self, context: &Context, row: &Row) -> Option<(String, Style, bool)> {
         let s = &row.settings;
@@ -306,7 +298,7 @@ impl Chart {
             }
             SeriesBy::Source => {
                 let source = s.map_source?;
-                (source.name.to_owned(), of_source(source), false)
+                (source.name.to_owned(), of_source(source), self.most_exact)
             }
             SeriesBy::Scene => {
                 let scenes = grouped(context.rows, |r| &r.scene);
@@ -339,7 +331,7 @@ impl Chart {
     }
 }
 
-/// The search nearest to the truth, of those that read maps: what is left is the map's error.
+/// The search nearest to the truth, of those that read maps.
 fn most_exact(rows: &[&Row]) -> Option<Method> {
     let own = rows.iter().filter(|r| r.settings.map_source.is_some());
     let own = own.filter(|r| !is_rbm_baseline(&r.settings));

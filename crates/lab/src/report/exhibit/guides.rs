@@ -1,6 +1,5 @@
 //! Axes of charts, lines to compare points with, and fitted laws.
 
-use super::charts::Kind;
 use super::{Chart, tables};
 use crate::report::chart::axis::Axis;
 use crate::report::chart::xy::{Guide, Series};
@@ -17,10 +16,8 @@ impl Chart {
         series: &[Series],
         floors: &[Guide],
     ) -> Result<(Axis, Axis)> {
-        let maps = self.kind == Kind::MapRows;
         let mut x = match self.over {
             Some(_) => Axis::log(format!("time / {}", context.baseline())).with(1.0),
-            None if maps => Axis::log(columns::named("map_rows")?.heading),
             None => Axis::log(columns::named(&self.x)?.heading),
         };
         let heading = match self.over {
@@ -37,7 +34,7 @@ impl Chart {
             let places = floors.iter().filter_map(|floor| floor.points.first());
             x.include.extend(places.map(|place| place.0));
         }
-        if self.ticks || maps {
+        if self.ticks {
             x = x.at(series.iter().flat_map(|s| &s.points).map(|p| p.x));
         }
         y.include.extend(self.published().iter().map(|p| p.1));

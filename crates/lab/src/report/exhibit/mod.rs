@@ -3,7 +3,6 @@
 
 mod answers;
 mod charts;
-mod dots;
 mod guides;
 mod tables;
 
@@ -11,7 +10,7 @@ pub use answers::Question;
 pub(in crate::report) use answers::{findings, unresolved};
 pub use charts::Chart;
 pub(in crate::report) use tables::cell;
-pub use tables::{Records, Table, left, ways_table};
+pub use tables::{Records, Table, ways_table};
 
 use super::columns::{self, Context};
 use super::ratios::Over;

@@ -2,18 +2,16 @@
 
 use super::{answers, check_column};
 use crate::method::Method;
-use crate::report::chart::front::{WORTH, front};
 use crate::report::columns::{self, Cell, Context};
 use crate::report::growth::growth;
-use crate::report::names::{number, percent, range};
-use crate::report::plan::{grouped, variant};
+use crate::report::names::range;
+use crate::report::plan::grouped;
 use crate::report::published::published;
 use crate::report::ratios::{Over, Ratio, mean_ms, over};
 use crate::report::row::Row;
 use crate::report::stats::{self, Interval};
 use crate::report::table::Table as Text;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::settings::DrawStage;
 
 /// A table.
 #[derive(Clone, Debug, Default, serde::Deserialize)]
@@ -48,8 +46,6 @@ pub enum Records {
     Pictures,
     /// Ways of drawing, over all pictures.
     Ways,
-    /// Ways of drawing that are on Pareto fronts.
-    Fronts,
     /// Ways of drawing, the fragment and the compute stage side by side.
     Stages,
     /// The default search against the fastest other one, by shadows and size.
@@ -96,7 +92,6 @@ impl Table {
                 let over = self.over.unwrap_or(Over::Baseline);
                 ways_table(context, rows, over, &self.columns)
             }
-            Records::Fronts => Ok(fronts(context, rows)),
             Records::Stages => Ok(answers::stages_table(context, rows)),
             Records::Rivals => Ok(answers::rivals_table(context, rows)),
             Records::Growth => growth_table(context, rows, &self.x),
@@ -104,15 +99,6 @@ impl Table {
             Records::Flights => Ok(Text::default()),
         }
     }
-}
-
-/// Which columns of a page's table are words: they stand to the left.
-pub fn left(table: &Text) -> Vec<usize> {
-    let word = |c: &usize| {
-        let mut fields = table.records.iter().filter_map(|r| r.get(*c));
-        fields.any(|f| f.starts_with(|c: char| c.is_alphabetic()) && f != "inf" && f != "nan")
-    };
-    (0..table.header.len()).filter(word).collect()
 }
 
 /// The table of ways of drawing over others.
@@ -222,62 +208,6 @@ pub(in crate::report) fn cell(
         }
     };
     Ok(found)
-}
-
-/// A way of drawing on fronts of its stage.
-struct OnFront<'a> {
-    row: &'a Row,
-    /// On how many fronts, of how many pictures.
-    count: (usize, usize),
-    /// Its worst depth error and share of wrong pixels on them.
-    worst: (f64, f64),
-}
-
-/// The ways that are on a front of some picture in their stage, the most frequent first.
-fn fronts(context: &Context, rows: &[&Row]) -> Text {
-    let stages = [DrawStage::Fragment, DrawStage::Compute];
-    let of = |stage| on_fronts(context, rows, stage);
-    let all: Vec<OnFront> = stages.into_iter().flat_map(of).collect();
-    Text::of(
-        &all,
-        &[
-            ("method", &|f| context.styles.way(&f.row.settings)),
-            ("stage", &|f| f.row.settings.stage.name().to_owned()),
-            ("on the front of", &|f| {
-                format!("{} of {}", f.count.0, f.count.1)
-            }),
-            ("worst depth p99 (h/512)", &|f| number(f.worst.0, 3)),
-            ("worst wrong pixels", &|f| percent(f.worst.1)),
-        ],
-    )
-}
-
-fn on_fronts<'a>(context: &Context, rows: &[&'a Row], stage: DrawStage) -> Vec<OnFront<'a>> {
-    let own = rows.iter().copied().filter(|r| r.settings.stage == stage);
-    let pictures = grouped(own, |r| r.picture());
-    let mut found: Vec<(&Row, f64)> = Vec::new();
-    for (_, group) in &pictures {
-        let place = |r: &&Row| {
-            let known = r.surface().filter(|_| r.resolved(context.resolved));
-            let error = known.and_then(|e| e.depth).map_or(f64::NAN, |d| d.p99);
-            (r.time().map_or(f64::NAN, |t| t.value), error)
-        };
-        let points: Vec<(f64, f64)> = group.iter().map(place).collect();
-        let best = front(&points, WORTH).into_iter();
-        found.extend(best.map(|i| (group[i], points[i].1)));
-    }
-    let ways = grouped(found, |(row, _)| variant(&row.settings)).into_iter();
-    let mut all: Vec<OnFront> = ways
-        .map(|(_, own)| OnFront {
-            row: own[0].0,
-            count: (own.len(), pictures.len()),
-            worst: own.iter().fold((0.0, 0.0), |(depth, wrong), (row, error)| {
-                (error.max(depth), row.errors.wrong().max(wrong))
-            }),
-        })
-        .collect();
-    all.sort_by(|a, b| b.count.cmp(&a.count).then(a.worst.0.total_cmp(&b.worst.0)));
-    all
 }
 
 fn growth_table(context: &Context, rows: &[&Row], x: &str) -> Result<Text> {

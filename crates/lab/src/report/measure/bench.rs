@@ -9,24 +9,17 @@ use revmap::error::Result;
 use revmap::frame::Frame;
 use std::sync::atomic::AtomicBool;
 
-/// A way of drawing a view, ready to be timed.
-pub trait TimedRenderer {
-    /// Draws one frame and waits for it.
-    fn sample(&mut self) -> Result<Sample>;
-}
+/// Draws one frame of a view, which is made ready before, and waits for it.
+pub type TimedDraw = Box<dyn FnMut() -> Result<Sample>>;
 
-/// A source of renderers and pictures: a Vulkan device, or a stand-in of tests.
+/// A source of timed frames and pictures: a Vulkan device, or a stand-in of tests.
 pub trait Bench {
     /// Makes everything ready to draw `view` as `settings` say.
     ///
     /// # Errors
     /// This way of drawing does not apply to the view; a failure of the device itself is
     /// [`DeviceLost`](revmap::error::ErrorKind::DeviceLost) and ends the run.
-    fn timed_renderer(
-        &mut self,
-        view: &View,
-        settings: &MethodSettings,
-    ) -> Result<Box<dyn TimedRenderer>>;
+    fn timed(&mut self, view: &View, settings: &MethodSettings) -> Result<TimedDraw>;
 
     /// One frame with all planes, and the bytes of its maps.
     fn picture(&mut self, view: &View, settings: &MethodSettings) -> Result<(Frame, u64)>;

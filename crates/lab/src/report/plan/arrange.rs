@@ -1,4 +1,5 @@
-//! Copies of the program's own solids: on a field, along an avenue, in the distance, as an army.
+//! Copies of the program's own solids: on a field, seen from far above, along an avenue, in the
+//! distance, as an army. And a thousand different solids.
 
 use super::suite::{self, Extent};
 use crate::report::view::View;
@@ -35,6 +36,8 @@ const BALUSTER: &[[f64; 2]] = &[
 const APART: f64 = 1.1;
 /// Copies of each of three solids in the distance.
 const DISTANT: u32 = 200;
+/// The golden ratio less 1: its multiples are spread evenly over the fractions.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// `count` copies on a square field one unit wide, seen whole.
 pub(super) fn field(one: &View, count: u32) -> View {
@@ -54,6 +57,55 @@ pub(super) fn field(one: &View, count: u32) -> View {
     }
     view.name = format!("{}-x{count}", one.name);
     view.framed(50.0)
+}
+
+/// `count` small copies spread over a square, seen from straight above, each 0.6 to 1.3 in size and
+/// turned. The square is 1.2 units wide for each row of copies; the eye is 150 units above ten
+/// thousand.
+pub(super) fn sparse(one: &View, count: u32) -> View {
+    let mut view = one.clone();
+    let side = 1.2 * f64::from(count).sqrt();
+    let part = |k: u32, step: f64| (f64::from(k) * step).fract();
+    // Multiples of the plastic number's first two powers cover a square evenly.
+    let place = |k: u32| Placement {
+        position: DVec3::new(
+            side * (part(k, 0.754_877_666_246_693) - 0.5),
+            side * (part(k, 0.569_840_290_998_053) - 0.5),
+            0.0,
+        ),
+        rotation: DQuat::from_rotation_z(f64::from(k)),
+        scale: DVec3::splat(0.6 + 0.7 * part(k, GOLDEN)),
+    };
+    for object in &mut view.scene.objects {
+        object.instances = (0..count).map(place).collect();
+    }
+    view.name = format!("{}-sparse-{count}", one.name);
+    let camera = &mut view.scene.camera;
+    *camera = Camera::new(DVec3::new(0.0, 0.0, 1.25 * side), DVec3::ZERO);
+    (camera.up, camera.fov_y) = (DVec3::Y, 45.0);
+    view
+}
+
+/// A thousand different solids of nine points on a square, seen whole.
+pub(super) fn thousand() -> Result<View> {
+    let mut scene = suite::views(&Extent::First(1), &[25.0])?
+        .swap_remove(0)
+        .scene;
+    let solid = |k: u32| {
+        let part = |n: u32| (f64::from(n) * GOLDEN).fract();
+        // Of squares, or three points of an outline would be in line.
+        let point = |n: u32| [0.1 + 0.3 * part((7 * k + n).pow(2)), f64::from(n) / 8.0];
+        let mut points = vec![[0.0, 0.0]];
+        points.extend((1..8).map(point));
+        points.push([0.0, 1.0]);
+        let profile = Profile::polygon(&points, 0.5)?;
+        let mut object = Object::new(format!("solid {k}"), Arc::new(profile));
+        object.color = [0, 1, 2].map(|n| 0.2 + 0.6 * part(3 * k + n) as f32);
+        object.placement.position = DVec3::new(f64::from(k % 32), f64::from(k / 32), 0.0);
+        Ok(object)
+    };
+    scene.objects = (0..1000).map(solid).collect::<Result<_>>()?;
+    Ok(View::new("thousand", scene).framed(50.0))
 }
 
 /// Two lines of twelve objects that go into the distance: 300 pixels high to 10 at 800x600.
@@ -76,7 +128,7 @@ pub(super) fn avenue(one: &View) -> View {
 }
 
 /// Copies of a pawn, a rook and a king between 41 and 412 units away: 20 to 2 pixels high at 800x600.
-pub fn distant() -> Result<View> {
+pub(super) fn distant() -> Result<View> {
     let mut objects = Vec::new();
     let mut scene = None;
     for name in ["pawn", "rook", "king"] {
@@ -92,7 +144,7 @@ pub fn distant() -> Result<View> {
         let place = |k: u32| {
             let n = f64::from(k * kinds + kind);
             let away = 41.0 * 10f64.powf(n / f64::from(kinds * DISTANT));
-            let side = 0.9 * ((n * 0.618_033_988_749_895).fract() - 0.5);
+            let side = 0.9 * ((n * GOLDEN).fract() - 0.5);
             Placement {
                 position: DVec3::new(-away, side * away, 0.0),
                 ..Placement::default()
@@ -192,5 +244,34 @@ mod tests {
             let within = |p: &Placement| p.position.max_element() <= 1.0 - width / 2.0 + 1e-9;
             assert!(all.iter().all(within));
         }
+    }
+
+    #[test]
+    fn small_copies_are_spread_and_a_thousand_solids_differ() {
+        let one = &suite::views(&Extent::Named(vec!["pawn".into()]), &[25.0]).unwrap()[0];
+        let view = sparse(one, 2500);
+        view.scene.check().unwrap();
+        assert_eq!(
+            (view.name.as_str(), view.solids()),
+            ("pawn-sparse-2500", 2500)
+        );
+        // As many in each quarter, all within the square below the eye.
+        let all = view.scene.objects[0].placements();
+        let quarter = |p: &&Placement| p.position.x > 0.0 && p.position.y > 0.0;
+        assert!(all.iter().filter(quarter).count().abs_diff(625) < 20);
+        assert!(all.iter().all(|p| p.position.abs().max_element() <= 30.0));
+        assert_eq!(view.scene.camera.eye, DVec3::new(0.0, 0.0, 75.0));
+        let view = thousand().unwrap();
+        view.scene.check().unwrap();
+        assert_eq!(view.solids(), 1000);
+        let outlines = view
+            .scene
+            .objects
+            .iter()
+            .map(|o| &o.profile.outline.loops[0]);
+        let outlines: Vec<_> = outlines.collect();
+        assert!(outlines.iter().all(|points| points.len() == 9));
+        let differs = |k: usize| outlines[..k].iter().all(|other| *other != outlines[k]);
+        assert!((0..1000).all(differs));
     }
 }

@@ -1,6 +1,6 @@
 //! The measurements of a plan: views, settings, and which of them are measured against each other.
 
-use super::file::Measure;
+use super::entry::Measure;
 use crate::floor;
 use crate::method::{Edges, Method, MethodSettings};
 use crate::report::view::View;
@@ -29,15 +29,6 @@ impl Case {
     }
 }
 
-/// The picture that others are compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Truth {
-    /// The double-precision reference.
-    Reference,
-    /// The default search's own picture of so many rays per pixel, in the same stage.
-    Rays(u32),
-}
-
 /// All that is measured in one run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -49,8 +40,9 @@ pub struct Plan {
     pub sweeps: Vec<String>,
     /// True if all views of one size are drawn in turn, not each view by itself.
     pub mixed: bool,
-    /// The picture that others are compared with.
-    pub truth: Truth,
+    /// Rays per pixel of the picture that others are compared with: the default search's own, in the
+    /// same stage; 1: the double-precision reference.
+    pub truth_rays: u32,
     /// True if errors are measured in pixels too.
     pub pixel_errors: bool,
 }
@@ -63,7 +55,7 @@ impl Plan {
             cases: Vec::new(),
             sweeps: Vec::new(),
             mixed: false,
-            truth: Truth::Reference,
+            truth_rays: 1,
             pixel_errors: false,
         }
     }
@@ -133,7 +125,7 @@ impl Plan {
 
     /// Those of the measurements that are compared with one picture.
     pub fn pictures(&self, group: &[usize]) -> Vec<Vec<usize>> {
-        let rays = self.truth != Truth::Reference;
+        let rays = self.truth_rays > 1;
         let key = |k: &usize| {
             let case = &self.cases[*k];
             (case.picture(), rays.then_some(case.settings.stage))
@@ -206,15 +198,8 @@ pub(in crate::report) fn grouped<T, K: PartialEq>(
     groups
 }
 
-/// `solver` at the stage and size of `settings`, all else as drawing takes it.
-pub fn plain(settings: &MethodSettings, method: Method) -> MethodSettings {
-    let plain = MethodSettings::default()
-        .by(method)
-        .storing(settings.planes);
-    plain
-        .in_stage(settings.stage)
-        .sized(settings.width, settings.height)
-}
+/// The RBM baseline's name in reports.
+pub const RBM_BASELINE: &str = "RBM baseline";
 
 /// The loop of the papers at the stage and size of `settings`: circle tracing of 20 steps, under a
 /// bevel of 25 and 10 halvings, on a binary image's distances in 8 bits.
@@ -249,7 +234,7 @@ pub fn is_rbm_baseline(s: &MethodSettings) -> bool {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::{Labels, Pick, RBM_BASELINE};
+    use super::super::Pick;
     use super::*;
     use crate::report::view::tests::spindle;
     use revmap::maps::MapSource;
@@ -306,7 +291,7 @@ mod tests {
         plan.mixed = true;
         assert_eq!(plan.groups().len(), 2);
         // A truth of rays is that of its own stage.
-        plan.truth = Truth::Rays(64);
+        plan.truth_rays = 64;
         assert_eq!(plan.pictures(&plan.groups()[0]).len(), 4);
     }
 
@@ -324,28 +309,5 @@ mod tests {
         plan.views[0].scene.objects[0].offset.bevel = 0.3;
         let settings = plan.cases[0].settings;
         assert_eq!(rbm_baseline(&plan.views[0], &settings).max_steps, Some(25));
-    }
-
-    #[test]
-    fn labels_tell_apart_and_say_no_more() {
-        let cases = plan(1, &[entry()]).cases.into_iter();
-        let ways: Vec<MethodSettings> = cases.map(|c| c.settings).collect();
-        let labels = Labels::new(&ways);
-        assert_eq!(labels.way(&ways[0]), "circle 20 steps binary r16");
-        assert_eq!(labels.way(&ways[7]), "circle 48 steps exact rgba8");
-        let both = [Method::Search(CIRCLE), Method::DEFAULT];
-        let all = Measure {
-            methods: both.map(Pick::Method).to_vec(),
-            ..Measure::default()
-        };
-        let baseline = Measure {
-            methods: vec![Pick::Baseline],
-            ..Measure::default()
-        };
-        let plan = plan(1, &[all, baseline]);
-        let labels = Labels::new(plan.cases.iter().map(|c| &c.settings));
-        assert_eq!(labels.way(&plan.cases[0].settings), "circle");
-        let last = plan.cases.last().unwrap().settings;
-        assert_eq!(labels.way(&last), RBM_BASELINE);
     }
 }

@@ -1,6 +1,6 @@
 //! Changes that the command line makes in a plan.
 
-use super::file::{Measure, Pick};
+use super::entry::{Measure, Pick};
 use super::suite::Extent;
 use crate::method::Method;
 use crate::report::view::{Framing, View};

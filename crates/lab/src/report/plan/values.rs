@@ -1,6 +1,5 @@
 //! Values of a plan's keys, as their files spell them.
 
-use super::file::Pick;
 use crate::method::Edges;
 use crate::report::view::Framing;
 use revmap::maps::{MapFormat, MapSource};
@@ -51,18 +50,13 @@ named!(
     Framing: Self::NAMES
 );
 
-/// Values that are parsed from a word.
-macro_rules! parsed {
-    ($($type:ty),*) => {$(impl Spelled for $type {
-        type Raw = String;
+impl Spelled for Edges {
+    type Raw = String;
 
-        fn read(word: String) -> Result<Self, String> {
-            word.parse().map_err(|e: revmap::error::Error| e.message)
-        }
-    })*};
+    fn read(word: String) -> Result<Self, String> {
+        word.parse().map_err(|e: revmap::error::Error| e.message)
+    }
 }
-
-parsed!(Pick, Edges);
 
 impl Spelled for Tolerance {
     type Raw = f64;

@@ -1,6 +1,6 @@
 //! The views of a plan: solids, arrangements and forms of them.
 
-use super::arrange::{army, avenue, distant, field};
+use super::arrange::{army, avenue, distant, field, sparse, thousand};
 use super::overrides::Overrides;
 use super::suite::{self, Extent};
 use super::values::list;
@@ -61,12 +61,16 @@ pub enum Arrangement {
     Alone,
     /// Copies on a square field, seen whole.
     Field,
+    /// Small copies spread over a square, seen from far above.
+    Sparse,
     /// Two lines that go into the distance.
     Avenue,
     /// Copies of three solids, 2 to 20 pixels high.
     Distant,
     /// Copies of ten solids, seen from within.
     Army,
+    /// A thousand different solids on a square, seen whole.
+    Thousand,
 }
 
 /// A form of the surface.
@@ -138,6 +142,7 @@ impl Views {
         match self.arrange {
             Arrangement::Army => return each(&army),
             Arrangement::Distant => return Ok(vec![distant()?]),
+            Arrangement::Thousand => return Ok(vec![thousand()?]),
             _ => {}
         }
         let solids = self.solids(scenes)?;
@@ -145,6 +150,7 @@ impl Views {
         for one in &solids {
             match self.arrange {
                 Arrangement::Field => all.extend(each(&|n| Ok(field(one, n)))?),
+                Arrangement::Sparse => all.extend(each(&|n| Ok(sparse(one, n)))?),
                 Arrangement::Avenue => all.push(avenue(one)),
                 _ => all.push(one.clone()),
             }

@@ -1,12 +1,10 @@
 //! Submissions side by side: a table and a chart across devices.
 
-use super::{Figure, Line, OnePicture, Submission};
+use super::{Line, OnePicture, Submission};
 use crate::method::Method;
-use crate::report::chart;
-use crate::report::chart::axis::Axis;
-use crate::report::chart::dots::{Block, DotChart};
+use crate::report::chart::Figure;
+use crate::report::chart::dots::{self, Placed};
 use crate::report::chart::style::{Marker, Style, color};
-use crate::report::exhibit;
 use crate::report::folder::{keep_figure, write_text};
 use crate::report::machine;
 use crate::report::names::{number, percent, range};
@@ -19,8 +17,6 @@ use std::path::{Path, PathBuf};
 
 /// Half the width of an interval, relative, above which a ratio is marked as not resolved.
 const RESOLVED: f64 = 0.25;
-/// Lines of a chart.
-const DOTS: usize = 44;
 
 /// A submission and its name among the others.
 pub struct Named {
@@ -76,8 +72,7 @@ pub fn write(all: &[Named], folder: &Path) -> Result<String> {
     let mut page = Page::new("revmap: figures of several devices");
     all.iter().for_each(|one| page.lead(finding(one)));
     page.chapter("Devices");
-    let devices = devices(all);
-    page.table(&devices, &exhibit::left(&devices));
+    page.table(&devices(all));
     page.chapter("Against the RBM baseline");
     page.text("Each method's time of a frame over that of one RBM baseline for both stages, drawn in the fragment stage by the same device: geometric means over the pictures, with 95 % intervals. Below 1 the method is faster. Ratios of devices compare; times depend on what else a machine does.");
     for (count, figure) in charts(all).into_iter().enumerate() {
@@ -88,12 +83,10 @@ pub fn write(all: &[Named], folder: &Path) -> Result<String> {
         keep_figure(folder, &name, &figure)?;
         page.figure(&figure, "Time of each method over that of the RBM baseline on the same device, with its 95 % interval; the numbers at the right are the values. Further left is faster. Markers are filled in the fragment stage and hollow in the compute stage.");
     }
-    let ratios = across(all, &|line| {
-        format!("{} ({})", number(line.ratio[0], 3), ends(&line.ratio))
-    });
-    page.table(&ratios, &[0, 1, 2]);
+    let ratios = across(all, &|line| shown(line.ratio));
+    page.table(&ratios);
     page.heading("Milliseconds");
-    page.table(&across(all, &|line| ms(&line.time_ms)), &[0, 1, 2]);
+    page.table(&across(all, &|line| shown(line.time_ms)));
     page.chapter("Errors");
     page.text("Wrong pixels over the pixels hit, and the geometric mean of the depth errors (99th percentile, h/512), against the double-precision reference.");
     let errors = across(all, &|line| {
@@ -104,12 +97,12 @@ pub fn write(all: &[Named], folder: &Path) -> Result<String> {
             None => "–".to_owned(),
         }
     });
-    page.table(&errors, &[0, 1, 2]);
+    page.table(&errors);
     page.chapter("Shaders");
     page.text("Statistics of the drivers' compilers. A driver without VK_KHR_pipeline_executable_properties gives none.");
     let shaders = shaders(all);
     if !shaders.records.is_empty() {
-        page.table(&shaders, &exhibit::left(&shaders));
+        page.table(&shaders);
     }
     write_text(&folder.join("report.html"), &page.html())?;
     Ok(ratios.aligned())
@@ -119,9 +112,7 @@ pub fn write(all: &[Named], folder: &Path) -> Result<String> {
 fn finding(one: &Named) -> String {
     let default = |stage: &str| {
         let line = main_lines(one).find(|l| l.method == Method::DEFAULT.name() && l.stage == stage);
-        line.map_or("an unknown part".to_owned(), |line| {
-            format!("{} ({})", number(line.ratio[0], 3), ends(&line.ratio))
-        })
+        line.map_or("an unknown part".to_owned(), |line| shown(line.ratio))
     };
     format!(
         "On {} `{}` takes {} of the RBM baseline's time in the fragment stage, and {} in the compute stage.",
@@ -137,12 +128,9 @@ fn main_lines(one: &Named) -> impl Iterator<Item = &Line> {
     one.submission.lines.iter().filter(|l| l.part == "all")
 }
 
-fn ends(figure: &Figure) -> String {
-    range((figure[1], figure[2]))
-}
-
-fn ms(figure: &Figure) -> String {
-    format!("{} ({})", number(figure[0], 3), ends(figure))
+/// `0.5 (0.4 to 0.6)`.
+fn shown([value, low, high]: super::Figure) -> String {
+    format!("{} ({})", number(value, 3), range((low, high)))
 }
 
 /// `results.csv`: a record for each line of each submission.
@@ -266,56 +254,31 @@ fn shaders(all: &[Named]) -> Table {
     Table::new(header, each().map(record).collect())
 }
 
-/// Charts of ratios: a block for each method and stage, a line for each device.
-fn charts(all: &[Named]) -> Vec<chart::Figure> {
-    let lines = || {
-        all.iter()
-            .enumerate()
-            .flat_map(|(k, one)| main_lines(one).map(move |l| (k, l)))
-    };
+/// Charts of ratios: a heading for each method and stage, a line for each device.
+fn charts(all: &[Named]) -> Vec<Figure> {
+    let places = || all.iter().enumerate();
+    let lines = places().flat_map(|(place, one)| main_lines(one).map(move |line| (place, line)));
     // The baseline's own ratio in the fragment stage is 1.
-    let counts = |l: &Line| !(l.method == RBM_BASELINE && l.stage == "fragment");
-    let blocks = grouped(lines().filter(|(_, l)| counts(l)), |(_, l)| {
-        format!("{}, {} stage", l.method, l.stage)
-    });
-    let look = |place: usize, line: &Line| Style {
-        filled: line.stage == "fragment",
-        ..Style::new(
-            color::ALL[place % color::ALL.len()],
-            Marker::ALL[place % Marker::ALL.len()],
-        )
-    };
-    let block = |(name, lines): (String, Vec<(usize, &Line)>)| Block {
-        name,
-        lines: (lines.into_iter())
-            .map(|(place, line)| {
-                let [value, low, high] = line.ratio;
-                let value = Interval::new(value, low, high);
-                chart::dots::Line {
-                    name: all[place].label.clone(),
-                    value,
-                    style: look(place, line),
-                    unresolved: value.relative() > RESOLVED,
-                }
-            })
-            .collect(),
-    };
-    let mut pages: Vec<Vec<Block>> = Vec::new();
-    for block in blocks.into_iter().map(block) {
-        let taken = |page: &Vec<Block>| page.iter().map(|b| b.lines.len()).sum::<usize>();
-        match pages.last_mut() {
-            Some(page) if taken(page) + block.lines.len() <= DOTS => page.push(block),
-            _ => pages.push(vec![block]),
-        }
-    }
-    let figure = |blocks| {
-        let chart = DotChart {
-            title: format!("Time of a frame by device, {RBM_BASELINE} being 1"),
-            axis: Axis::log(format!("time / {RBM_BASELINE}")),
-            mark: Some(1.0),
-            blocks,
+    let lines = lines.filter(|(_, l)| !(l.method == RBM_BASELINE && l.stage == "fragment"));
+    let placed = |(place, line): (usize, &Line)| -> Placed {
+        let [value, low, high] = line.ratio;
+        let value = Interval::new(value, low, high);
+        let marker = Marker::ALL[place % Marker::ALL.len()];
+        let heading = format!("{}, {} stage", line.method, line.stage);
+        let dot = dots::Line {
+            name: all[place].label.clone(),
+            value,
+            style: Style {
+                filled: line.stage == "fragment",
+                ..Style::new(color::ALL[place % color::ALL.len()], marker)
+            },
+            unresolved: value.relative() > RESOLVED,
         };
-        chart.figure()
+        ((heading.clone(), heading), dot)
     };
-    pages.into_iter().map(figure).collect()
+    let groups = grouped(lines.map(placed), |placed| placed.0.1.clone()).into_iter();
+    let lines: Vec<Placed> = groups.flat_map(|(_, lines)| lines).collect();
+    let title = format!("Time of a frame by device, {RBM_BASELINE} being 1");
+    let axis = format!("time / {RBM_BASELINE}");
+    dots::pages(&title, &axis, Some(1.0), &lines)
 }

@@ -3,16 +3,16 @@
 //! A submission is TOML. Comments at its top say what it holds. Its last line is a checksum of all
 //! text before it. The structures here are the whole content: a file with any other key is refused.
 
-mod checksum;
 pub mod gather;
 mod make;
 
-pub use checksum::Pictures;
 pub use make::make;
 
+use super::measure::RenderedCase;
 use super::stats::Interval;
-use checksum::fnv1a_64;
+use crate::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_files::Picture;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -255,6 +255,34 @@ fn figure(interval: Interval) -> Figure {
 /// A number with five digits.
 fn short(value: f64) -> f64 {
     super::names::number(value, 5).parse().unwrap_or(value)
+}
+
+/// FNV-1a of 64 bits (Fowler, Noll, Vo).
+fn fnv1a_64(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+/// Checksums of the pictures of a run: 64 bits over the colours of all pixels, four bytes each, as a
+/// PNG stores them.
+#[derive(Default)]
+pub struct Pictures(Vec<(usize, MethodSettings, u64)>);
+
+impl Pictures {
+    /// Takes a picture.
+    pub fn add(&mut self, seen: &RenderedCase) {
+        let rgba = Picture::of(seen.frame).rgba.concat();
+        self.0
+            .push((seen.case.view, seen.case.settings, fnv1a_64(&rgba)));
+    }
+
+    /// The checksum of a view drawn in one way, in hexadecimal; empty if it was not drawn.
+    fn of(&self, view: usize, settings: &MethodSettings) -> String {
+        let mut all = self.0.iter();
+        let found = all.find(|(v, s, _)| (*v, s) == (view, settings));
+        found.map_or(String::new(), |(_, _, sum)| format!("{sum:016x}"))
+    }
 }
 
 #[cfg(test)]

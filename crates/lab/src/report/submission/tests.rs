@@ -208,3 +208,15 @@ fn devices_stand_side_by_side() {
         "{error}"
     );
 }
+
+/// Vectors of <http://www.isthe.com/chongo/tech/comp/fnv/>.
+#[test]
+fn the_published_vectors() {
+    for (text, sum) in [
+        ("", 0xcbf2_9ce4_8422_2325),
+        ("a", 0xaf63_dc4c_8601_ec8c),
+        ("foobar", 0x8594_4171_f739_67e8),
+    ] {
+        assert_eq!(fnv1a_64(text.as_bytes()), sum, "{text}");
+    }
+}

@@ -57,7 +57,7 @@ fn charts_of_growth_mark_what_is_not_resolved() {
     let drawn = |rows: &[Row]| {
         with_context(rows, |context| {
             let all = context.rows;
-            let figures = growth.chart[0].figures(context, all, &[]);
+            let figures = growth.chart[0].figures(context, all);
             let table = growth.table[0].shown(context, all).unwrap();
             (figures.unwrap().remove(0), table.records[0].clone())
         })

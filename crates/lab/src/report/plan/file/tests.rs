@@ -1,10 +1,11 @@
 #![allow(clippy::unwrap_used)]
 use super::super::{Case, Lists, embedded, is_rbm_baseline, suite};
 use super::*;
-use crate::method::MethodSettings;
+use crate::method::{Method, MethodSettings};
 use crate::report::view::Framing;
 use crate::report::view::tests::spindle;
-use revmap::settings::Solver;
+use revmap::maps::MapFormat;
+use revmap::settings::{DrawStage, Solver};
 
 const SOUND: &str = r#"about = "one"
 title = "t"
