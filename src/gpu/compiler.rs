@@ -112,7 +112,6 @@ impl PipelineCompiler {
             conditions: Conditions {
                 compute: false,
                 passes_cells: true,
-                clips: chosen.clips(),
                 software: false,
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,

@@ -6,7 +6,6 @@ use crate::gpu::resources::solid_cache::Solid;
 use crate::gpu::resources::textures::TextureSet;
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
-use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::solid::outline_cache::OffsetContour;
@@ -155,7 +154,6 @@ impl Entry {
         let [across, up, high] = object.repeat;
         let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
         let begin = |part| surface.and_then(|s| s.slot(part)).map(Slot::begin);
-        let frusta = begin(Part::Frusta);
         Some(ObjectBlock {
             #[allow(clippy::cast_precision_loss)] // at most 16384
             map: [
@@ -199,12 +197,10 @@ impl Entry {
                 .zip(surface)
                 .map_or([0; 4], |(at, s)| s.tables().block(at)),
             parts: [
-                frusta.unwrap_or(0),
+                begin(Part::Frusta).unwrap_or(0),
                 object.material().bits(),
                 begin(Part::Patches).unwrap_or(0),
-                frusta.zip(surface).map_or(0, |(at, s)| {
-                    at + s.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS
-                }),
+                0,
             ],
         })
     }

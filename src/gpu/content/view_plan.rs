@@ -101,7 +101,6 @@ impl Content {
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            clips: self.device.chosen.clips(),
             software: self.device.chosen.report.kind == "cpu",
             subgroup_size: self.device.chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
