@@ -1,13 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Vertices of proxies without patches; their fragments search the tree. Vertices 0 to 13 are the shape box, a strip
-// that an index list unrolls. Strips of the box's sides follow, four vertices each, where a side cuts the solid or a
-// shell of its cells. src/surface/hull.rs explains why the rest of the sides is not drawn.
+// Vertices of shape boxes, whose fragments search the tree: a strip that an index list unrolls.
 #include "stage/vertex.glsl"
 #include "stage/tree_varyings.glsl"
-#include "core/patch_tables.glsl"
-
-const uint BOX_VERTICES = 14u;
 
 vec4 box_corner(Instance i, uint vertex)
 {
@@ -28,43 +23,10 @@ vec4 box_corner(Instance i, uint vertex)
     return clip;
 }
 
-vec4 strip_corner(Instance i, uint vertex)
-{
-    uint strip = vertex >> 2;
-    uint corner = vertex & 3u;
-    uint side = strip & 3u;
-    vec4 row = uintBitsToFloat(patch_tables[object.parts.w + (strip >> 2)]); // lowest and highest z, largest radius
-    // Component 0 is along the side's normal, component 1 is the horizontal one across it.
-    bool along_x = side < 2u;
-    float sense = (side & 1u) == 0u ? 1.0 : -1.0;
-    float R = object.bounds.x;
-    vec2 axis = along_x ? object.axis.xy : object.axis.yx;
-    float away = R - sense * axis.x;
-    float reach = sqrt(max(row.z * row.z - away * away, 0.0));
-    // The strip is widened so that the raster never clips first. A row that does not reach the side has zero width.
-    vec3 grow = reach > 0.0 ? fraction_of_pixel(i) : vec3(0.0);
-    float wider = along_x ? grow.y : grow.x;
-    vec2 ends = clamp(axis.y + vec2(-reach, reach), -R, R) + vec2(-wider, wider);
-    bool right = corner == 1u || corner == 2u;
-    bool turned = along_x == (sense > 0.0);
-    vec2 xy = vec2(sense * R, right == turned ? ends.y : ends.x);
-    float z = corner >= 2u ? row.y + grow.z : row.x - grow.z;
-    vec4 clip = clip_of(i, vec3(along_x ? xy : xy.yx, z));
-    // The triangle moves slightly nearer, since no hit may be before it. An outward move would lose rays along the
-    // side.
-    clip.z += (frame.clip_x.w != 0.0 ? -1e-5 : 1e-5) * frame.dir_y.w;
-    return clip;
-}
-
 void main()
 {
     Instance i = begin(uint(gl_InstanceIndex));
-    uint vertex = uint(gl_VertexIndex);
-    if (vertex < BOX_VERTICES) {
-        gl_Position = box_corner(i, vertex);
-    } else {
-        gl_Position = strip_corner(i, vertex - BOX_VERTICES);
-    }
+    gl_Position = box_corner(i, uint(gl_VertexIndex));
     hand_over(i, frame.dir_00.w);
     hand_over_tree(EVERYWHERE);
 }

@@ -2,15 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Vertices of a proxy of cells: two rings of RING_CORNERS corners for each frustum, with the patches of its cell.
-// CLIPPED: triangles end at the box's sides; proxy_boxes.vert draws the strips there.
 #include "stage/vertex.glsl"
 #include "stage/cell_varyings.glsl"
 #include "core/patch_tables.glsl"
-#include "core/meridian.glsl"
-
-#if CLIPPED
-out float gl_ClipDistance[4];
-#endif
 
 void main()
 {
@@ -20,10 +14,8 @@ void main()
     vec4 rings = uintBitsToFloat(patch_tables[at]);
     vec2 rz = vertex < RING_CORNERS ? rings.xy : rings.zw;
     float angle = float(vertex % RING_CORNERS) * (6.28318530717958648 / float(RING_CORNERS));
-    vec3 corner = vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(object.axis.xy, 0.0);
-    gl_Position = clip_of(i, corner);
+    gl_Position = clip_of(i, vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(object.axis.xy, 0.0));
     hand_over(i, frame.forward.w);
-    cell_sides = sides_of_box();
     cell_record = at;
     if (FETCHED_CELLS == 0u) {
         [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
@@ -31,12 +23,4 @@ void main()
             cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
         }
     }
-#if CLIPPED
-    // The clip planes are outside the sides by a margin, so that no triangle that begins within the sides is lost.
-    vec2 side = object.bounds.x + max(fraction_of_pixel(i).xy, 1e-3);
-    gl_ClipDistance[0] = side.x - corner.x;
-    gl_ClipDistance[1] = side.x + corner.x;
-    gl_ClipDistance[2] = side.y - corner.y;
-    gl_ClipDistance[3] = side.y + corner.y;
-#endif
 }

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces a fragment of a box, of a strip of its sides or of a tile.
+// Traces a fragment of a box or of a quad.
 #include "stage/tree_varyings.glsl"
 #include "core/replicas.glsl"
 #include "stage/outputs.glsl"

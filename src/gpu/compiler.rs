@@ -101,7 +101,6 @@ impl PipelineCompiler {
         Ok(Self {
             conditions: Conditions {
                 passes_cells: true,
-                clips: chosen.clips(),
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,
                 occlusion_culling: true,

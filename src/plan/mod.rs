@@ -20,7 +20,7 @@ pub use view::{DepthOrder, View, Viewport};
 
 use tiles::Projector;
 
-use crate::shader::generated::{BOX_INDICES, RING_CORNERS, STRIP_INDICES};
+use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
 use crate::shader::{Kind, Pushed, Variant};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -59,7 +59,7 @@ pub(crate) struct FramePlan {
 pub(crate) struct Parts {
     /// Tables that searches walk.
     pub tables: bool,
-    /// Frusta of cells, and rows of the box's sides.
+    /// Frusta of cells.
     pub frusta: bool,
     /// Patches that lists are made from.
     pub patches: bool,
@@ -136,7 +136,7 @@ impl Path {
     fn public(&self) -> DrawPath {
         match self {
             Self::Box => DrawPath::Box,
-            Self::Cells { .. } => DrawPath::Cells,
+            Self::Cells(_) => DrawPath::Cells,
             Self::Tiles | Self::Crowd => DrawPath::Tiles,
         }
     }
@@ -208,44 +208,30 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let seen = |outside: bool| Variant {
+            let (kind, outside, draws) = match path {
+                Path::Tiles | Path::Crowd => continue,
+                Path::Box => {
+                    let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
+                    self.parts[n].tables = true;
+                    let outside = of.surface.is_some_and(|s| apart(s));
+                    (Kind::Boxes, outside, vec![draw(BOX_INDICES, 0)])
+                }
+                Path::Cells(frusta) => {
+                    let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
+                    let of_run = |run: &Range<u32>| {
+                        let first = BOX_INDICES + corners(run.start);
+                        draw(corners(run.end - run.start), first)
+                    };
+                    self.parts[n].frusta = true;
+                    (Kind::Cells, true, frusta.iter().map(of_run).collect())
+                }
+            };
+            let variant = Variant {
                 outside: u32::from(outside),
                 ..variants[n]
             };
-            let mut add = |kind: Kind, outside, draws: &mut dyn Iterator<Item = IndexedDraw>| {
-                let key = (seen(outside).of_kind(kind), kind);
-                Layer::of(&mut layers, objects, n, key)
-                    .1
-                    .draws
-                    .extend(draws);
-            };
-            match path {
-                Path::Tiles | Path::Crowd => {}
-                Path::Box => {
-                    let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
-                    let outside = of.surface.is_some_and(|s| apart(s));
-                    add(
-                        Kind::Boxes,
-                        outside,
-                        &mut [draw(BOX_INDICES, 0)].into_iter(),
-                    );
-                    self.parts[n].tables = true;
-                }
-                Path::Cells { frusta, cut } => {
-                    let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
-                    let all = BOX_INDICES + STRIP_INDICES;
-                    let of_run = |run: &Range<u32>| {
-                        draw(corners(run.end - run.start), all + corners(run.start))
-                    };
-                    add(Kind::Cells, !cut, &mut frusta.iter().map(of_run));
-                    if *cut {
-                        let strips = draw(STRIP_INDICES, BOX_INDICES);
-                        add(Kind::Boxes, false, &mut [strips].into_iter());
-                    }
-                    self.parts[n].frusta = true;
-                    self.parts[n].tables |= *cut;
-                }
-            }
+            let (_, layer) = Layer::of(&mut layers, objects, n, (variant.of_kind(kind), kind));
+            layer.draws.extend(draws);
         }
         for layer in layers {
             let first = self.draws.len() as u32;

@@ -36,12 +36,8 @@ pub enum DrawPath {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Path {
     Box,
-    Cells {
-        /// Runs of frusta that may be seen.
-        frusta: Vec<Range<u32>>,
-        /// True if the box's sides cut the solid and are drawn.
-        cut: bool,
-    },
+    /// Runs of frusta that may be seen.
+    Cells(Vec<Range<u32>>),
     Tiles,
     /// Tiles that the device lists.
     Crowd,
@@ -75,8 +71,6 @@ pub(crate) struct Conditions {
     pub compute: bool,
     /// True if the device passes a cell's components from vertices to fragments.
     pub passes_cells: bool,
-    /// True if the device clips triangles by a box's sides.
-    pub clips: bool,
     /// True if the device is a CPU, on which triangles are expensive.
     pub software: bool,
     /// Invocations of a subgroup, which run together.
@@ -131,16 +125,11 @@ pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// True if an object may be drawn by cells. The view, and the sides of the box if they cut it,
-    /// may still rule that out.
+    /// True if an object may be drawn by cells. The view, or a box that cuts it, may still rule that
+    /// out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
         let few = of.copies().len() <= MOST_PROXIES;
         self.shows_patches(of) && !self.compute && self.passes_cells && few
-    }
-
-    /// True if cells may be clipped by the sides of an object's box.
-    fn clips_cells(&self, of: &PlanObject) -> bool {
-        self.clips && proxy::may_be_cut(of.object)
     }
 
     /// True if an object may be drawn by tiles. The box is as good as tiles for one copy whose
@@ -181,7 +170,7 @@ impl Conditions {
             proxy::frusta(of.object, surface, view, least)
         });
         match cells {
-            Some((frusta, cut)) if !cut || self.clips_cells(of) => Path::Cells { frusta, cut },
+            Some(frusta) => Path::Cells(frusta),
             _ if self.takes_tiles(of) && !view.parallel && self.is_crowd(of) => Path::Crowd,
             _ if self.takes_tiles(of) && !view.parallel => Path::Tiles,
             _ => Path::Box,
@@ -250,10 +239,7 @@ impl Conditions {
     pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
         let mut kinds: Vec<(Kind, &[u32])> = Vec::new();
         if self.takes_cells(of) {
-            kinds.push((Kind::Cells, &[1]));
-            if self.clips_cells(of) {
-                kinds.extend([(Kind::Cells, [0].as_slice()), (Kind::Boxes, &[0])]);
-            }
+            kinds.push((Kind::Cells, &[0]));
         }
         if self.is_crowd(of) {
             kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));

@@ -386,7 +386,6 @@ impl View {
 
     /// Framebuffer position of a world point, in pixels from the upper left corner, and its depth
     /// along the view.
-    #[cfg(test)]
     pub(crate) fn project(&self, world: DVec3) -> (DVec2, f64) {
         let from_eye = world - self.eye;
         let depth = from_eye.dot(self.forward);

@@ -93,8 +93,8 @@ pub struct ObjectBlock {
     /// Tables of the quadric search: where they begin, first record, first range, bits of the unit
     /// of `r^2`. Tables of another search: where they begin, and the search's three facts.
     pub patches: [u32; 4],
-    /// First frustum of the cells; roughness and metalness, 16 bits each; first vector of the patches that are listed; first row
-    /// of the box's sides.
+    /// First frustum of the cells; roughness and metalness, 16 bits each; first vector of the patches
+    /// that are listed.
     pub parts: [u32; 4],
 }
 

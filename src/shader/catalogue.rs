@@ -5,12 +5,10 @@
 /// An entry file of `shaders-glsl/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Entry {
-    /// Corners of shape boxes and of strips of their sides.
+    /// Corners of shape boxes.
     BoxVertex,
     /// Corners of cells.
     CellVertex,
-    /// Corners of cells, clipped by the box's sides.
-    ClippedCellVertex,
     /// Quads of tiles.
     QuadVertex,
     /// Corners of tiles.
@@ -25,7 +23,7 @@ pub enum Entry {
     CrowdTiles,
     /// Copies of crowds in order, and their records.
     CrowdOrder,
-    /// Fragments of boxes, strips and quads, which walk the tree.
+    /// Fragments of boxes and quads, which walk the tree.
     Tree,
     /// Lists of the patches that rays of tiles may meet.
     TileLists,
@@ -43,7 +41,7 @@ impl Entry {
     pub const fn file(self) -> &'static str {
         match self {
             Self::BoxVertex => "proxy_boxes.vert",
-            Self::CellVertex | Self::ClippedCellVertex => "proxy_cells.vert",
+            Self::CellVertex => "proxy_cells.vert",
             Self::QuadVertex => "tile_quads.vert",
             Self::TileVertex => "tiles.vert",
             Self::Cells => "cells.frag",
@@ -170,13 +168,7 @@ impl Module {
     pub fn vertices(&self, entry: Entry) -> Self {
         use Search as S;
         let search = match self.search {
-            _ if matches!(
-                entry,
-                Entry::CellVertex | Entry::ClippedCellVertex | Entry::TileVertex
-            ) =>
-            {
-                S::None
-            }
+            _ if matches!(entry, Entry::CellVertex | Entry::TileVertex) => S::None,
             S::Quadric => S::Quadric,
             S::External => S::External,
             _ => S::Live,
@@ -204,9 +196,6 @@ impl Module {
             Search::LiveRgba8 => vec![("SEARCH", "SEARCH_LIVE"), ("RGBA8", "1")],
             Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
-        if self.entry == Entry::ClippedCellVertex {
-            all.push(("CLIPPED", "1"));
-        }
         if self.features >= Features::Textured {
             all.push(("TEXTURED", "1"));
         }
@@ -235,9 +224,6 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
-        if self.entry == Entry::ClippedCellVertex {
-            name.push_str(".clipped");
-        }
         if self.search != Search::None {
             add(&mut name, &self.search);
         }
@@ -313,7 +299,6 @@ pub fn modules() -> Vec<Module> {
             });
         };
         vertex(Entry::CellVertex, Search::None);
-        vertex(Entry::ClippedCellVertex, Search::None);
         for search in [Search::Live, Search::Quadric] {
             vertex(Entry::BoxVertex, search);
             if output == O::Color {

@@ -1,16 +1,16 @@
 //! Proxy hulls in the form that the vertex shader expands.
 
-use crate::shader::generated::{FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS, SIDE_ROWS};
+use crate::shader::generated::{FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices pass to its fragments: the common ones, then a cell's quadrics
-/// and guards, the box's sides and the frustum's number.
-pub(crate) const COMPONENTS: u32 = 4 * (13 + 2 * PATCHES_PER_CELL);
+/// and guards, and the frustum's number.
+pub(crate) const COMPONENTS: u32 = 4 * (12 + 2 * PATCHES_PER_CELL);
 
-/// All output components of these vertices: a position and four clip distances are added.
-pub(crate) const OUTPUTS: u32 = COMPONENTS + 8;
+/// All output components of these vertices: a position is added.
+pub(crate) const OUTPUTS: u32 = COMPONENTS + 4;
 
-/// A hull: its frusta in the layout of `proxy_cells.vert`, then the rows of `proxy_boxes.vert`.
+/// A hull, and its frusta in the layout of `proxy_cells.vert`.
 pub(crate) struct GpuProxyHull {
     pub hull: ProxyHull,
     pub vectors: Vec<[u32; 4]>,
@@ -27,23 +27,12 @@ impl GpuProxyHull {
             ..ProxyHullOptions::default()
         };
         let hull = ProxyHull::new(patches, &options);
-        let mut vectors = pack(&hull, patches);
-        vectors.extend(rows(&hull));
-        let touches = touches(patches);
         Self {
+            vectors: pack(&hull, patches),
+            touches: touches(patches),
             hull,
-            vectors,
-            touches,
         }
     }
-}
-
-/// The rows of `proxy_boxes.vert`: lowest `z`, highest `z`, and the radius that contains the
-/// shells.
-fn rows(hull: &ProxyHull) -> impl Iterator<Item = [u32; 4]> {
-    hull.rows::<{ SIDE_ROWS as usize }>()
-        .into_iter()
-        .map(|[low, high, radius]| [low as f32, high as f32, radius as f32, 0.0].map(f32::to_bits))
 }
 
 /// Points of an outline at a smaller distance count as one, object units. The union of loops rounds
@@ -90,20 +79,16 @@ fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     out
 }
 
-/// Number of vertices of a shape box; the vertices of its sides' strips follow.
+/// Number of vertices of a shape box, as a strip.
 const BOX_VERTICES: u32 = 14;
 
-/// Indices that all proxies share. The box comes first, with its vertices as a strip. The strips of
-/// its sides follow, then this many frusta of two rings of vertices each.
+/// Indices that all proxies share: those of the box, then of this many frusta of two rings of
+/// vertices each.
 pub(crate) fn indices(frusta: u32) -> Vec<u32> {
     // Every second triangle of a strip has the reverse winding.
     let boxes = (0..BOX_VERTICES - 2).flat_map(|k| match k % 2 {
         0 => [k, k + 1, k + 2],
         _ => [k + 1, k, k + 2],
-    });
-    let strips = (0..4 * SIDE_ROWS).flat_map(|strip| {
-        let at = BOX_VERTICES + 4 * strip;
-        [at, at + 1, at + 2, at, at + 2, at + 3]
     });
     let n = RING_CORNERS;
     let frusta = (0..frusta).flat_map(move |frustum| {
@@ -113,26 +98,20 @@ pub(crate) fn indices(frusta: u32) -> Vec<u32> {
             [a + side, a + next, b + next, a + side, b + next, b + side]
         })
     });
-    boxes.chain(strips).chain(frusta).collect()
+    boxes.chain(frusta).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::generated::{BOX_INDICES, STRIP_INDICES};
+    use crate::shader::generated::BOX_INDICES;
 
     /// Draws begin at the indices of the plan.
     #[test]
-    fn indices_of_boxes_strips_and_frusta_follow_each_other() {
+    fn indices_of_frusta_follow_those_of_boxes() {
         let all = indices(3);
-        let (boxes, rest) = all.split_at(BOX_INDICES as usize);
-        let (strips, frusta) = rest.split_at(STRIP_INDICES as usize);
+        let (boxes, frusta) = all.split_at(BOX_INDICES as usize);
         assert!(boxes.iter().all(|v| *v < BOX_VERTICES));
-        assert!(
-            strips
-                .iter()
-                .all(|v| (BOX_VERTICES..BOX_VERTICES + 16 * SIDE_ROWS).contains(v))
-        );
         assert_eq!(frusta.len() as u32, 3 * 6 * RING_CORNERS);
         assert_eq!(frusta.iter().max(), Some(&(3 * 2 * RING_CORNERS - 1)));
     }

@@ -17,17 +17,6 @@
 //! cavities need no special care, and every hit of a fragment is a true point of the boundary. The
 //! argument holds for eyes outside all shells ([`ProxyHull::clear_of`]).
 //!
-//! # Solids that their box cuts
-//!
-//! Only the part between the box's four sides is drawn; floor and ceiling cut the outline itself.
-//! Let Q be the point where a ray comes between the sides, or the eye if it is there. Let P be the
-//! first hit from Q on. If Q is outside the solid and all shells, the ray enters the shell of P's
-//! cell after Q, as it meets nothing in between. Triangles between the sides therefore suffice, and
-//! hits between them. An eye between the sides is in no shell and not in the solid, because the
-//! parts of both between the sides are in front of the near plane. If Q is in the solid or a shell,
-//! it is on a side, no farther from the axis than [`ProxyHull::rows`] gives. The side is drawn
-//! there. Where the side is solid throughout, Q is the hit; elsewhere a search begins at Q.
-//!
 //! # Frusta
 //!
 //! The shell of a cell is a polyline in the half-plane. Each of its parts, turned about the axis in
@@ -158,41 +147,6 @@ impl ProxyHull {
         // Flat sides are nearer to the axis than their corners.
         extent[0] *= (std::f64::consts::PI / f64::from(self.sides)).cos();
         self.extents.push(extent);
-    }
-
-    /// The extent of all shells, as in [`ProxyHull::extents`]; the least radius is 0.
-    #[must_use]
-    pub fn extent(&self) -> [f64; 4] {
-        let none = [0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY];
-        self.extents.iter().fold(none, |m, e| {
-            [0.0, m[1].max(e[1]), m[2].min(e[2]), m[3].max(e[3])]
-        })
-    }
-
-    /// The height of the shells in `N` rows. A row has its lowest `z`, its highest `z` and the
-    /// largest radius of shells in it. The solid is within that radius. The radius is 0 in empty
-    /// rows.
-    #[must_use]
-    pub fn rows<const N: usize>(&self) -> [[f64; 3]; N] {
-        let [_, _, low, high] = self.extent();
-        let step = (high - low) / N as f64;
-        std::array::from_fn(|n| {
-            let [from, to] = [n, n + 1].map(|n| low + n as f64 * step);
-            let within = self.frusta.iter().filter_map(|frustum| {
-                let [a, b] = [frustum.from, frustum.to].map(|p| p.map(f64::from));
-                let (a, b) = if a[1] <= b[1] { (a, b) } else { (b, a) };
-                let (low, high) = (from.max(a[1]), to.min(b[1]));
-                let slope = (b[0] - a[0]) / (b[1] - a[1]);
-                let at = |z: f64| a[0] + (z - a[1]) * slope;
-                let largest = if a[1] < b[1] {
-                    at(low).max(at(high))
-                } else {
-                    a[0].max(b[0])
-                };
-                (low <= high).then_some(largest)
-            });
-            [from, to, within.fold(0.0, f64::max)]
-        })
     }
 
     /// True if an eye at `(r, z)` is outside all shells by at least `margin`. Otherwise front faces

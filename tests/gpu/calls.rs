@@ -257,8 +257,6 @@ pub struct Mask {
     pub compute: bool,
     /// Components between vertex and fragment shader beyond 64, the minimum in Vulkan.
     pub varyings: bool,
-    /// Sub-pixel precision finer than a sixteenth of a pixel.
-    pub sub_pixels: bool,
     /// More than one sample per pixel.
     pub samples: bool,
     pub format: Option<vk::Format>,
@@ -311,9 +309,6 @@ queries! {
         }
         if mask.samples {
             limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
-        }
-        if mask.sub_pixels {
-            limits.sub_pixel_precision_bits = 4;
         }
         if mask.varyings {
             limits.max_fragment_input_components = 64;

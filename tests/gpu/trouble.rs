@@ -223,27 +223,6 @@ fn a_device_without_what_is_needed_is_refused() {
     }
 }
 
-/// The report on hulls matches the drawing: no hulls on devices with coarse sub-pixel precision.
-#[test]
-fn the_report_and_the_features_asked_for_agree() {
-    let (layer, host, entry) = (Layer::take(), open(), entry());
-    for sub_pixels in [false, true] {
-        let mask = Mask {
-            sub_pixels,
-            ..Mask::default()
-        };
-        let instance = layer.instance(&entry, &host.instance, mask);
-        let device = borrow(&host, &host.device, &instance).unwrap();
-        let mut uses = device.report().uses.iter();
-        let hulls = uses.find(|(what, _)| what.starts_with("hulls")).unwrap();
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(&instance, host.physical) }.unwrap();
-        let clips = needs.features.shader_clip_distance == vk::TRUE;
-        assert_eq!(hulls.1, if clips { "yes" } else { "no" });
-        assert!(!(clips && sub_pixels));
-    }
-}
-
 /// A device without optional features draws the same picture.
 #[test]
 fn a_device_without_what_is_optional_draws_the_same() {

@@ -48,8 +48,7 @@ fn refused<T>(why: &str) -> Result<T> {
 /// The floor's module in place of a search's; `None` of boxes' vertices and of lists of tiles.
 fn words(file: &str, macros: &[(&str, &str)]) -> Result<Option<Vec<u32>>> {
     let of = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
-    let cells = file == "proxy_cells.vert" && of("CLIPPED").is_none();
-    if !cells && (file.ends_with(".vert") || of("SEARCH").is_none()) {
+    if file != "proxy_cells.vert" && (file.ends_with(".vert") || of("SEARCH").is_none()) {
         return Ok(None);
     }
     // Contours that do not close are drawn by another search, whose vertices pass other values.

@@ -59,7 +59,7 @@ struct Object {
     uvec4 instances; // first, count, index of the shape map among those of shadows, first vector of all levels' tables
     uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
                      // other searches: table start, three words of their own
-    uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches; first vector of the rows of sides
+    uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches
 };
 
 // An object padded to the largest alignment of uniform buffer offsets on any device.

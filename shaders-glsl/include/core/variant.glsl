@@ -42,9 +42,6 @@
 #ifndef OUTPUT
 #define OUTPUT OUTPUT_COLOR
 #endif
-#ifndef CLIPPED
-#define CLIPPED 0 // 1: the box's sides clip triangles of cells
-#endif
 #ifndef ORTHO
 #define ORTHO 0 // 1: rays are parallel
 #endif
@@ -119,7 +116,6 @@ const uint PATCH_ROWS = 256u; // rows of a solid's tables, a power of 4
 const uint PATCH_NODES = 340u; // nodes of the tree over the rows: 256 + 64 + 16 + 4
 const uint RING_CORNERS = 12u; // corners of a frustum's rings
 const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a cell
-const uint SIDE_ROWS = 32u; // strips per box side that cuts shells
 const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
 const uint TREE_BIN = 4u; // bin of tiles that use the tree; before it, one bin for each length of a list of patches
@@ -158,7 +154,6 @@ const uint ORDER_COPIES = 1u;
 const uint ORDER_TILES = 2u;
 const uint ORDER_RECORDS = 3u;
 const uint ORDER_ENTRIES = 4u;
-const uint BOX_INDICES = 36u; // indices of a shape box; those of the strips of its sides follow
-const uint STRIP_INDICES = 768u; // indices of all strips: 6 each, 4 sides, SIDE_ROWS rows
+const uint BOX_INDICES = 36u; // indices of a shape box
 
 #endif

@@ -9,7 +9,7 @@
 bool trace_cell(vec2 pixel, out Hit hit)
 {
     take_over();
-    PatchRow row = begin_row(varying_rays(), pixel, cell_sides);
+    PatchRow row = begin_row(varying_rays(), pixel);
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * PATCHES_PER_CELL; ++k) {
         uint at = cell_record + 2u * k;

@@ -75,8 +75,14 @@ vec4 listed_vector(uint n)
 
 bool search_listed(uvec2 pixel, out Hit hit)
 {
+    PatchRow row = begin_row(tile_rays, pixel);
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
-    PatchRow row = begin_row(tile_rays, pixel, sides_of_box());
+    if (OUTSIDE == 0u) {
+        vec2 span = between_sides(row.m.o, row.m.v, sides_of_box());
+        row.least = max(row.least, span.x);
+        row.most = span.y;
+        row.best = span.y;
+    }
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
         take_patch_of_row(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
     }

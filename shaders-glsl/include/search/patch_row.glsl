@@ -12,8 +12,7 @@ struct PatchRow {
     vec4 quadric; // patch of the nearest hit so far
 };
 
-// `sides`: sides of the box, relative to the axis. No ray may be in the solid before it enters them.
-PatchRow begin_row(PixelRays rays, vec2 pixel, vec4 sides)
+PatchRow begin_row(PixelRays rays, vec2 pixel)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);
@@ -23,11 +22,6 @@ PatchRow begin_row(PixelRays rays, vec2 pixel, vec4 sides)
     row.m.c = dot(row.m.o.xy, row.m.o.xy);
     row.least = -rays.base;
     row.most = 2e38;
-    if (OUTSIDE == 0u) {
-        vec2 span = between_sides(row.m.o, row.m.v, sides);
-        row.least = max(row.least, span.x);
-        row.most = span.y;
-    }
     row.best = row.most;
     row.quadric = vec4(0.0);
     return row;

@@ -18,15 +18,6 @@ Instance begin(uint number)
     return i;
 }
 
-// Returns at least a twentieth of a pixel anywhere in the box, along the axes of object space.
-vec3 fraction_of_pixel(Instance i)
-{
-    vec3 scale = scale_of(i);
-    float farthest = max(i.scale_depth.z, 0.0) + length(scale * vec3(object.bounds.xx, 0.6));
-    bool parallel = frame.clip_x.w != 0.0;
-    return 0.05 * frame.dir_00.w * (parallel ? 1.0 : farthest) / scale + 1e-5;
-}
-
 // Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w. Must follow the position: a pass of several views
 // draws each frame in all of them, and the frame's own view keeps it.
 void hand_over(Instance i, float scale)

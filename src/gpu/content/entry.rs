@@ -4,7 +4,6 @@ use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
-use crate::shader::generated::FRUSTUM_VECTORS;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
 use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
@@ -200,10 +199,6 @@ impl Entry {
         let (strength, shininess) = (object.specular.strength, object.specular.shininess);
         let first = self.instances.start;
         let begin = |part| surface.and_then(|s| s.slot(part)).map(Slot::begin);
-        let frusta = begin(Part::Frusta);
-        let rows = frusta.zip(surface).map_or(0, |(at, surface)| {
-            at + surface.hull().hull.frusta.len() as u32 * FRUSTUM_VECTORS
-        });
         let tables = begin(Part::Tables).zip(surface);
         Some(ObjectBlock {
             map: [
@@ -237,10 +232,10 @@ impl Entry {
             ],
             patches: tables.map_or([0; 4], |(at, surface)| surface.tables().block(at)),
             parts: [
-                frusta.unwrap_or(0),
+                begin(Part::Frusta).unwrap_or(0),
                 object.material().bits(),
                 begin(Part::Patches).unwrap_or(0),
-                rows,
+                0,
             ],
         })
     }

@@ -106,7 +106,6 @@ impl Content {
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            clips: chosen.clips(),
             software: chosen.report.kind == "cpu",
             subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,

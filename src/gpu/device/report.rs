@@ -59,17 +59,6 @@ impl Candidate {
         self.features.shader_float64 == vk::TRUE
     }
 
-    /// Returns true if triangles can be clipped by the four sides of a box, and corners are placed
-    /// precisely enough for the strips of these sides. Hulls then draw solids that the sides cut.
-    /// SwiftShader places corners at sixteenths of a pixel: 10 pixels of 14,000 were lost along the
-    /// edges of sides.
-    pub fn clips(&self) -> bool {
-        let limits = &self.properties.limits;
-        self.features.shader_clip_distance == vk::TRUE
-            && limits.max_clip_distances >= 4
-            && limits.sub_pixel_precision_bits >= 8
-    }
-
     /// Returns true if squares of up to eight pixels a side are drawn as points. A point takes one
     /// vertex in place of six. A point has no diagonal, along which blocks of pixels are searched
     /// twice.
@@ -115,7 +104,6 @@ impl Candidate {
         vk::PhysicalDeviceFeatures {
             fragment_stores_and_atomics: vk::TRUE,
             sampler_anisotropy: vk::Bool32::from(self.anisotropy().is_some()),
-            shader_clip_distance: vk::Bool32::from(self.clips()),
             large_points: vk::Bool32::from(self.large_points()),
             sample_rate_shading: self.features.sample_rate_shading,
             shader_float64: self.features.shader_float64,
@@ -138,7 +126,6 @@ impl Candidate {
         [
             ("GPU timestamps", timestamps),
             flag("anisotropic filtering", self.anisotropy().is_some()),
-            flag("hulls of solids that their box cuts", self.clips()),
             flag("quads of crowds as points", self.large_points()),
             flag("tiles of crowds listed by device", self.lists_crowds()),
             ("largest map", format!("{side} texels a side")),
