@@ -11,7 +11,7 @@ use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostDevice, Requirements};
+use revmap::gpu::{Device, DrawPath, HostDevice};
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_offscreen::Offscreen;
