@@ -2,27 +2,13 @@
 //! to colour alone, in rounds one after the other. `cargo bench --bench outputs`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
-#[path = "../tests/common/host.rs"]
-#[allow(unused_imports)]
-mod host;
+mod rounds;
 
 use ash::vk;
-use glam::DVec3;
-use host::attachments::Attachments;
-use host::{Host, Options, borrow, dynamic, open_unchecked};
-use revmap::gpu::{Device, Output, PassFormats, Renderer, SlopeBias, View};
-use revmap::scene::Camera;
+use revmap::gpu::{Output, PassFormats, SlopeBias};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
-use std::time::Instant;
-
-const OPTIONS: Options = Options {
-    width: 800,
-    height: 600,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
-};
-const ROUNDS: usize = 41;
+use rounds::host::{Attachments, borrow, dynamic, once, open_unchecked, renderer_of};
+use rounds::{Case, OPTIONS, bishop, compare};
 
 /// Formats as an engine would take them.
 const fn format(plane: Plane) -> (vk::Format, usize) {
@@ -36,82 +22,27 @@ const fn format(plane: Plane) -> (vk::Format, usize) {
     }
 }
 
-/// A renderer, its attachments, and the milliseconds of its frames.
-struct Case<'a> {
-    name: String,
-    renderer: Renderer,
-    into: Attachments<'a>,
-    colors: usize,
-    times: Vec<f64>,
-}
-
-impl<'a> Case<'a> {
-    fn new(
-        host: &'a Host,
-        device: &Device,
-        scene: &revmap::scene::Scene,
-        planes: Planes,
-        slope_bias: SlopeBias,
-    ) -> Self {
-        let list = match planes {
-            Planes::List(list) => list.planes().to_vec(),
-            Planes::Depth { .. } => Vec::new(),
-            _ => vec![Plane::Color],
-        };
-        let formats: Vec<_> = list.iter().map(|plane| format(*plane)).collect();
-        let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
-        let output = Output::Pass(PassFormats {
-            slope_bias,
-            ..PassFormats::new(dynamic(&colors), planes)
-        });
-        let mut renderer = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
-        renderer.set_lighting(&scene.lighting()).unwrap();
-        for object in &scene.objects {
-            renderer.add(object.clone()).unwrap();
-        }
-        let names: Vec<_> = list.iter().map(|plane| format!("{plane:?}")).collect();
-        let name = match planes {
-            Planes::List(_) => format!("list: {}", names.join(", ")),
-            Planes::Depth { .. } if !slope_bias.is_none() => "depth, bias for slopes".into(),
-            Planes::Depth { .. } => "depth".into(),
-            _ => names.join(", "),
-        };
-        Self {
-            name,
-            renderer,
-            into: Attachments::new(host, OPTIONS, &formats).unwrap(),
-            colors: colors.len(),
-            times: Vec::new(),
-        }
-    }
-
-    fn frame(&mut self, host: &Host, view: &View) {
-        let clears = vec![vk::ClearColorValue { uint32: [0; 4] }; self.colors];
-        let begin = Instant::now();
-        host::once(host, |cmd| {
-            // SAFETY: `cmd` is recording; the frame before is done; the pass has the output's
-            // formats.
-            unsafe {
-                let frame = self
-                    .renderer
-                    .prepare(cmd, 0, &view.with_last(view))
-                    .unwrap();
-                let record = || self.renderer.record(cmd, &frame).unwrap();
-                self.into.draw(cmd, &clears, false, record);
-            }
-        });
-        self.times.push(1e3 * begin.elapsed().as_secs_f64());
-    }
+/// The planes of a pass, its colours, and its name.
+fn listed(planes: Planes, slope_bias: SlopeBias) -> (Vec<(vk::Format, usize)>, String) {
+    let list = match planes {
+        Planes::List(list) => list.planes().to_vec(),
+        Planes::Depth { .. } => Vec::new(),
+        _ => vec![Plane::Color],
+    };
+    let names: Vec<_> = list.iter().map(|plane| format!("{plane:?}")).collect();
+    let name = match planes {
+        Planes::List(_) => format!("list: {}", names.join(", ")),
+        Planes::Depth { .. } if !slope_bias.is_none() => "depth, bias for slopes".into(),
+        Planes::Depth { .. } => "depth".into(),
+        _ => names.join(", "),
+    };
+    (list.iter().map(|plane| format(*plane)).collect(), name)
 }
 
 fn main() {
     let host = open_unchecked();
     let device = borrow(&host);
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/bishop.toml");
-    let mut scene = revmap_files::scene(path).unwrap();
-    scene.camera = Camera::new(DVec3::new(1.6, 0.5, 1.0), DVec3::new(0.0, 0.0, 0.5));
-    let size = (OPTIONS.width, OPTIONS.height);
-    let view = View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap();
+    let (scene, view) = bishop();
     use Plane as P;
     let mut lists: Vec<&[Plane]> = vec![&[P::Color]];
     lists.extend(
@@ -132,34 +63,37 @@ fn main() {
         P::Identity,
     ];
     lists.push(&buffer);
-    let listed = lists
-        .iter()
-        .map(|list| Planes::List(PlaneList::new(list).unwrap()));
+    let lists = lists.iter().map(|list| PlaneList::new(list).unwrap());
     let depth = Planes::Depth { parallel: false };
-    let planes = std::iter::once(Planes::Color).chain(listed).chain([depth]);
     let none = SlopeBias::default();
-    let mut cases: Vec<_> = planes
-        .map(|p| Case::new(&host, &device, &scene, p, none))
-        .collect();
-    let bias = SlopeBias::new(1.5, 1e-3).unwrap();
-    cases.push(Case::new(&host, &device, &scene, depth, bias));
-    for _ in 0..ROUNDS {
-        cases.iter_mut().for_each(|case| case.frame(&host, &view));
-    }
-    println!("{}, 800x600, {ROUNDS} rounds", device.report().name);
-    let median = |mut all: Vec<f64>| {
-        all.sort_unstable_by(f64::total_cmp);
-        all[all.len() / 2]
-    };
-    let color = cases[0].times[1..].to_vec();
-    for case in &cases {
-        let times = &case.times[1..];
-        let ratios = times.iter().zip(&color).map(|(a, b)| a / b).collect();
-        println!(
-            "{:6.2} ms {:5.2} {}",
-            median(times.to_vec()),
-            median(ratios),
-            case.name
-        );
-    }
+    let mut passes = vec![(Planes::Color, none)];
+    passes.extend(lists.map(|list| (Planes::List(list), none)));
+    passes.push((depth, none));
+    passes.push((depth, SlopeBias::new(1.5, 1e-3).unwrap()));
+    let made = passes.into_iter().map(|(planes, slope_bias)| {
+        let (formats, name) = listed(planes, slope_bias);
+        let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
+        let output = Output::Pass(PassFormats {
+            slope_bias,
+            ..PassFormats::new(dynamic(&colors), planes)
+        });
+        let renderer = renderer_of(&device, output, &SearchSettings::exact(), 1, &scene);
+        let into = Attachments::new(&host, OPTIONS, &formats).unwrap();
+        ((name, renderer), (into, formats.len()))
+    });
+    let (mut cases, targets): (Vec<Case>, Vec<_>) = made.unzip();
+    println!("{}, 800x600", device.report().name);
+    compare("", &mut cases, |n, (_, renderer)| {
+        let (into, colors) = &targets[n];
+        let clears = vec![vk::ClearColorValue { uint32: [0; 4] }; *colors];
+        once(&host, |cmd| {
+            // SAFETY: `cmd` is recording; the frame before is done; the pass has the output's
+            // formats.
+            unsafe {
+                let frame = renderer.prepare(cmd, 0, &view.with_last(&view)).unwrap();
+                let record = || renderer.record(cmd, &frame).unwrap();
+                into.draw(cmd, &clears, false, record);
+            }
+        });
+    });
 }

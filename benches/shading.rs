@@ -3,42 +3,24 @@
 //! ratio to the library's. `cargo bench --features shaderc --bench shading`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
-#[path = "../tests/common/host.rs"]
-#[allow(unused_imports)]
-mod host;
+mod rounds;
 
 use ash::vk;
-use glam::DVec3;
-use host::attachments::Attachments;
-use host::memory::HostBuffer;
-use host::set::UniformSet;
-use host::{Host, Options, borrow, dynamic, open_unchecked};
-use revmap::gpu::{ComputeTarget, Device, HostShading, Output, PassFormats, Renderer, View};
-use revmap::scene::{Camera, Scene};
+use revmap::gpu::{Device, HostShading, Output, PassFormats, Renderer};
+use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, SearchSettings};
 use revmap::shading::Shading;
-use std::sync::Arc;
-use std::time::Instant;
-
-const OPTIONS: Options = Options {
-    width: 800,
-    height: 600,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
+use rounds::host::{
+    Attachments, HostBuffer, UniformSet, add, barrier, borrow, dynamic, once, open_unchecked,
+    target,
 };
-const ROUNDS: usize = 41;
+use rounds::{Case, OPTIONS, bishop, compare};
+use std::sync::Arc;
+
 const COPY: &str = include_str!("../tests/common/copy.glsl");
 const PLAIN: &str = "vec4 host_shade(Surface s) { return vec4(s.base_color, 1.0); }\n";
 const FORWARD: &str = include_str!("../examples/forward/shade.glsl");
 const LIGHT: &str = include_str!("../examples/forward/light.glsl");
-
-/// A renderer and the milliseconds of its frames.
-struct Case {
-    name: &'static str,
-    renderer: Renderer,
-    times: Vec<f64>,
-}
 
 /// What all frames of a stage draw into.
 enum Into<'a> {
@@ -50,7 +32,7 @@ fn made(
     device: &Device,
     stage: DrawStage,
     scene: &Scene,
-    (name, text): (&'static str, Option<&str>),
+    (name, text): (&str, Option<&str>),
     set: &UniformSet,
 ) -> Case {
     let output = match stage {
@@ -74,67 +56,16 @@ fn made(
         }
     }
     .unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    Case {
-        name,
-        renderer,
-        times: Vec::new(),
-    }
-}
-
-impl Case {
-    fn frame(&mut self, host: &Host, view: &View, into: &Into, set: &UniformSet) {
-        let begin = Instant::now();
-        host::once(host, |cmd| {
-            // SAFETY: `cmd` is recording; the frame before is done; the target is the output's; the
-            // set is of the renderer's layout, or is not read.
-            unsafe {
-                let frame = self.renderer.prepare(cmd, 0, view).unwrap();
-                let layout = self.renderer.pipeline_layout().unwrap();
-                let bind = |point| {
-                    if self.name != "the library's" {
-                        set.bind(cmd, point, layout, 3);
-                    }
-                };
-                match into {
-                    Into::Pass(into) => {
-                        bind(vk::PipelineBindPoint::GRAPHICS);
-                        let record = || self.renderer.record(cmd, &frame).unwrap();
-                        into.draw(cmd, &[vk::ClearColorValue::default()], false, record);
-                    }
-                    Into::Compute(words) => {
-                        let half = 4 * u64::from(OPTIONS.width * OPTIONS.height);
-                        let raw = &host.device;
-                        raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
-                        let written = [vk::MemoryBarrier::default()
-                            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-                            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
-                        let all = vk::PipelineStageFlags::ALL_COMMANDS;
-                        let none = vk::DependencyFlags::empty();
-                        raw.cmd_pipeline_barrier(cmd, all, all, none, &written, &[], &[]);
-                        bind(vk::PipelineBindPoint::COMPUTE);
-                        self.renderer.record_compute(cmd, &frame).unwrap();
-                    }
-                }
-            }
-        });
-        self.times.push(1e3 * begin.elapsed().as_secs_f64());
-    }
+    add(&mut renderer, scene);
+    (name.to_owned(), renderer)
 }
 
 fn main() {
     let host = open_unchecked();
     let device = borrow(&host);
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/bishop.toml");
-    let mut scene = revmap_files::scene(path).unwrap();
-    scene.camera = Camera::new(DVec3::new(1.6, 0.5, 1.0), DVec3::new(0.0, 0.0, 0.5));
-    let size = (OPTIONS.width, OPTIONS.height);
-    let view = View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap();
+    let (scene, view) = bishop();
     let set = UniformSet::of(&host, &[[0.5f32; 4]; 10]).unwrap();
-    println!("{}, 800x600, {ROUNDS} rounds", device.report().name);
+    println!("{}, 800x600", device.report().name);
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let into = match stage {
             DrawStage::Fragment => {
@@ -144,7 +75,7 @@ fn main() {
             DrawStage::Compute => {
                 type Usage = vk::BufferUsageFlags;
                 let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST;
-                let bytes = 8 * (size.0 * size.1) as usize;
+                let bytes = 8 * (OPTIONS.width * OPTIONS.height) as usize;
                 Into::Compute(HostBuffer::new(&host, bytes, usage).unwrap())
             }
         };
@@ -158,34 +89,41 @@ fn main() {
         ];
         let mut cases = texts.map(|text| made(&device, stage, &scene, text, &set));
         if let Into::Compute(words) = &into {
-            for case in &mut cases {
-                let target = ComputeTarget {
-                    words: words.raw,
-                    images: Vec::new(),
-                    depths: true,
-                };
+            for (_, renderer) in &mut cases {
                 // SAFETY: the buffer has two words per pixel, and outlives the renderers.
-                unsafe { case.renderer.set_compute_target(target) }.unwrap();
+                unsafe { renderer.set_compute_target(target(words)) }.unwrap();
             }
         }
-        for _ in 0..ROUNDS {
-            let frame = |case: &mut Case| case.frame(&host, &view, &into, &set);
-            cases.iter_mut().for_each(frame);
-        }
-        report(stage, &cases);
-    }
-}
-
-/// Medians of times, and of ratios to the first case.
-fn report(stage: DrawStage, cases: &[Case]) {
-    let median = |mut all: Vec<f64>| {
-        all.sort_unstable_by(f64::total_cmp);
-        all[all.len() / 2]
-    };
-    for case in cases {
-        let times = &case.times[1..];
-        let ratios = times.iter().zip(&cases[0].times[1..]).map(|(a, b)| a / b);
-        let (ratio, time) = (median(ratios.collect()), median(times.to_vec()));
-        println!("{:8} {time:6.2} ms {ratio:5.2} {}", stage.name(), case.name);
+        let prefix = format!("{:8} ", stage.name());
+        compare(&prefix, &mut cases, |n, (_, renderer)| {
+            once(&host, |cmd| {
+                // SAFETY: `cmd` is recording; the frame before is done; the target is the output's;
+                // the set is of the renderer's layout, or is not read.
+                unsafe {
+                    let frame = renderer.prepare(cmd, 0, &view).unwrap();
+                    let layout = renderer.pipeline_layout().unwrap();
+                    let bind = |point| {
+                        if n > 0 {
+                            set.bind(cmd, point, layout, 3);
+                        }
+                    };
+                    match &into {
+                        Into::Pass(into) => {
+                            bind(vk::PipelineBindPoint::GRAPHICS);
+                            let record = || renderer.record(cmd, &frame).unwrap();
+                            into.draw(cmd, &[vk::ClearColorValue::default()], false, record);
+                        }
+                        Into::Compute(words) => {
+                            let half = 4 * u64::from(OPTIONS.width * OPTIONS.height);
+                            let (raw, far) = (&host.device, 1f32.to_bits());
+                            raw.cmd_fill_buffer(cmd, words.raw, 0, half, far);
+                            barrier(&host, cmd, &[]);
+                            bind(vk::PipelineBindPoint::COMPUTE);
+                            renderer.record_compute(cmd, &frame).unwrap();
+                        }
+                    }
+                }
+            });
+        });
     }
 }

@@ -7,24 +7,16 @@
 //! `out/`; `deferred.png` has a part of each side by side, enlarged.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
-#[path = "../engine/host/mod.rs"]
-#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // the forward host takes the rest
+#[path = "../host/mod.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
 mod host;
-#[path = "../engine/lend.rs"]
-#[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod lend;
 mod passes;
-#[path = "../engine/solids.rs"]
-#[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod solids;
 
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3, Vec4};
-use host::{Fallible, Host, Mesh, Options};
+use host::{Fallible, Host, Mesh, Options, lend, solids};
 use passes::{Blend, Passes};
 use revmap::frame::Frame;
-use revmap::gpu::{
-    self, DepthOrder, ObjectId, Output, PassFormats, PassKind, Renderer, View, Viewport,
-};
+use revmap::gpu::{Device, ObjectId, Renderer, View};
 use revmap::scene::{Material, Placement};
 use revmap::settings::{PlaneList, Planes, SearchSettings};
 
@@ -46,8 +38,7 @@ const WEIGHT: f32 = 0.12;
 
 #[allow(dead_code)] // a test calls `run`
 fn main() -> Fallible<()> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
-    let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
+    let (folder, validate) = lend::arguments();
     let [with, without] = run(&folder, validate)?;
     println!("FLIP against {RAYS} frames: {with:.4} with motion vectors, {without:.4} without");
     Ok(())
@@ -56,11 +47,9 @@ fn main() -> Fallible<()> {
 /// Draws all pictures into a folder. Returns how far those with and without motion vectors are from
 /// the mean of many frames.
 pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
-    std::fs::create_dir_all(folder)?;
-    let host = lend::open(validate)?;
+    let host = lend::open(folder, validate)?;
     // SAFETY: the host outlives the device.
     let device = unsafe { lend::lend(&host) }?;
-    println!("{}", device.report().name);
     let mut pictures = Vec::new();
     for name in ["with-motion", "without-motion", "64-frames"] {
         let mut engine = Engine::new(&host, &device)?;
@@ -101,11 +90,8 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
         ..OPTIONS
     };
     host::write_png(&format!("{folder}/deferred.png"), &all, &srgb(&rows))?;
-    let far = [flip(&truth, &with)?, flip(&truth, &without)?];
-    match host.take_messages().first() {
-        Some(message) => Err(message.clone().into()),
-        None => Ok(far),
-    }
+    lend::check(&host)?;
+    Ok([flip(&truth, &with)?, flip(&truth, &without)?])
 }
 
 /// Positions of samples in a pixel, from its centre (Halton's sequence of bases 2 and 3).
@@ -131,14 +117,10 @@ struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    fn new(host: &'a Host, device: &gpu::Device) -> Fallible<Self> {
-        let planes = PlaneList::new(&passes::PLANES)?;
-        let begun = PassKind::Dynamic {
-            color: passes::FORMATS.to_vec(),
-            depth: host::DEPTH,
-            stencil: ash::vk::Format::UNDEFINED,
-        };
-        let output = Output::Pass(PassFormats::new(begun, Planes::List(planes)));
+    fn new(host: &'a Host, device: &Device) -> Fallible<Self> {
+        let planes = PlaneList::new(&passes::PLANES.map(|(plane, ..)| plane))?;
+        let formats = passes::PLANES.map(|(_, format, _)| format);
+        let output = lend::pass(&OPTIONS, &formats, Planes::List(planes));
         let mut renderer = Renderer::new(device, output, &SearchSettings::default(), 1)?;
         let mut solids = Vec::new();
         for (name, color, metalness) in [
@@ -193,13 +175,7 @@ impl<'a> Engine<'a> {
         let size = DVec2::new(f64::from(OPTIONS.width), f64::from(OPTIONS.height));
         let shift = 2.0 * jitter / size;
         let jittered = DMat4::from_translation(shift.extend(0.0)) * projection;
-        let viewport = Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: size.x,
-            height: size.y,
-        };
-        let seen = View::from_matrices(view, jittered, viewport, DepthOrder::Normal)?;
+        let seen = lend::view([view, jittered], &OPTIONS)?;
         let seen = seen.with_jitter(jitter.to_array());
         let (last, last_clip) = self.last.unwrap_or((seen, projection * view));
         let now = jittered * view;

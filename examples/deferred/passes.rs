@@ -1,29 +1,31 @@
 //! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
 
-use super::host::memory::{HostBuffer, HostImage};
-use super::host::{DEPTH, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options};
-use super::host::{attachments, module};
+use super::host::memory::{HostBuffer, HostImage, barrier};
+use super::host::{Attachments, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, module};
 use ash::vk;
 use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
 use revmap::settings::Plane;
 
-/// The planes of the G-buffer, and their formats.
-pub const PLANES: [Plane; 5] = [
-    Plane::BaseColor,
-    Plane::OctahedralNormal,
-    Plane::Material,
-    Plane::Motion,
-    Plane::Identity,
-];
-pub const FORMATS: [vk::Format; 5] = [
-    vk::Format::R8G8B8A8_SRGB,
-    vk::Format::R16G16_SFLOAT,
-    vk::Format::R8G8_UNORM,
-    vk::Format::R16G16_SFLOAT,
-    vk::Format::R32G32_UINT,
+/// The planes of the G-buffer, their formats, and the bytes of a pixel.
+pub const PLANES: [(Plane, vk::Format, usize); 5] = [
+    (Plane::BaseColor, vk::Format::R8G8B8A8_SRGB, 4),
+    (Plane::OctahedralNormal, vk::Format::R16G16_SFLOAT, 4),
+    (Plane::Material, vk::Format::R8G8_UNORM, 2),
+    (Plane::Motion, vk::Format::R16G16_SFLOAT, 4),
+    (Plane::Identity, vk::Format::R32G32_UINT, 8),
 ];
 const PICTURE: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 type Layout = vk::ImageLayout;
+
+/// The clear value of a plane: no object, or nothing.
+fn clear((plane, ..): (Plane, vk::Format, usize)) -> vk::ClearColorValue {
+    match plane {
+        Plane::Identity => vk::ClearColorValue {
+            uint32: [u32::MAX; 4],
+        },
+        _ => vk::ClearColorValue { float32: [0.0; 4] },
+    }
+}
 
 /// Inputs of light.comp.
 pub struct Lights {
@@ -69,8 +71,8 @@ struct Pushed {
 
 pub struct Passes<'a> {
     options: Options,
-    planes: Vec<HostImage<'a>>,
-    depth: HostImage<'a>,
+    /// The G-buffer and its depth.
+    drawn: Attachments<'a>,
     lit: HostImage<'a>,
     /// The last picture and this one, in turn.
     pictures: [HostImage<'a>; 2],
@@ -93,9 +95,8 @@ pub struct Passes<'a> {
 impl<'a> Passes<'a> {
     pub fn new(host: &'a Host, options: Options) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
-        let sampled = |format| HostImage::with_usage(host, &options, format, 1, U::SAMPLED);
-        let stored = || HostImage::with_usage(host, &options, PICTURE, 1, U::STORAGE);
-        let planes = FORMATS.map(sampled).into_iter().collect::<Fallible<_>>()?;
+        let stored = || HostImage::new(host, &options, PICTURE, U::STORAGE);
+        let formats = PLANES.map(|(_, format, _)| format);
         let bytes = 16 * (options.width * options.height) as usize;
         let null = vk::Pipeline::null();
         let shaders = MeshShaders {
@@ -104,8 +105,11 @@ impl<'a> Passes<'a> {
             sets: &[],
         };
         let mut passes = Self {
-            planes,
-            depth: sampled(DEPTH)?,
+            drawn: Attachments::new(
+                host,
+                options,
+                &PLANES.map(|(_, format, bytes)| (format, bytes)),
+            )?,
             lit: stored()?,
             pictures: [stored()?, stored()?],
             read: HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST)?,
@@ -115,7 +119,7 @@ impl<'a> Passes<'a> {
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
             descriptors: vk::DescriptorPool::null(),
-            mesh: MeshPipeline::new(host, &shaders, &options, vk::RenderPass::null(), &FORMATS)?,
+            mesh: MeshPipeline::new(host, &shaders, &options, vk::RenderPass::null(), &formats)?,
             light: null,
             resolve: null,
             pool: vk::CommandPool::null(),
@@ -181,7 +185,7 @@ impl<'a> Passes<'a> {
             let sets = raw.allocate_descriptor_sets(&info)?;
             for (turn, &set) in sets.iter().enumerate() {
                 let storage = [&self.lit, &self.pictures[turn], &self.pictures[1 - turn]];
-                let images = self.planes.iter().chain([&self.depth]).chain(storage);
+                let images = self.drawn.images().chain(storage);
                 for (image, n) in images.zip(0u32..) {
                     let layout = match n {
                         0..=5 => Layout::SHADER_READ_ONLY_OPTIMAL,
@@ -263,11 +267,11 @@ impl<'a> Passes<'a> {
         unsafe {
             raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
             let prepared = before(cmd)?;
-            self.begin_pass(cmd);
-            self.mesh.draw(cmd, clip_from_world, Vec3::Z, meshes);
-            within(cmd, &prepared)?;
-            raw.cmd_end_rendering(cmd);
-            let drawn = self.planes.iter().chain([&self.depth]);
+            self.drawn.draw(cmd, &PLANES.map(clear), false, || {
+                self.mesh.draw(cmd, clip_from_world, Vec3::Z, meshes);
+                within(cmd, &prepared)
+            })?;
+            let drawn = self.drawn.images();
             let read = drawn.map(|i| i.barrier(i.drawn(), Layout::SHADER_READ_ONLY_OPTIMAL));
             let mut barriers: Vec<_> = read.collect();
             barriers.push(self.lit.barrier(Layout::UNDEFINED, Layout::GENERAL));
@@ -280,7 +284,7 @@ impl<'a> Passes<'a> {
             };
             barriers.push(last.barrier(known, Layout::GENERAL));
             barriers.push(now.barrier(Layout::UNDEFINED, Layout::GENERAL));
-            self.barrier(cmd, &barriers);
+            barrier(self.host, cmd, &barriers);
             let point = vk::PipelineBindPoint::COMPUTE;
             raw.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[self.sets[turn]], &[]);
             for (pipeline, pushed) in [(self.light, &lit), (self.resolve, &blended)] {
@@ -293,55 +297,9 @@ impl<'a> Passes<'a> {
                     groups(self.options.height),
                     1,
                 );
-                self.barrier(cmd, &[]);
+                barrier(self.host, cmd, &[]);
             }
             self.submit()
-        }
-    }
-
-    unsafe fn begin_pass(&self, cmd: vk::CommandBuffer) {
-        let raw = &self.host.device;
-        let drawn = self.planes.iter().chain([&self.depth]);
-        let begun: Vec<_> = drawn
-            .map(|i| i.barrier(Layout::UNDEFINED, i.drawn()))
-            .collect();
-        let attachment = |image: &HostImage, clear| {
-            vk::RenderingAttachmentInfo::default()
-                .image_view(image.view)
-                .image_layout(image.drawn())
-                .load_op(vk::AttachmentLoadOp::CLEAR)
-                .store_op(vk::AttachmentStoreOp::STORE)
-                .clear_value(clear)
-        };
-        let none = vk::ClearColorValue {
-            uint32: [u32::MAX; 4],
-        };
-        let zero = vk::ClearColorValue { float32: [0.0; 4] };
-        let colors: Vec<_> = (self.planes.iter().zip(FORMATS))
-            .map(|(image, format)| {
-                let color = if format == vk::Format::R32G32_UINT {
-                    none
-                } else {
-                    zero
-                };
-                attachment(image, vk::ClearValue { color })
-            })
-            .collect();
-        let depth_stencil = vk::ClearDepthStencilValue {
-            depth: 1.0,
-            stencil: 0,
-        };
-        let depth = attachment(&self.depth, vk::ClearValue { depth_stencil });
-        let info = vk::RenderingInfo::default()
-            .render_area(vk::Rect2D::default().extent(self.options.extent()))
-            .layer_count(1)
-            .color_attachments(&colors)
-            .depth_attachment(&depth);
-        // SAFETY: `cmd` is recording; the images live as long as `self`.
-        unsafe {
-            self.barrier(cmd, &begun);
-            raw.cmd_begin_rendering(cmd, &info);
-            attachments::set_viewport(self.host, cmd, &self.options);
         }
     }
 
@@ -354,20 +312,6 @@ impl<'a> Passes<'a> {
                 .device
                 .cmd_push_constants(cmd, self.layout, stages, 0, bytes)
         };
-    }
-
-    /// Records a barrier between all stages, and of these images.
-    unsafe fn barrier(&self, cmd: vk::CommandBuffer, images: &[vk::ImageMemoryBarrier]) {
-        let memory = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)];
-        let (all, none) = (
-            vk::PipelineStageFlags::ALL_COMMANDS,
-            vk::DependencyFlags::empty(),
-        );
-        let raw = &self.host.device;
-        // SAFETY: `cmd` is recording, outside of a pass.
-        unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &memory, &[], images) };
     }
 
     unsafe fn submit(&self) -> Fallible<()> {
@@ -391,9 +335,9 @@ impl<'a> Passes<'a> {
             raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
             let region = [image.region(&self.options)];
             let copied = Layout::TRANSFER_SRC_OPTIMAL;
-            self.barrier(cmd, &[image.barrier(Layout::GENERAL, copied)]);
+            barrier(self.host, cmd, &[image.barrier(Layout::GENERAL, copied)]);
             raw.cmd_copy_image_to_buffer(cmd, image.raw, copied, self.read.raw, &region);
-            self.barrier(cmd, &[image.barrier(copied, Layout::GENERAL)]);
+            barrier(self.host, cmd, &[image.barrier(copied, Layout::GENERAL)]);
             self.submit()?;
         }
         let colors: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read.bytes());

@@ -5,13 +5,12 @@
 //! last as PNG files into `out/`.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
+#[path = "../host/mod.rs"]
 mod host;
-mod lend;
-mod solids;
 
 use glam::{DQuat, DVec3, Vec3};
-use host::{Fallible, Mesh, Options, Stage};
-use revmap::gpu::{self, DepthOrder, Output, PassFormats, PassKind, View, Viewport};
+use host::{Fallible, Mesh, Options, Stage, lend, solids};
+use revmap::gpu;
 use revmap::profile::Profile;
 use revmap::scene::{Light, Lighting, Object, Offset, Placement, Shadow};
 use revmap::settings::{Planes, SearchSettings};
@@ -20,10 +19,8 @@ use std::sync::Arc;
 const COUNT: u32 = 120;
 
 fn main() -> Fallible<()> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
-    std::fs::create_dir_all(&folder)?;
-    let validate = std::env::var_os(revmap::gpu::VALIDATION_VARIABLE).is_some();
-    let host = lend::open(validate)?;
+    let (folder, validate) = lend::arguments();
+    let host = lend::open(&folder, validate)?;
     // SAFETY: the host outlives the device.
     let device = unsafe { lend::lend(&host) }?;
     let options = Options {
@@ -39,17 +36,9 @@ fn main() -> Fallible<()> {
         Mesh::floor(&host, 2.5, 0.0, Vec3::new(0.35, 0.33, 0.3))?,
         Mesh::sphere(&host, 64, middle, 0.3, Vec3::new(0.2, 0.35, 0.6))?,
     ];
-    let begun = PassKind::Dynamic {
-        color: vec![host::COLOR],
-        depth: host::DEPTH,
-        stencil: ash::vk::Format::UNDEFINED,
-    };
-    let output = Output::Pass(PassFormats {
-        depth: DepthOrder::Reversed,
-        ..PassFormats::new(begun, Planes::Color)
-    });
-    let mut renderer =
-        gpu::Renderer::new(&device, output, &SearchSettings::default(), host::FRAMES)?;
+    let output = lend::pass(&options, &[host::COLOR], Planes::Color);
+    let settings = SearchSettings::default();
+    let mut renderer = gpu::Renderer::new(&device, output, &settings, host::FRAMES)?;
     let light = Light {
         direction: DVec3::new(-0.5, -0.4, -0.8),
         ..Light::default()
@@ -97,25 +86,9 @@ fn main() -> Fallible<()> {
         let eye = DVec3::new(3.2 * (0.3 * phase).cos(), 3.2 * (0.3 * phase).sin(), 1.5);
         let target = DVec3::new(0.0, 0.0, 0.4);
         let [view, projection] = host::view_and_projection(eye, target, &options);
-        let viewport = Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: f64::from(options.width),
-            height: f64::from(options.height),
-        };
-        let seen = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
-        let towards_light = -light.direction.as_vec3();
-        let renderer_cell = std::cell::RefCell::new(&mut renderer);
-        stage.frame(
-            projection * view,
-            towards_light,
-            &meshes,
-            // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of
-            // its pass.
-            |cmd, slot| Ok(unsafe { renderer_cell.borrow_mut().prepare(cmd, slot, &seen) }?),
-            // SAFETY: the frame was prepared, and the pass is of the output's formats.
-            |cmd, frame| Ok(unsafe { renderer_cell.borrow().record(cmd, frame) }?),
-        )?;
+        let seen = lend::view([view, projection], &options)?;
+        let lit = (projection * view, -light.direction.as_vec3());
+        lend::frame(&mut stage, &mut renderer, &seen, lit, &meshes)?;
         if [0, COUNT / 2, COUNT - 1].contains(&frame) {
             let (pixels, _) = stage.read()?;
             let path = format!("{folder}/engine-{frame:03}.png");
@@ -124,16 +97,12 @@ fn main() -> Fallible<()> {
         }
     }
     println!(
-        "{COUNT} frames on {}: {} pipelines compiled, {} surfaces made",
-        device.report().name,
+        "{COUNT} frames: {} pipelines compiled, {} surfaces made",
         device.pipelines_compiled(),
         renderer.rebuild_count()
     );
     stage.wait()?;
-    match host.take_messages().first() {
-        Some(message) => Err(message.clone().into()),
-        None => Ok(()),
-    }
+    lend::check(&host)
 }
 
 /// A row of copies, turned by `phase`.

@@ -7,23 +7,15 @@
 //! renews its bytes.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
-#[path = "../engine/host/mod.rs"]
-#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // other hosts take the rest
+#[path = "../host/mod.rs"]
+#[allow(clippy::duplicate_mod)] // in tests of several hosts
 mod host;
-#[path = "../engine/lend.rs"]
-#[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod lend;
-#[path = "../engine/solids.rs"]
-#[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod solids;
 
 use ash::vk;
-use glam::{DMat4, DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use host::set::UniformSet;
-use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage};
-use revmap::gpu::{
-    self, DepthOrder, HostShading, Output, PassFormats, PassKind, Renderer, View, Viewport,
-};
+use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage, lend, solids};
+use revmap::gpu::{Device, HostShading, Renderer};
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
@@ -47,8 +39,7 @@ const BALL_COLOR: Vec3 = Vec3::new(0.15, 0.3, 0.7);
 
 #[allow(dead_code)] // a test calls `run`
 fn main() -> Fallible<()> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
-    let validate = std::env::var_os(gpu::VALIDATION_VARIABLE).is_some();
+    let (folder, validate) = lend::arguments();
     let [mesh, none] = run(&folder, validate)?;
     println!("pixels that differ: {mesh} with a mesh in place of the ball, {none} without a ball");
     Ok(())
@@ -57,11 +48,9 @@ fn main() -> Fallible<()> {
 /// Draws the pictures into a folder. Returns how many pixels differ visibly if a mesh is in place of
 /// the ball, and if nothing is.
 pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
-    std::fs::create_dir_all(folder)?;
-    let host = lend::open(validate)?;
+    let host = lend::open(folder, validate)?;
     // SAFETY: the host outlives the device.
     let device = unsafe { lend::lend(&host) }?;
-    println!("{}", device.report().name);
     let lights = UniformSet::of(&host, &lights())?;
     let mut pictures = Vec::new();
     for name in ["forward", "forward-mesh", "forward-none"] {
@@ -81,23 +70,13 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
         println!("{path}");
         pictures.push(pixels);
     }
-    match host.take_messages().first() {
-        Some(message) => Err(message.clone().into()),
-        None => Ok([1, 2].map(|n| host::differing(&pictures[0], &pictures[n]))),
-    }
+    lend::check(&host)?;
+    Ok([1, 2].map(|n| host::differing(&pictures[0], &pictures[n])))
 }
 
 /// A renderer that shades by the host's function.
-fn renderer(device: &gpu::Device, lights: &UniformSet) -> Fallible<Renderer> {
-    let begun = PassKind::Dynamic {
-        color: vec![host::COLOR],
-        depth: host::DEPTH,
-        stencil: vk::Format::UNDEFINED,
-    };
-    let output = Output::Pass(PassFormats {
-        depth: DepthOrder::Reversed,
-        ..PassFormats::new(begun, Planes::Color)
-    });
+fn renderer(device: &Device, lights: &UniformSet) -> Fallible<Renderer> {
+    let output = lend::pass(&OPTIONS, &[host::COLOR], Planes::Color);
     let shading = HostShading {
         shading: Arc::new(Shading::from_bytes(SHADING)?),
         set_layout: lights.layout,
@@ -172,18 +151,11 @@ fn picture(
     };
     let mut stage = Stage::with_shaders(host, OPTIONS, &shaders)?;
     let [view, projection] = host::view_and_projection(EYE, DVec3::new(0.0, 0.0, 0.35), &OPTIONS);
-    let viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(OPTIONS.width),
-        height: f64::from(OPTIONS.height),
-    };
-    let seen = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
-    let clip: DMat4 = projection * view;
+    let seen = lend::view([view, projection], &OPTIONS)?;
     let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
     let renderer = RefCell::new(renderer);
     stage.frame(
-        clip,
+        projection * view,
         Vec3::Z,
         meshes,
         // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its
@@ -199,7 +171,5 @@ fn picture(
             Ok(renderer.borrow().record(cmd, frame)?)
         },
     )?;
-    let pixels = stage.read()?.0;
-    stage.wait()?;
-    Ok(pixels)
+    Ok(stage.read()?.0)
 }

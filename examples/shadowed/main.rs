@@ -7,28 +7,19 @@
 //! examples/shadowed/sun.glsl -o examples/shadowed/shade.shading` renews its bytes.
 #![allow(unsafe_code)] // raw handles enter here: each use says what it promises
 
-#[path = "../engine/host/mod.rs"]
-#[allow(dead_code, unused_imports, clippy::duplicate_mod)] // other hosts take the rest
-mod host;
-#[path = "../engine/lend.rs"]
+#[path = "../host/mod.rs"]
 #[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod lend;
+mod host;
 pub mod map;
 pub mod scene;
-#[path = "../engine/solids.rs"]
-#[allow(clippy::duplicate_mod)] // in tests of several hosts
-mod solids;
 
 use ash::vk;
 use glam::{DMat4, Vec3, Vec4};
 pub use host::differing;
 use host::set::UniformSet;
-use host::{Fallible, Host, MeshShaders, Options, Stage};
+use host::{Fallible, Host, MeshShaders, Options, Stage, lend};
 use map::SunMap;
-use revmap::gpu::{
-    self, DepthOrder, HostShading, ObjectId, Output, PassFormats, PassKind, Renderer, View,
-    Viewport,
-};
+use revmap::gpu::{Device, HostShading, ObjectId, PreparedFrame, Renderer, View};
 use revmap::scene::Object;
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
@@ -63,8 +54,7 @@ pub enum Case {
 
 #[allow(dead_code)] // a test calls `run`
 fn main() -> Fallible<()> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| "out".to_owned());
-    let validate = std::env::var_os(gpu::VALIDATION_VARIABLE).is_some();
+    let (folder, validate) = lend::arguments();
     let [all, mesh, empty, fault] = run(&folder, validate)?;
     let [mesh, empty, fault] = [mesh, empty, fault].map(|picture| differing(&all, &picture));
     println!("pixels that differ: {mesh} with a mesh in place of the ball");
@@ -75,11 +65,9 @@ fn main() -> Fallible<()> {
 /// Draws a picture of each case into a folder, and returns them: sRGB, and the visible part of the
 /// sun in alpha.
 pub fn run(folder: &str, validate: bool) -> Fallible<[Vec<u8>; 4]> {
-    std::fs::create_dir_all(folder)?;
-    let host = lend::open(validate)?;
+    let host = lend::open(folder, validate)?;
     // SAFETY: the host outlives the device.
     let device = unsafe { lend::lend(&host) }?;
-    println!("{}", device.report().name);
     let mut pictures = Vec::new();
     for (name, case) in [
         ("shadowed", Case::All),
@@ -95,10 +83,8 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[Vec<u8>; 4]> {
         println!("{path}");
         pictures.push(pixels);
     }
-    match host.take_messages().first() {
-        Some(message) => Err(message.clone().into()),
-        None => Ok(pictures.try_into().map_err(|_| "four pictures")?),
-    }
+    lend::check(&host)?;
+    Ok(pictures.try_into().map_err(|_| "four pictures")?)
 }
 
 /// A renderer of solids for one of the passes, and the row that moves.
@@ -125,7 +111,7 @@ impl Solids {
         cmd: vk::CommandBuffer,
         (frame, slot): (u32, usize),
         view: &View,
-    ) -> revmap::Result<gpu::PreparedFrame> {
+    ) -> revmap::Result<PreparedFrame> {
         let mut renderer = self.renderer.borrow_mut();
         renderer.set_instances(self.row, scene::row(frame))?;
         // SAFETY: as the caller promised.
@@ -133,26 +119,13 @@ impl Solids {
     }
 }
 
-/// The formats of a pass by dynamic rendering.
-fn pass(color: &[vk::Format], depth: DepthOrder, planes: Planes) -> Output {
-    let begun = PassKind::Dynamic {
-        color: color.to_vec(),
-        depth: host::DEPTH,
-        stencil: vk::Format::UNDEFINED,
-    };
-    Output::Pass(PassFormats {
-        depth,
-        ..PassFormats::new(begun, planes)
-    })
-}
-
 /// Renderers of the map and of the picture.
-fn renderers(device: &gpu::Device, set: &UniformSet, case: Case) -> Fallible<[Solids; 2]> {
+fn renderers(device: &Device, set: &UniformSet, case: Case) -> Fallible<[Solids; 2]> {
     let (settings, mut objects) = (SearchSettings::default(), scene::objects(0)?);
     if case == Case::MeshBall {
         objects.pop();
     }
-    let output = pass(&[host::COLOR], DepthOrder::Reversed, Planes::Color);
+    let output = lend::pass(&OPTIONS, &[host::COLOR], Planes::Color);
     let shading = HostShading {
         shading: Arc::new(Shading::from_bytes(SHADING)?),
         set_layout: set.layout,
@@ -162,7 +135,7 @@ fn renderers(device: &gpu::Device, set: &UniformSet, case: Case) -> Fallible<[So
         unsafe { Renderer::with_shading(device, output, &settings, host::FRAMES, &shading) }?;
     let seen = Solids::new(seen, &objects)?;
     let parallel = Planes::Depth { parallel: true };
-    let output = pass(&[], DepthOrder::Normal, parallel);
+    let output = lend::pass(&map::OPTIONS, &[], parallel);
     let casting = Renderer::new(device, output, &settings, host::FRAMES)?;
     if case == Case::BallNotInMap {
         objects.pop();
@@ -191,9 +164,9 @@ pub fn view_and_projection() -> [DMat4; 2] {
 }
 
 /// The last of some frames. Each draws the map, then meshes and solids that read it.
-fn picture(host: &Host, device: &gpu::Device, case: Case) -> Fallible<Vec<u8>> {
+fn picture(host: &Host, device: &Device, case: Case) -> Fallible<Vec<u8>> {
     let map = SunMap::new(host, scene::towards_sun())?;
-    let set = UniformSet::with_images(host, &sun(&map), &[map.described()])?;
+    let set = UniformSet::with_images(host, &sun(&map), &[map.described()?])?;
     let [casting, seen] = renderers(device, &set, case)?;
     let meshes = scene::meshes(host, case == Case::MeshBall)?;
     let shaders = MeshShaders {
@@ -203,13 +176,7 @@ fn picture(host: &Host, device: &gpu::Device, case: Case) -> Fallible<Vec<u8>> {
     };
     let mut stage = Stage::with_shaders(host, OPTIONS, &shaders)?;
     let [view, projection] = view_and_projection();
-    let viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(OPTIONS.width),
-        height: f64::from(OPTIONS.height),
-    };
-    let from_eye = View::from_matrices(view, projection, viewport, DepthOrder::Reversed)?;
+    let from_eye = lend::view([view, projection], &OPTIONS)?;
     let from_sun = map.view()?;
     let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
     for frame in 0..COUNT {
@@ -244,7 +211,5 @@ fn picture(host: &Host, device: &gpu::Device, case: Case) -> Fallible<Vec<u8>> {
             },
         )?;
     }
-    let pixels = stage.read()?.0;
-    stage.wait()?;
-    Ok(pixels)
+    Ok(stage.read()?.0)
 }

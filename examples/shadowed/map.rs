@@ -1,11 +1,13 @@
 //! The sun's shadow map: a depth image, and the pass that draws meshes and solids into it along
 //! parallel rays.
 
-use super::host::memory::HostImage;
-use super::host::{self, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, attachments};
+use super::host::memory::{HostImage, barrier};
+use super::host::{
+    self, Attachments, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, lend,
+};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4, Vec3};
-use revmap::gpu::{DepthOrder, View, Viewport};
+use revmap::gpu::View;
 
 /// The map is square, of so many texels a side.
 pub const SIZE: u32 = 2048;
@@ -18,7 +20,8 @@ pub const TEXEL: f64 = 2.0 * HALF / SIZE as f64;
 /// Depths in the map are farther than the surface by half a texel's side, for what is not flat.
 const BIAS: f64 = 0.5 * TEXEL / (2.0 * DISTANCE);
 
-const OPTIONS: Options = Options {
+/// Options of its pass.
+pub const OPTIONS: Options = Options {
     width: SIZE,
     height: SIZE,
     dynamic: true,
@@ -30,7 +33,7 @@ const READ: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
 /// A map that all frames in flight share: barriers keep their passes apart.
 pub struct SunMap<'a> {
-    image: HostImage<'a>,
+    into: Attachments<'a>,
     sampler: vk::Sampler,
     meshes: MeshPipeline<'a>,
     view: DMat4,
@@ -41,8 +44,7 @@ pub struct SunMap<'a> {
 impl<'a> SunMap<'a> {
     /// A map for the unit direction towards the sun.
     pub fn new(host: &'a Host, towards: DVec3) -> Fallible<Self> {
-        let sampled = vk::ImageUsageFlags::SAMPLED;
-        let image = HostImage::with_usage(host, &OPTIONS, host::DEPTH, 1, sampled)?;
+        let into = Attachments::new(host, OPTIONS, &[])?;
         let (shaders, no_pass) = (MeshShaders::default(), vk::RenderPass::null());
         let meshes = MeshPipeline::new(host, &shaders, &OPTIONS, no_pass, &[])?;
         // SAFETY: plain query and creation; the sampler is destroyed in Drop.
@@ -70,7 +72,7 @@ impl<'a> SunMap<'a> {
         let scale = DVec4::new(1.0 / HALF, -1.0 / HALF, -0.5 / DISTANCE, 1.0);
         let projection = DMat4::from_diagonal(scale);
         Ok(Self {
-            image,
+            into,
             sampler,
             meshes,
             view,
@@ -81,13 +83,7 @@ impl<'a> SunMap<'a> {
 
     /// The solids' view of the map.
     pub fn view(&self) -> revmap::Result<View> {
-        let viewport = Viewport {
-            x: 0.0,
-            y: 0.0,
-            width: f64::from(SIZE),
-            height: f64::from(SIZE),
-        };
-        let seen = View::from_matrices(self.view, self.projection, viewport, DepthOrder::Normal)?;
+        let seen = lend::view([self.view, self.projection], &OPTIONS)?;
         Ok(seen.with_depth_bias(BIAS))
     }
 
@@ -98,12 +94,17 @@ impl<'a> SunMap<'a> {
         to_texture * self.projection * self.view
     }
 
+    /// The depths of the pass.
+    fn image(&self) -> Fallible<&HostImage<'a>> {
+        Ok(self.into.images().last().ok_or("no depth")?)
+    }
+
     /// The map, as a set of the forward pass names it.
-    pub fn described(&self) -> vk::DescriptorImageInfo {
-        vk::DescriptorImageInfo::default()
-            .image_view(self.image.view)
-            .sampler(self.sampler)
-            .image_layout(READ)
+    pub fn described(&self) -> Fallible<vk::DescriptorImageInfo> {
+        let described = vk::DescriptorImageInfo::default()
+            .image_view(self.image()?.view)
+            .sampler(self.sampler);
+        Ok(described.image_layout(READ))
     }
 
     /// Records the pass, and the barriers before and after it.
@@ -116,51 +117,17 @@ impl<'a> SunMap<'a> {
         meshes: &[Mesh<'_>],
         solids: impl FnOnce() -> Fallible<()>,
     ) -> Fallible<()> {
-        use vk::AccessFlags as A;
-        use vk::PipelineStageFlags as S;
-        let device = &self.host.device;
-        let tests = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
-        let written = A::DEPTH_STENCIL_ATTACHMENT_READ | A::DEPTH_STENCIL_ATTACHMENT_WRITE;
-        let (image, drawn) = (&self.image, self.image.drawn());
-        let barrier = |from, to, change: vk::ImageMemoryBarrier<'_>| {
-            let none = vk::DependencyFlags::empty();
-            // SAFETY: `cmd` is recording outside of a pass.
-            unsafe { device.cmd_pipeline_barrier(cmd, from, to, none, &[], &[], &[change]) };
-        };
-        // The frame before has read its map.
-        let emptied = (image.barrier(vk::ImageLayout::UNDEFINED, drawn))
-            .src_access_mask(A::empty())
-            .dst_access_mask(written);
-        barrier(S::FRAGMENT_SHADER, tests, emptied);
-        let far = vk::ClearDepthStencilValue {
-            depth: 1.0,
-            stencil: 0,
-        };
-        let depth = vk::RenderingAttachmentInfo::default()
-            .image_view(image.view)
-            .image_layout(drawn)
-            .load_op(vk::AttachmentLoadOp::CLEAR)
-            .store_op(vk::AttachmentStoreOp::STORE)
-            .clear_value(vk::ClearValue { depth_stencil: far });
-        let info = vk::RenderingInfo::default()
-            .render_area(vk::Rect2D::default().extent(OPTIONS.extent()))
-            .layer_count(1)
-            .depth_attachment(&depth);
         let clip = DMat4::from_translation(BIAS * DVec3::Z) * self.projection * self.view;
+        let image = self.image()?;
         // SAFETY: as the caller promised.
         unsafe {
-            device.cmd_begin_rendering(cmd, &info);
-            attachments::set_viewport(self.host, cmd, &OPTIONS);
-            self.meshes.draw(cmd, clip, Vec3::Z, meshes);
-            let drawn = solids();
-            device.cmd_end_rendering(cmd);
-            drawn?;
+            self.into.draw(cmd, &[], false, || {
+                self.meshes.draw(cmd, clip, Vec3::Z, meshes);
+                solids()
+            })?;
+            // The forward pass reads what was written.
+            barrier(self.host, cmd, &[image.barrier(image.drawn(), READ)]);
         }
-        // The forward pass reads what was written.
-        let read = (image.barrier(drawn, READ))
-            .src_access_mask(A::DEPTH_STENCIL_ATTACHMENT_WRITE)
-            .dst_access_mask(A::SHADER_READ);
-        barrier(tests, S::FRAGMENT_SHADER, read);
         Ok(())
     }
 }

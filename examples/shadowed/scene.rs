@@ -1,7 +1,6 @@
 //! The scene: chessmen, a row of pawns that moves, a ball, and meshes among them.
 
-use super::host::{Fallible, Host, Mesh};
-use super::solids;
+use super::host::{Fallible, Host, Mesh, solids};
 use glam::{DQuat, DVec3, Vec3};
 use revmap::scene::{Object, Offset, Placement};
 

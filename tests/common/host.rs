@@ -1,21 +1,19 @@
-//! The host of `examples/engine` for tests, opened with the validation layers and lent to the
-//! library.
+//! The host of `examples/host` for tests, opened with the validation layers and lent to the library.
 #![allow(unsafe_code, missing_docs, dead_code, clippy::unwrap_used)] // each crate of tests takes what it needs
 
-#[path = "../../examples/engine/host/mod.rs"]
-#[allow(dead_code, unused_imports)]
+#[path = "../../examples/host/mod.rs"]
 mod engine;
 
 use ash::vk;
 #[allow(unused_imports)] // each crate of tests takes what it needs
-pub use engine::*;
+pub use engine::{lend::*, memory::*, set::UniformSet, *};
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
-    DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, Requirements, View,
-    Viewport,
+    ComputeTarget, Device, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer,
+    Requirements, View,
 };
+use revmap::scene::Scene;
 use revmap::settings::{Planes, SearchSettings};
-use std::cell::RefCell;
 
 /// A host that fails its test if the layers have reported a message by its end.
 pub struct Checked(Host);
@@ -49,12 +47,7 @@ pub fn open() -> Checked {
 
 /// A host without validation, for measurements.
 pub fn open_unchecked() -> Host {
-    Host::open(false, |instance, physical| {
-        // SAFETY: both are live.
-        let needs = unsafe { Requirements::of(instance, physical) }?;
-        Ok((needs.queue_family, needs.features))
-    })
-    .unwrap()
+    engine::lend::open(".", false).unwrap()
 }
 
 /// A host with some of the features that the library requires.
@@ -72,14 +65,8 @@ pub fn open_with(
 /// The host's device and queue, to be borrowed.
 pub fn lent(host: &Host) -> HostDevice<'_> {
     HostDevice {
-        instance: &host.instance,
-        physical: host.physical,
-        device: &host.device,
-        queue_family: host.family,
         queue: Some(host.queue),
-        features: host.features,
-        allocator: None,
-        pipeline_cache: None,
+        ..engine::lend::lent(host)
     }
 }
 
@@ -88,29 +75,49 @@ pub fn borrow(host: &Host) -> Device {
     unsafe { Device::borrow(&lent(host)) }.unwrap()
 }
 
-pub fn order(options: &Options) -> DepthOrder {
-    match options.reversed {
-        true => DepthOrder::Reversed,
-        false => DepthOrder::Normal,
-    }
+/// The same through layers of a test above the instance and the device.
+pub fn borrow_through(
+    host: &Host,
+    instance: &ash::Instance,
+    device: &ash::Device,
+) -> revmap::Result<Device> {
+    let planted = HostDevice {
+        instance,
+        device,
+        ..lent(host)
+    };
+    // SAFETY: as in `borrow`; the layers have the functions of the host's own.
+    unsafe { Device::borrow(&planted) }
 }
 
-pub fn viewport(options: &Options) -> Viewport {
-    Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(options.width),
-        height: f64::from(options.height),
-    }
+/// A pass of colours and depth by dynamic rendering.
+pub fn color_pass() -> PassFormats {
+    PassFormats::new(dynamic(&[COLOR]), Planes::Color)
 }
 
-/// A pass by dynamic rendering, of these colours and a depth.
-pub fn dynamic(color: &[vk::Format]) -> PassKind {
-    PassKind::Dynamic {
-        color: color.to_vec(),
-        depth: DEPTH,
-        stencil: vk::Format::UNDEFINED,
-    }
+/// Adds lights and objects of a scene.
+pub fn add(renderer: &mut Renderer, scene: &Scene) -> Vec<ObjectId> {
+    renderer.set_lighting(&scene.lighting()).unwrap();
+    let objects = scene.objects.iter();
+    objects.map(|o| renderer.add(o.clone()).unwrap()).collect()
+}
+
+/// A renderer of a scene, with its own number of slots.
+pub fn renderer_of(
+    device: &Device,
+    output: Output,
+    search: &SearchSettings,
+    slots: usize,
+    scene: &Scene,
+) -> Renderer {
+    let mut renderer = Renderer::new(device, output, search, slots).unwrap();
+    add(&mut renderer, scene);
+    renderer
+}
+
+/// The view of a scene's camera.
+pub fn view_of(scene: &Scene, options: &Options) -> View {
+    View::from_camera(&scene.camera, (options.width, options.height), [0.1, 50.0]).unwrap()
 }
 
 /// A renderer without objects for the stage's pass.
@@ -118,7 +125,7 @@ pub fn renderer(device: &Device, stage: &Stage, search: &SearchSettings, slots: 
     let begun = match stage.options.dynamic {
         true => dynamic(&[COLOR]),
         false => PassKind::RenderPass {
-            pass: stage.pass,
+            pass: stage.into.pass,
             subpass: 0,
         },
     };
@@ -138,18 +145,127 @@ pub fn frame(
     clip: DMat4,
     meshes: &[Mesh],
 ) {
-    let renderer = RefCell::new(renderer);
-    stage
-        .frame(
-            clip,
-            Vec3::Z,
-            meshes,
-            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-            |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
-            // SAFETY: the frame was prepared, the pass has the output's formats.
-            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
-        )
-        .unwrap();
+    engine::lend::frame(stage, renderer, view, (clip, Vec3::Z), meshes).unwrap();
+}
+
+/// Draws a frame of the first slot into attachments, with the set of the host's shading, and waits.
+pub fn draw_into(
+    host: &Host,
+    into: &Attachments,
+    clears: &[vk::ClearColorValue],
+    renderer: &mut Renderer,
+    view: &View,
+    set: Option<&UniformSet>,
+) {
+    once(host, |cmd| {
+        // SAFETY: `cmd` is recording; no frame is in flight; the pass has the output's formats, and
+        // the layout has the set.
+        unsafe {
+            let frame = renderer.prepare(cmd, 0, view).unwrap();
+            if let Some(set) = set {
+                let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
+                set.bind(cmd, point, layout.unwrap(), 3);
+            }
+            let record = || renderer.record(cmd, &frame).unwrap();
+            into.draw(cmd, clears, false, record);
+            into.copy(cmd);
+        }
+    });
+}
+
+/// A buffer of two words a pixel as the target of compute.
+pub fn target(words: &HostBuffer) -> ComputeTarget {
+    ComputeTarget {
+        words: words.raw,
+        images: Vec::new(),
+        depths: true,
+    }
+}
+
+/// Draws a frame of the first slot in compute over words of depth and colour, two a pixel, and
+/// returns them.
+pub fn draw_words(
+    host: &Host,
+    words: &[u32],
+    renderer: &mut Renderer,
+    view: &View,
+    set: Option<&UniformSet>,
+) -> Vec<u32> {
+    let buffer = HostBuffer::of(host, words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
+    // SAFETY: the buffer has two words per pixel, and no later frame is drawn into it.
+    unsafe { renderer.set_compute_target(target(&buffer)) }.unwrap();
+    once(host, |cmd| {
+        // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
+        unsafe {
+            let frame = renderer.prepare(cmd, 0, view).unwrap();
+            if let Some(set) = set {
+                let (point, layout) = (vk::PipelineBindPoint::COMPUTE, renderer.pipeline_layout());
+                set.bind(cmd, point, layout.unwrap(), 3);
+            }
+            renderer.record_compute(cmd, &frame).unwrap();
+            barrier(host, cmd, &[]);
+        }
+    });
+    bytemuck::pod_collect_to_vec(&buffer.bytes())
+}
+
+/// A texture of one level, and a sampler that repeats around the axis, as the library's does.
+pub struct Texture<'a> {
+    pub sampler: vk::Sampler,
+    pub memory: HostImage<'a>,
+    host: &'a Host,
+}
+
+impl<'a> Texture<'a> {
+    /// A square texture.
+    pub fn new(host: &'a Host, format: vk::Format, texels: &[[u8; 4]]) -> Self {
+        let side = texels.len().isqrt() as u32;
+        let size = Options {
+            width: side,
+            height: side,
+            dynamic: true,
+            samples: 1,
+            reversed: false,
+        };
+        type Usage = vk::ImageUsageFlags;
+        let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
+        let memory = HostImage::new(host, &size, format, usage).unwrap();
+        let from = HostBuffer::of(host, texels, vk::BufferUsageFlags::TRANSFER_SRC).unwrap();
+        let to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let read = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+        once(host, |cmd| {
+            // SAFETY: `cmd` is recording; the buffer outlives the submission.
+            unsafe {
+                barrier(host, cmd, &[memory.barrier(vk::ImageLayout::UNDEFINED, to)]);
+                let region = [memory.region(&size)];
+                (host.device).cmd_copy_buffer_to_image(cmd, from.raw, memory.raw, to, &region);
+                barrier(host, cmd, &[memory.barrier(to, read)]);
+            }
+        });
+        let info = vk::SamplerCreateInfo::default()
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .mag_filter(vk::Filter::LINEAR)
+            .min_filter(vk::Filter::LINEAR);
+        // SAFETY: a plain creation, destroyed in Drop.
+        let sampler = unsafe { host.device.create_sampler(&info, None) }.unwrap();
+        Self {
+            sampler,
+            memory,
+            host,
+        }
+    }
+
+    pub fn image(&self) -> revmap::gpu::HostImage {
+        // SAFETY: tests drop textures after renderers, or when they are held no more.
+        unsafe { revmap::gpu::HostImage::new(self.memory.view, self.sampler) }.unwrap()
+    }
+}
+
+impl Drop for Texture<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the device is done with it.
+        unsafe { self.host.device.destroy_sampler(self.sampler, None) };
+    }
 }
 
 /// Records commands, submits them and waits.

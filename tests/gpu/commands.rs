@@ -1,15 +1,12 @@
 //! The commands of a frame are counted between the renderer and Vulkan. Their number follows the
 //! pipelines and texture sets, whatever the number of objects and copies.
 
-use crate::common::host::memory::HostBuffer;
-use crate::common::host::once;
-use crate::common::host::{lent, open};
+use crate::calls::planted_device;
+use crate::common::host::{HostBuffer, assert_silent, barrier, borrow_through, once, open};
 use crate::common::{placement, scene_of, shapes};
-use crate::embedding::assert_silent;
-use crate::embedding_outputs::barrier;
 use ash::vk;
 use glam::DVec3;
-use revmap::gpu::{Device, HostDevice};
+use revmap::gpu::Device;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Planes, Settings, Tolerance};
 use revmap_offscreen::Offscreen;
@@ -52,21 +49,13 @@ macro_rules! counted {
 
         /// The device with this layer above it.
         fn layer(instance: &ash::Instance, device: &ash::Device) -> ash::Device {
-            let get = instance.fp_v1_0().get_device_proc_addr;
-            let handle = device.handle();
-            let load = |name: &std::ffi::CStr| {
-                // SAFETY: the device is live.
-                let real = unsafe { get(handle, name.as_ptr()) }.map_or(0, |f| f as usize);
-                match name.to_str() {
-                    $(Ok($name) => {
-                        calls::$command::REAL.store(real, SeqCst);
-                        calls::$command::call as *const c_void
-                    })*
-                    _ => real as *const c_void,
-                }
-            };
-            // SAFETY: each wrapper has the signature of the function that it replaces.
-            unsafe { ash::Device::load_with(load, handle) }
+            planted_device(instance, device, |name, real| match name.to_str() {
+                $(Ok($name) => {
+                    calls::$command::REAL.store(real, SeqCst);
+                    Some(calls::$command::call as *const c_void)
+                })*
+                _ => None,
+            })
         }
     };
 }
@@ -176,12 +165,7 @@ fn commands_follow_pipelines() {
         .unwrap_or_else(std::sync::PoisonError::into_inner);
     let host = open();
     let raw = layer(&host.instance, &host.device);
-    let of_host = HostDevice {
-        device: &raw,
-        ..lent(&host)
-    };
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe { Device::borrow(&of_host) }.unwrap();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let all = |c: &Counts| {
         let draws = c.draws + c.indexed + c.indirect + c.indirect_draws;
         c.barriers + c.fills + c.pipelines + draws + c.dispatches + c.indirect_dispatches
@@ -241,8 +225,10 @@ fn an_update_is_noticed() {
     taken();
     once(&host, |cmd| {
         // SAFETY: `cmd` is recording outside of a pass; the buffer outlives it.
-        unsafe { raw.cmd_update_buffer(cmd, words.raw, 0, &7u32.to_le_bytes()) };
-        barrier(&host, cmd);
+        unsafe {
+            raw.cmd_update_buffer(cmd, words.raw, 0, &7u32.to_le_bytes());
+            barrier(&host, cmd, &[]);
+        }
     });
     assert_eq!(taken().updates, 1);
     assert_eq!(words.bytes()[..4], 7u32.to_le_bytes());

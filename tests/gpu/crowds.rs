@@ -1,7 +1,7 @@
 //! Crowds: copies proven hidden are left out, and no pixel changes.
 
 use crate::common::ways::{STAGES, apart};
-use crate::common::{device, next_frame, shapes};
+use crate::common::{device, next_frame, shapes, updated};
 use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
 use revmap::gpu::DrawPath;
@@ -140,12 +140,20 @@ pub const VIEWS: [(&str, DVec3, DVec3); 4] = [
     ),
 ];
 
+/// A scene from each of these views.
+pub fn seen(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> {
+    VIEWS.into_iter().map(|(name, eye, target)| {
+        let mut scene = scene.clone();
+        (scene.camera.eye, scene.camera.target) = (eye, target);
+        (name, scene)
+    })
+}
+
 /// A solid behind the eye takes no part in the range of depths, so hits keep their order.
 #[test]
 fn a_solid_behind_the_eye_changes_no_pixel() {
-    for (name, eye, target) in VIEWS {
-        let mut scene = army(700);
-        (scene.camera.eye, scene.camera.target) = (eye, target);
+    for (name, scene) in seen(&army(700)) {
+        let (eye, target) = (scene.camera.eye, scene.camera.target);
         let mut behind = scene.clone();
         let mut object = Object::new("behind", Arc::new(shapes::vase()));
         object.placement.position = eye + 10.0 * (eye - target);
@@ -165,9 +173,7 @@ fn a_solid_behind_the_eye_changes_no_pixel() {
 /// Pictures are equal bit for bit, with and without culling, in either stage.
 #[test]
 fn culled_copies_are_not_missed() {
-    for (name, eye, target) in VIEWS {
-        let mut scene = army(700);
-        (scene.camera.eye, scene.camera.target) = (eye, target);
+    for (name, scene) in seen(&army(700)) {
         let frames: Vec<Frame> = STAGES
             .into_iter()
             .flat_map(|stage| [true, false].map(|cull| draw(&scene, &by_tree(stage, cull))))
@@ -211,9 +217,8 @@ fn a_crowd_is_as_many_single_objects() {
     for stage in STAGES {
         let settings = by_tree(stage, true);
         let one = draw(&scene, &settings);
-        let mut offscreen = Offscreen::new(device(), &single, &settings).unwrap();
-        offscreen.draw().unwrap();
-        assert_same_bits(&one, &offscreen.read().unwrap(), &format!("{stage:?}"));
+        let apart = next_frame(&mut Offscreen::new(device(), &single, &settings).unwrap());
+        assert_same_bits(&one, &apart, &format!("{stage:?}"));
     }
     device().check().unwrap();
 }
@@ -232,24 +237,19 @@ fn hidden_copies_throw_shadows_and_come_back() {
         assert_near(&culled, &listed, &format!("{stage:?}, shadows"));
         scene.shadow = Shadow::Off;
         let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
-        for (name, eye, target) in VIEWS {
-            (scene.camera.eye, scene.camera.target) = (eye, target);
-            offscreen.update(&scene).unwrap();
-            offscreen.draw().unwrap();
-            let moved = offscreen.read().unwrap();
+        for (name, scene) in seen(&scene) {
+            let moved = updated(&mut offscreen, &scene);
             let fresh = draw(&scene, &settings(stage, true));
             assert_same_bits(&moved, &fresh, &format!("{stage:?}, {name}"));
         }
         // One object changes, and so does the part of the others that it hides.
         scene.objects[1].instances.truncate(3);
-        offscreen.update(&scene).unwrap();
-        offscreen.draw().unwrap();
-        let fresh = draw(&scene, &settings(stage, true));
-        assert_same_bits(
-            &offscreen.read().unwrap(),
-            &fresh,
-            &format!("{stage:?}, fewer"),
+        (scene.camera.eye, scene.camera.target) = (VIEWS[3].1, VIEWS[3].2);
+        let (fewer, fresh) = (
+            updated(&mut offscreen, &scene),
+            draw(&scene, &settings(stage, true)),
         );
+        assert_same_bits(&fewer, &fresh, &format!("{stage:?}, fewer"));
     }
     device().check().unwrap();
 }

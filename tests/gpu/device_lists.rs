@@ -1,12 +1,12 @@
 //! Tiles of crowds that the device lists show what the host's lists show.
 
 use crate::common::ways::STAGES;
-use crate::common::{device, placement, scene_of, shapes};
-use crate::crowds::{VIEWS, army, assert_same_bits, by_tree, draw};
+use crate::common::{device, next_frame, placement, scene_of, shapes, updated};
+use crate::crowds::{VIEWS, army, assert_same_bits, by_tree, draw, seen};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::ColorMap;
-use revmap::scene::{Object, Scene};
+use revmap::scene::Object;
 use revmap::settings::{Settings, Solver, Tolerance};
 use revmap_lab::compare::pixel_errors;
 use revmap_offscreen::Offscreen;
@@ -27,9 +27,7 @@ fn listed(settings: Settings) -> Settings {
 /// Pictures are equal bit for bit, in either stage, with and without culling.
 #[test]
 fn the_device_lists_what_the_host_lists() {
-    for (name, eye, target) in VIEWS {
-        let mut scene = army(700);
-        (scene.camera.eye, scene.camera.target) = (eye, target);
+    for (name, scene) in seen(&army(700)) {
         for stage in STAGES {
             let wanted = draw(&scene, &by_tree(stage, true));
             for cull in [true, false] {
@@ -45,9 +43,7 @@ fn the_device_lists_what_the_host_lists() {
 /// a coarse copy, and the device chooses as the host does.
 #[test]
 fn copies_have_levels_of_their_own() {
-    for (name, eye, target) in VIEWS {
-        let mut scene = army(700);
-        (scene.camera.eye, scene.camera.target) = (eye, target);
+    for (name, scene) in seen(&army(700)) {
         for stage in STAGES {
             let levelled = |cull| Settings {
                 tolerance: Tolerance::DEFAULT,
@@ -77,10 +73,9 @@ fn copies_have_levels_of_their_own() {
 /// of one look are in storage buffers.
 #[test]
 fn levels_of_the_only_object_have_equal_bits() {
-    for (name, eye, target) in VIEWS {
-        let mut one = army(700);
-        one.objects = vec![one.objects.swap_remove(1)];
-        (one.camera.eye, one.camera.target) = (eye, target);
+    let mut army = army(700);
+    army.objects = vec![army.objects.swap_remove(1)];
+    for (name, one) in seen(&army) {
         let mut two = one.clone();
         let (first, rest) = one.objects[0].instances.split_at(100);
         two.objects.push(one.objects[0].clone());
@@ -118,9 +113,7 @@ fn crowds_stand_among_other_solids() {
     (scene.camera.eye, scene.camera.target) = (VIEWS[1].1, VIEWS[1].2);
     for stage in STAGES {
         let offscreen = |settings: &Settings| {
-            let mut all = Offscreen::new(device(), &scene, settings).unwrap();
-            all.draw().unwrap();
-            all.read().unwrap()
+            next_frame(&mut Offscreen::new(device(), &scene, settings).unwrap())
         };
         let settings = by_tree(stage, true);
         let (found, wanted) = (offscreen(&listed(settings)), offscreen(&settings));
@@ -144,15 +137,10 @@ fn frames_before_change_nothing() {
     for stage in STAGES {
         let settings = listed(by_tree(stage, true));
         let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
-        let mut show = |scene: &Scene| {
-            offscreen.update(scene).unwrap();
-            offscreen.draw().unwrap();
-            offscreen.read().unwrap()
-        };
         let mut first: Vec<Frame> = Vec::new();
         for n in [0, 1, 2, 3, 1, 0, 3, 2] {
             (scene.camera.eye, scene.camera.target) = (VIEWS[n].1, VIEWS[n].2);
-            let frame = show(&scene);
+            let frame = updated(&mut offscreen, &scene);
             match first.get(n) {
                 Some(before) => assert_same_bits(&frame, before, VIEWS[n].0),
                 None => first.push(frame),
@@ -177,10 +165,12 @@ fn copies_move_come_and_go() {
             for (n, copy) in moved.objects[0].instances.iter_mut().enumerate() {
                 copy.position += DVec3::new(0.3, 0.1, 0.01 * n as f64);
             }
-            offscreen.update(&moved).unwrap();
-            offscreen.draw().unwrap();
             let wanted = draw(&moved, &by_tree(stage, true));
-            assert_same_bits(&offscreen.read().unwrap(), &wanted, &format!("{count}"));
+            assert_same_bits(
+                &updated(&mut offscreen, &moved),
+                &wanted,
+                &format!("{count}"),
+            );
         }
     }
     device().check().unwrap();

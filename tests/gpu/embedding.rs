@@ -1,8 +1,7 @@
 //! The renderer in a host that owns device, pass, depth buffer and frames in flight. The host is
-//! that of `examples/engine`, with the validation layers' synchronization checks.
+//! that of `examples/host`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-pub use crate::common::host::assert_silent;
 use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
 use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
@@ -75,10 +74,7 @@ pub fn drawn_by(
 ) -> (Vec<u8>, Vec<f32>) {
     let mut stage = Stage::new(host, options).unwrap();
     let mut renderer = host::renderer(device, &stage, settings, host::FRAMES);
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
+    host::add(&mut renderer, scene);
     for _ in 0..3 {
         frame(&mut stage, &mut renderer, view, DMat4::IDENTITY, &[]);
     }

@@ -1,12 +1,12 @@
 //! Biases of depths, for shadow maps: constant, and by the slope of the surface.
 
-use crate::common::host::{self, borrow, dynamic, open, viewport};
+use crate::common::host::{self, borrow, color_pass, open, viewport};
 use crate::embedding::{options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, depths, parallel, seen};
 use glam::{DMat4, DVec4};
 use revmap::error::ErrorKind;
 use revmap::gpu::{DepthOrder, Output, PassFormats, Renderer, SlopeBias, View};
-use revmap::settings::{Planes, SearchSettings};
+use revmap::settings::SearchSettings;
 
 /// A bias shifts the depth of every hit, and nothing else.
 #[test]
@@ -19,7 +19,7 @@ fn a_bias_shifts_depths() {
     let light = seen(view, projection);
     let exact = SearchSettings::exact();
     let [plain, shifted] = [light, light.with_depth_bias(1e-3)]
-        .map(|light| depths(&host, &device, &scene, &light, &exact, &depth_only(false)));
+        .map(|light| depths(&host, &device, &scene, &light, &exact, &depth_only(false)).0);
     let mut hits = 0;
     for (a, b) in plain.iter().zip(&shifted).filter(|(a, _)| **a < 1.0) {
         assert!((b - a - 1e-3).abs() < 2e-7, "{a} {b}");
@@ -91,8 +91,8 @@ fn a_bias_follows_slopes() {
                 slope_bias: SlopeBias::new(factor, limit).unwrap(),
                 ..pass.clone()
             };
-            let [plain, biased] =
-                [pass, sloped].map(|pass| depths(&host, &device, &scene, &light, &settings, &pass));
+            let [plain, biased] = [pass, sloped]
+                .map(|pass| depths(&host, &device, &scene, &light, &settings, &pass).0);
             let [plain, biased] = [plain, biased].map(|depths| match order {
                 DepthOrder::Normal => depths,
                 DepthOrder::Reversed => depths.iter().map(|depth| 1.0 - depth).collect(),
@@ -128,7 +128,7 @@ fn wrong_slope_biases_are_refused() {
     let host = open();
     let output = Output::Pass(PassFormats {
         slope_bias: SlopeBias::new(1.0, 1.0).unwrap(),
-        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
+        ..color_pass()
     });
     let refused = Renderer::new(&borrow(&host), output, &SearchSettings::exact(), 1);
     let refused = refused.err().unwrap().to_string();

@@ -2,9 +2,9 @@
 //! into the last frame.
 #![allow(unsafe_code)]
 
-use crate::common::host::attachments::Attachments;
-use crate::common::host::once;
-use crate::common::host::{self, Host, Options, borrow, dynamic, open, viewport};
+use crate::common::host::{
+    self, Attachments, Host, Options, borrow, dynamic, open, view_of, viewport,
+};
 use crate::common::{draw, shapes, sized};
 use crate::embedding::{options, three};
 use ash::vk;
@@ -61,10 +61,8 @@ impl<'a> Lists<'a> {
     ) -> Self {
         let (output, formats) = listed(planes);
         let mut renderer = Renderer::new(device, output, settings, 1).unwrap();
-        renderer.set_lighting(&scene.lighting()).unwrap();
-        let objects = scene.objects.iter();
         Self {
-            ids: objects.map(|o| renderer.add(o.clone()).unwrap()).collect(),
+            ids: host::add(&mut renderer, scene),
             renderer,
             into: Attachments::new(host, options(), &formats).unwrap(),
             planes: planes.to_vec(),
@@ -80,16 +78,8 @@ impl<'a> Lists<'a> {
             _ => vk::ClearColorValue { float32: [0.0; 4] },
         };
         let clears: Vec<_> = self.planes.iter().map(clear).collect();
-        once(self.host, |cmd| {
-            // SAFETY: `cmd` is recording; the frame before is done; the pass has the output's
-            // formats.
-            unsafe {
-                let frame = self.renderer.prepare(cmd, 0, view).unwrap();
-                let record = || self.renderer.record(cmd, &frame).unwrap();
-                self.into.draw(cmd, &clears, false, record);
-                self.into.copy(cmd);
-            }
-        });
+        let (into, renderer) = (&self.into, &mut self.renderer);
+        host::draw_into(self.host, into, &clears, renderer, view, None);
     }
 
     /// The words of a plane, `N` a pixel.
@@ -121,11 +111,6 @@ fn scene() -> Scene {
     scene
 }
 
-fn view_of(scene: &Scene) -> View {
-    let size = (options().width, options().height);
-    View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap()
-}
-
 fn all_planes(scene: &Scene, solver: Solver) -> Frame {
     let settings = Settings {
         solver,
@@ -153,7 +138,7 @@ fn planes_of_a_list_are_those_of_a_frame() {
         };
         let planes = PLANES.map(|p| p.0);
         let mut lists = Lists::new(&host, &device, &planes, &scene, &settings);
-        lists.draw(&view_of(&scene));
+        lists.draw(&view_of(&scene, &options()));
         let identity = lists.read::<2>(Plane::Identity);
         let (colors, base) = (
             lists.floats::<4>(Plane::Color),
@@ -212,7 +197,7 @@ fn a_plane_does_not_depend_on_the_others() {
     let device = borrow(&host);
     for shadow in [revmap::scene::Shadow::Off, revmap::scene::Shadow::Hard] {
         scene.shadow = shadow;
-        let view = view_of(&scene);
+        let view = view_of(&scene, &options());
         let planes = PLANES.map(|p| p.0);
         let exact = SearchSettings::exact();
         let mut all = Lists::new(&host, &device, &planes, &scene, &exact);

@@ -2,11 +2,9 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::memory::{HostBuffer, HostImage};
-use crate::common::host::{self, Host, borrow, dynamic, once, open, viewport};
+use crate::common::host::{self, Attachments, Host, Options, borrow, dynamic, open, viewport};
 use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
 use crate::embedding::{BACKGROUND, drawn_by, hundred, options, three, upright};
-use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, DrawPath, Output, PassFormats, Renderer, View,
@@ -17,20 +15,6 @@ use revmap_files::Picture;
 use revmap_offscreen::Offscreen;
 use revmap_searches::CIRCLE;
 use std::collections::HashSet;
-
-pub fn barrier(host: &Host, cmd: vk::CommandBuffer) {
-    let access = vk::AccessFlags::MEMORY_WRITE | vk::AccessFlags::MEMORY_READ;
-    let barrier = [vk::MemoryBarrier::default()
-        .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-        .dst_access_mask(access)];
-    let (all, none) = (
-        vk::PipelineStageFlags::ALL_COMMANDS,
-        vk::DependencyFlags::empty(),
-    );
-    let device = &host.device;
-    // SAFETY: `cmd` is recording outside of a pass.
-    unsafe { device.cmd_pipeline_barrier(cmd, all, all, none, &barrier, &[], &[]) };
-}
 
 /// A view by these matrices, for the host's pictures.
 pub fn seen(view: DMat4, projection: DMat4) -> View {
@@ -55,7 +39,7 @@ pub fn by_proxies_of(proxy_min_pixels: u32) -> SearchSettings {
     }
 }
 
-/// Depths of a scene, drawn into a host's shadow map.
+/// Depths of a scene, drawn into a host's shadow map, and the draw paths of the objects.
 pub fn depths(
     host: &Host,
     device: &Device,
@@ -63,81 +47,19 @@ pub fn depths(
     view: &View,
     settings: &SearchSettings,
     pass: &PassFormats,
-) -> Vec<f32> {
-    depths_and_paths(host, device, scene, view, settings, pass).0
-}
-
-/// The same, and the draw paths of the objects.
-fn depths_and_paths(
-    host: &Host,
-    device: &Device,
-    scene: &Scene,
-    view: &View,
-    settings: &SearchSettings,
-    pass: &PassFormats,
 ) -> (Vec<f32>, Vec<DrawPath>) {
-    let (width, height) = (options().width, options().height);
-    let image = HostImage::new(host, &options(), host::DEPTH, 1).unwrap();
-    let bytes = 4 * (width * height) as usize;
-    let read = HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST).unwrap();
-    let output = Output::Pass(pass.clone());
-    let mut renderer = Renderer::new(device, output, settings, 1).unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    let far = f32::from(pass.depth == DepthOrder::Normal);
-    let raw = &host.device;
-    let area = vk::Rect2D::default().extent(options().extent());
-    let to_layout = |cmd, from, to| {
-        let change = [image.barrier(from, to)];
-        let all = vk::PipelineStageFlags::ALL_COMMANDS;
-        let none = vk::DependencyFlags::empty();
-        // SAFETY: `cmd` is recording outside of a pass.
-        unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &change) };
-    };
-    type Layout = vk::ImageLayout;
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording; nothing was submitted for the slot before; the pass has the
-        // output's formats.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, view).unwrap();
-            to_layout(cmd, Layout::UNDEFINED, Layout::DEPTH_ATTACHMENT_OPTIMAL);
-            let depth = vk::RenderingAttachmentInfo::default()
-                .image_view(image.view)
-                .image_layout(Layout::DEPTH_ATTACHMENT_OPTIMAL)
-                .load_op(vk::AttachmentLoadOp::CLEAR)
-                .store_op(vk::AttachmentStoreOp::STORE)
-                .clear_value(vk::ClearValue {
-                    depth_stencil: vk::ClearDepthStencilValue {
-                        depth: far,
-                        stencil: 0,
-                    },
-                });
-            let info = vk::RenderingInfo::default()
-                .render_area(area)
-                .layer_count(1)
-                .depth_attachment(&depth);
-            raw.cmd_begin_rendering(cmd, &info);
-            let seen = vk::Viewport {
-                width: width as f32,
-                height: height as f32,
-                max_depth: 1.0,
-                ..Default::default()
-            };
-            raw.cmd_set_viewport(cmd, 0, &[seen]);
-            raw.cmd_set_scissor(cmd, 0, &[area]);
-            renderer.record(cmd, &frame).unwrap();
-            raw.cmd_end_rendering(cmd);
-            let to = Layout::TRANSFER_SRC_OPTIMAL;
-            to_layout(cmd, Layout::DEPTH_ATTACHMENT_OPTIMAL, to);
-            let copy = image.region(&options());
-            raw.cmd_copy_image_to_buffer(cmd, image.raw, to, read.raw, &[copy]);
-            barrier(host, cmd);
-        }
-    });
-    let paths = renderer.draw_paths();
-    (bytemuck::pod_collect_to_vec(&read.bytes()), paths)
+    let into = Attachments::new(
+        host,
+        Options {
+            reversed: pass.depth == DepthOrder::Reversed,
+            ..options()
+        },
+        &[],
+    );
+    let (into, output) = (into.unwrap(), Output::Pass(pass.clone()));
+    let mut renderer = host::renderer_of(device, output, settings, 1, scene);
+    host::draw_into(host, &into, &[], &mut renderer, view, None);
+    (into.depths(), renderer.draw_paths())
 }
 
 /// The depth of a light's view along parallel rays is the analytic depth.
@@ -152,7 +74,7 @@ fn depth_along_parallel_rays_is_analytic() {
     let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let projection = parallel();
     let light = seen(view, projection);
-    let found = depths(&host, &device, &one, &light, &exact, &depth_only(true));
+    let (found, _) = depths(&host, &device, &one, &light, &exact, &depth_only(true));
     let back = (projection * view).inverse();
     let (width, height) = (options().width as usize, options().height as usize);
     let (mut hits, mut wrong, mut worst) = (0, 0, 0.0f64);
@@ -200,8 +122,7 @@ fn depth_alone_has_equal_bits_by_every_path() {
         let light = seen(view, projection);
         for least in [0, u32::MAX] {
             let settings = by_proxies_of(least);
-            let (alone, own) =
-                depths_and_paths(&host, &device, scene, &light, &settings, &depth_only(false));
+            let (alone, own) = depths(&host, &device, scene, &light, &settings, &depth_only(false));
             let (_, beside) = drawn_by(&host, &device, options(), scene, &light, &settings);
             let pairs = || alone.iter().zip(&beside);
             let hits = pairs().filter(|(d, _)| **d < 1.0).count();
@@ -228,15 +149,6 @@ pub fn parallel() -> DMat4 {
     )
 }
 
-/// A buffer of two words a pixel as the target of compute.
-pub fn target(words: &HostBuffer) -> ComputeTarget {
-    ComputeTarget {
-        words: words.raw,
-        images: Vec::new(),
-        depths: true,
-    }
-}
-
 /// Compute into a host's buffer gives the off-screen picture in cleared pixels. Nearer values
 /// already in the buffer are kept.
 #[test]
@@ -260,26 +172,10 @@ fn compute_writes_to_a_hosts_buffer() {
         .collect();
     let background = ComputeTarget::color_word(BACKGROUND);
     words.extend((0..pixels).map(|n| if is_empty(n) { background } else { nearer }));
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let buffer = HostBuffer::of(&host, &words, usage).unwrap();
     let output = Output::Compute(Planes::Color);
-    let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 1).unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    // SAFETY: the buffer is of the host's device, has two words per pixel, and outlives the
-    // renderer.
-    unsafe { renderer.set_compute_target(target(&buffer)) }.unwrap();
-    once(&host, |cmd| {
-        // SAFETY: `cmd` is recording outside of a pass; nothing was submitted for the slot before.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, offscreen.view()).unwrap();
-            renderer.record_compute(cmd, &frame).unwrap();
-        }
-        barrier(&host, cmd);
-    });
-    let found: Vec<u32> = bytemuck::pod_collect_to_vec(&buffer.bytes());
+    let exact = SearchSettings::exact();
+    let mut renderer = host::renderer_of(&device, output, &exact, 1, &scene);
+    let found = host::draw_words(&host, &words, &mut renderer, offscreen.view(), None);
     let mut drawn = 0;
     for n in 0..pixels {
         let (depth, color) = (f32::from_bits(found[n]), found[pixels + n]);
@@ -291,7 +187,6 @@ fn compute_writes_to_a_hosts_buffer() {
         }
     }
     assert!(drawn > 2000, "{drawn}");
-    drop((renderer, offscreen)); // before the buffer
 }
 
 /// A depth-only renderer refuses compute and searches without an exact depth.

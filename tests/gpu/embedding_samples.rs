@@ -2,12 +2,12 @@
 //! and leaves no sample of a solid to what is behind it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Options, Stage, borrow, dynamic, open};
+use crate::common::host::{self, Options, Stage, borrow, open};
 use crate::common::{device, draw, sized};
 use crate::embedding::{options, three};
 use glam::DMat4;
-use revmap::frame::Frame;
-use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
+use revmap::frame::{Frame, linear_from_srgb};
+use revmap::gpu::{Device, Output, PassFormats};
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
 use revmap_lab::compare::flip_map;
@@ -45,25 +45,14 @@ fn picture(host: &host::Host, device: &Device, scene: &Scene, sample_rays: bool)
     let output = Output::Pass(PassFormats {
         samples,
         sample_rays,
-        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
+        ..host::color_pass()
     });
     let search = SearchSettings::exact();
-    let mut renderer = Renderer::new(device, output, &search, host::FRAMES).unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    let size = (options.width, options.height);
-    let view = View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap();
+    let mut renderer = host::renderer_of(device, output, &search, host::FRAMES, scene);
+    let view = host::view_of(scene, &options);
     host::frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
     let mut frame = Frame::new(options.width, options.height, [0.0; 4]).unwrap();
-    let linear = |byte: u8| {
-        let v = f32::from(byte) / 255.0;
-        match v <= 0.04045 {
-            true => v / 12.92,
-            false => ((v + 0.055) / 1.055).powf(2.4),
-        }
-    };
+    let linear = |byte: u8| linear_from_srgb(f64::from(byte) / 255.0) as f32;
     let bytes = stage.read().unwrap().0;
     for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks::<4>().0) {
         *color = [linear(rgba[0]), linear(rgba[1]), linear(rgba[2]), 1.0];

@@ -1,8 +1,7 @@
 //! Several views in one pass by multiview: each has the bits of a pass of its own.
 #![allow(unsafe_code)]
 
-use crate::common::host::attachments::Attachments;
-use crate::common::host::{self, Host, borrow, dynamic, once, open};
+use crate::common::host::{self, Attachments, Host, borrow, dynamic, once, open};
 use crate::embedding::{options, three};
 use ash::vk;
 use glam::{DQuat, DVec3};
@@ -17,15 +16,9 @@ type Picture = (Vec<u8>, Vec<f32>);
 fn renderer(device: &Device, scene: &Scene, views: u32, slots: usize) -> Renderer {
     let output = Output::Pass(PassFormats {
         views,
-        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
+        ..host::color_pass()
     });
-    let settings = SearchSettings::default();
-    let mut renderer = Renderer::new(device, output, &settings, slots).unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    renderer
+    host::renderer_of(device, output, &SearchSettings::default(), slots, scene)
 }
 
 /// Draws views, one slot each, in one pass.

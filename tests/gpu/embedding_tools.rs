@@ -2,31 +2,18 @@
 //! frame, labels of its commands, two renderers recorded on two threads.
 #![allow(unsafe_code)]
 
-use crate::common::host::attachments::Attachments;
-use crate::common::host::once;
-use crate::common::host::{self, Host, Options, Stage, borrow, dynamic, lent, open};
+use crate::common::host::{
+    self, Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
+};
 use crate::embedding::{drawn, options, renderer, three};
 use ash::vk;
 use glam::{DMat4, Vec3};
-use revmap::gpu::{
-    Device, FrameStatistics, HostDevice, Output, PassFormats, PreparedFrame, Renderer, View,
-};
+use revmap::gpu::{FrameStatistics, Output, PreparedFrame, Renderer, View};
 use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings};
+use revmap::settings::SearchSettings;
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char};
 use std::sync::Mutex;
-
-fn view_of(scene: &Scene, options: &Options) -> View {
-    View::from_camera(&scene.camera, (options.width, options.height), [0.1, 50.0]).unwrap()
-}
-
-fn add(renderer: &mut Renderer, scene: &Scene) {
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-}
 
 /// Draws a frame and returns its statistics.
 fn draw(stage: &mut Stage, renderer: &mut Renderer, view: &View) -> FrameStatistics {
@@ -138,12 +125,7 @@ fn commands_have_labels_where_a_host_enables_them() {
     };
     // SAFETY: each function has the signature of its name.
     let instance = unsafe { ash::Instance::load_with(load, handle) };
-    let of_host = HostDevice {
-        instance: &instance,
-        ..lent(&host)
-    };
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe { Device::borrow(&of_host) }.unwrap();
+    let device = borrow_through(&host, &instance, &host.device).unwrap();
     let (options, scene) = (options(), three());
     let view = view_of(&scene, &options);
     let mut stage = Stage::new(&host, options).unwrap();
@@ -232,26 +214,17 @@ fn two_threads_record_two_renderers() {
     parts[0].objects.truncate(1);
     parts[1].objects.remove(0);
     let made = |scene: &Scene| {
-        let output = Output::Pass(PassFormats::new(dynamic(&[host::COLOR]), Planes::Color));
-        let mut made = Renderer::new(&device, output, &SearchSettings::exact(), 1).unwrap();
-        add(&mut made, scene);
-        made
+        let output = Output::Pass(host::color_pass());
+        host::renderer_of(&device, output, &SearchSettings::exact(), 1, scene)
     };
     let clears = [vk::ClearColorValue { float32: [0.0; 4] }];
     let into = || Attachments::new(&host, options, &[(host::COLOR, 4)]).unwrap();
     let (wanted, mut alone) = (into(), made(&scene));
-    once(&host, |cmd| {
-        // SAFETY: `cmd` is recording outside of a pass of the output's formats.
-        unsafe {
-            let frame = alone.prepare(cmd, 0, &view).unwrap();
-            wanted.draw(cmd, &clears, false, || alone.record(cmd, &frame).unwrap());
-            wanted.copy(cmd);
-        }
-    });
+    draw_into(&host, &wanted, &clears, &mut alone, &view, None);
     let (found, mut both) = (into(), parts.each_ref().map(made));
     let secondary = [Secondary::new(&host), Secondary::new(&host)];
     once(&host, |cmd| {
-        // SAFETY: as above; each renderer records into commands of its own.
+        // SAFETY: `cmd` is recording outside of a pass; each renderer records into commands of its own.
         unsafe {
             let frames = both.each_mut().map(|r| r.prepare(cmd, 0, &view).unwrap());
             std::thread::scope(|scope| {

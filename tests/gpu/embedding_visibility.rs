@@ -1,33 +1,27 @@
 //! What a host shows: views with masks, and depth tests after a prepass.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Options, Stage, borrow, dynamic, frame, open, order};
+use crate::common::host::{self, Host, Options, Stage, borrow, frame, open, order, view_of};
 use crate::embedding::{drawn, options, three};
 use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{DepthTest, Device, DrawPath, Output, PassFormats, Renderer, View};
 use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings};
-
-const DEPTHS: [f64; 2] = [0.1, 50.0];
-
-fn view(scene: &Scene, options: &Options) -> View {
-    View::from_camera(&scene.camera, (options.width, options.height), DEPTHS).unwrap()
-}
+use revmap::settings::SearchSettings;
 
 fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
     let output = Output::Pass(PassFormats {
         depth: order(options),
         depth_test,
-        ..PassFormats::new(dynamic(&[host::COLOR]), Planes::Color)
+        ..host::color_pass()
     });
-    let search = SearchSettings::exact();
-    let mut renderer = Renderer::new(device, output, &search, host::FRAMES).unwrap();
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
-    }
-    renderer
+    host::renderer_of(
+        device,
+        output,
+        &SearchSettings::exact(),
+        host::FRAMES,
+        scene,
+    )
 }
 
 /// A view shows the objects of its mask, as if there were no others.
@@ -36,15 +30,10 @@ fn a_view_shows_the_objects_of_its_mask() {
     let host = open();
     let device = borrow(&host);
     let (scene, options) = (three(), options());
-    let view = view(&scene, &options);
+    let view = view_of(&scene, &options);
     let mut stage = Stage::new(&host, options).unwrap();
     let mut some = crate::embedding::renderer(&device, &stage);
-    some.set_lighting(&scene.lighting()).unwrap();
-    let ids: Vec<_> = scene
-        .objects
-        .iter()
-        .map(|o| some.add(o.clone()).unwrap())
-        .collect();
+    let ids = host::add(&mut some, &scene);
     some.set_mask(ids[0], 1).unwrap();
     some.set_mask(ids[1], 2).unwrap();
     some.set_mask(ids[2], 0).unwrap();
@@ -118,7 +107,7 @@ fn equal_depths_pass_after_a_prepass() {
     for object in &mut bright.objects {
         object.color = [0.9, 0.8, 0.1];
     }
-    let view = view(&dark, &options);
+    let view = view_of(&dark, &options);
     let equal = DepthTest {
         compare: Some(vk::CompareOp::EQUAL),
         write: false,

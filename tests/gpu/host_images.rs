@@ -2,87 +2,18 @@
 //! between frames in flight.
 #![allow(unsafe_code)]
 
-use crate::common::host::memory::{HostBuffer, HostImage as Memory};
-use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, once, open};
+use crate::common::host::{self, Host, Mesh, Stage, Texture, borrow, frame, open};
 use crate::common::shapes;
 use crate::embedding::{options, renderer, three};
 use ash::vk;
 use glam::DMat4;
 use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostImage, ObjectId, Renderer, View};
+use revmap::gpu::{Device, HostImage, ObjectId, Renderer};
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
 use revmap::scene::{BumpForm, Object, Scene};
 use std::sync::Arc;
 
 const SIZE: u32 = 8;
-
-/// A texture of one level, and a sampler that repeats around the axis, as the library's does.
-struct Texture<'a> {
-    sampler: vk::Sampler,
-    memory: Memory<'a>,
-    host: &'a Host,
-}
-
-impl<'a> Texture<'a> {
-    fn new(host: &'a Host, format: vk::Format, texels: &[[u8; 4]]) -> Self {
-        let size = Options {
-            width: SIZE,
-            height: SIZE,
-            ..options()
-        };
-        type Usage = vk::ImageUsageFlags;
-        let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
-        let memory = Memory::with_usage(host, &size, format, 1, usage).unwrap();
-        let from = HostBuffer::of(host, texels, vk::BufferUsageFlags::TRANSFER_SRC).unwrap();
-        type Layout = vk::ImageLayout;
-        once(host, |cmd| {
-            let (all, none) = (
-                vk::PipelineStageFlags::ALL_COMMANDS,
-                vk::DependencyFlags::empty(),
-            );
-            let (to, read) = (
-                Layout::TRANSFER_DST_OPTIMAL,
-                Layout::SHADER_READ_ONLY_OPTIMAL,
-            );
-            let raw = &host.device;
-            let wait = |from, to| {
-                let barrier = [memory.barrier(from, to)];
-                // SAFETY: `cmd` is recording.
-                unsafe { raw.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &barrier) };
-            };
-            wait(Layout::UNDEFINED, to);
-            // SAFETY: as above; the buffer outlives the submission.
-            unsafe {
-                let region = [memory.region(&size)];
-                raw.cmd_copy_buffer_to_image(cmd, from.raw, memory.raw, to, &region);
-            }
-            wait(to, read);
-        });
-        let info = vk::SamplerCreateInfo::default()
-            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .mag_filter(vk::Filter::LINEAR)
-            .min_filter(vk::Filter::LINEAR);
-        // SAFETY: a plain creation, destroyed in Drop.
-        let sampler = unsafe { host.device.create_sampler(&info, None) }.unwrap();
-        Self {
-            sampler,
-            memory,
-            host,
-        }
-    }
-
-    fn image(&self) -> HostImage {
-        // SAFETY: tests drop textures after renderers, or when they are held no more.
-        unsafe { HostImage::new(self.memory.view, self.sampler) }.unwrap()
-    }
-}
-
-impl Drop for Texture<'_> {
-    fn drop(&mut self) {
-        // SAFETY: the device is done with it.
-        unsafe { self.host.device.destroy_sampler(self.sampler, None) };
-    }
-}
 
 fn colors(of: impl Fn(u32, u32) -> [u8; 4]) -> Vec<[u8; 4]> {
     (0..SIZE * SIZE).map(|n| of(n % SIZE, n / SIZE)).collect()
@@ -97,11 +28,6 @@ fn close() -> Scene {
     let mut scene = three();
     scene.objects.truncate(1);
     scene
-}
-
-fn view_of(scene: &Scene) -> View {
-    let size = (options().width, options().height);
-    View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap()
 }
 
 /// The host's picture of an object, after `change`.
@@ -122,7 +48,8 @@ fn drawn(
 
 fn next(stage: &mut Stage, renderer: &mut Renderer) -> Vec<u8> {
     let none: &[Mesh] = &[];
-    frame(stage, renderer, &view_of(&close()), DMat4::IDENTITY, none);
+    let view = host::view_of(&close(), &options());
+    frame(stage, renderer, &view, DMat4::IDENTITY, none);
     stage.read().unwrap().0
 }
 

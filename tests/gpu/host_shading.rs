@@ -2,18 +2,16 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::attachments::Attachments;
-use crate::common::host::memory::HostBuffer;
-use crate::common::host::set::UniformSet;
-use crate::common::host::{Host, Options, borrow, dynamic, once, open};
+use crate::common::host::{
+    Attachments, Host, Options, UniformSet, add, borrow, draw_into, draw_words, dynamic, open,
+    view_of,
+};
 use crate::common::{draw, shapes, sized};
 use crate::embedding::{options, three};
 use ash::vk;
 use glam::{DVec3, Vec3};
 use revmap::frame::Frame;
-use revmap::gpu::{
-    ComputeTarget, Device, DrawPath, HostShading, ObjectId, Output, PassFormats, Renderer, View,
-};
+use revmap::gpu::{Device, DrawPath, HostShading, Output, PassFormats, Renderer, View};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::scene::{Material, Object, Placement, Scene};
 use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings, Solver};
@@ -93,17 +91,6 @@ pub fn scene() -> Scene {
     scene
 }
 
-pub fn view_of(scene: &Scene) -> View {
-    let size = (options().width, options().height);
-    View::from_camera(&scene.camera, size, [0.1, 50.0]).unwrap()
-}
-
-pub fn add(renderer: &mut Renderer, scene: &Scene) -> Vec<ObjectId> {
-    renderer.set_lighting(&scene.lighting()).unwrap();
-    let objects = scene.objects.iter();
-    objects.map(|o| renderer.add(o.clone()).unwrap()).collect()
-}
-
 fn view_forward(scene: &Scene) -> Vec3 {
     let camera = &scene.camera;
     (camera.target - camera.eye).normalize().as_vec3()
@@ -141,19 +128,7 @@ pub fn in_pass(
 ) -> Vec<u8> {
     let into = Attachments::new(host, options(), formats).unwrap();
     let clears = vec![vk::ClearColorValue { float32: [0.0; 4] }; formats.len()];
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording; the pass has the output's formats; the set outlives it.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, view).unwrap();
-            let point = vk::PipelineBindPoint::GRAPHICS;
-            if let Some(set) = set {
-                set.bind(cmd, point, renderer.pipeline_layout().unwrap(), 3);
-            }
-            let record = || renderer.record(cmd, &frame).unwrap();
-            into.draw(cmd, &clears, false, record);
-            into.copy(cmd);
-        }
-    });
+    draw_into(host, &into, &clears, renderer, view, set);
     into.color(0)
 }
 
@@ -168,33 +143,8 @@ pub fn in_compute(
     let pixels = (width * height) as usize;
     let mut words = vec![1f32.to_bits(); pixels];
     words.resize(2 * pixels, 0);
-    let buffer = HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
-    let target = ComputeTarget {
-        words: buffer.raw,
-        images: Vec::new(),
-        depths: true,
-    };
-    // SAFETY: the buffer has two words per pixel, and is not used after this frame.
-    unsafe { renderer.set_compute_target(target) }.unwrap();
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording outside of a pass; the frame before is done.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, view).unwrap();
-            if let Some(set) = set {
-                let point = vk::PipelineBindPoint::COMPUTE;
-                set.bind(cmd, point, renderer.pipeline_layout().unwrap(), 3);
-            }
-            renderer.record_compute(cmd, &frame).unwrap();
-            let written = [vk::MemoryBarrier::default()
-                .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-                .dst_access_mask(vk::AccessFlags::HOST_READ)];
-            let from = vk::PipelineStageFlags::COMPUTE_SHADER;
-            let (to, none) = (vk::PipelineStageFlags::HOST, vk::DependencyFlags::empty());
-            host.device
-                .cmd_pipeline_barrier(cmd, from, to, none, &written, &[], &[]);
-        }
-    });
-    buffer.bytes()[4 * pixels..].to_vec()
+    let drawn = draw_words(host, &words, renderer, view, set);
+    bytemuck::cast_slice(&drawn[pixels..]).to_vec()
 }
 
 /// The picture of a scene in a stage, and the path of each object.
@@ -206,7 +156,7 @@ pub fn picture(
     stage: DrawStage,
     by: Option<(&Arc<Shading>, &UniformSet)>,
 ) -> (Vec<u8>, Vec<DrawPath>) {
-    let (view, set) = (view_of(scene), by.map(|by| by.1));
+    let (view, set) = (view_of(scene, &options()), by.map(|by| by.1));
     let color = [(vk::Format::R8G8B8A8_SRGB, 4)];
     let output = match stage {
         DrawStage::Fragment => pass(Planes::Color, &[color[0].0]),
@@ -278,7 +228,7 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
     let host = open();
     let device = borrow(&host);
     let scene = scene();
-    let view = view_of(&scene);
+    let view = view_of(&scene, &options());
     let frame = draw(&scene, &sized(options().width, options().height));
     let shading = shading(DrawStage::Fragment, VALUES);
     let listed = Planes::List(PlaneList::new(&[Plane::Color, Plane::Identity]).unwrap());

@@ -2,11 +2,9 @@
 //! prewarmed, hidden and told apart.
 #![allow(unsafe_code)]
 
-use crate::common::host::set::UniformSet;
-use crate::common::host::{Checked, borrow, open};
-use crate::host_shading::{
-    COPY, add, in_pass, lights, made, pass, picture, scene, shading, view_of,
-};
+use crate::common::host::{Checked, UniformSet, add, borrow, open, view_of};
+use crate::embedding::options;
+use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
 use ash::vk;
 use revmap::error::ErrorKind;
 use revmap::gpu::{Device, HostShading, Output, Renderer};
@@ -156,7 +154,7 @@ fn pipelines_are_prewarmed_and_told_apart() {
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
     let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";
     let [copy, red] = [COPY, red].map(|text| shading(DrawStage::Fragment, text));
-    let view = view_of(&scene);
+    let view = view_of(&scene, &options());
     let color = [(SRGB, 4)];
     let exact = SearchSettings::exact();
     let mut shown = Vec::new();

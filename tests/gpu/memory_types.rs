@@ -3,10 +3,10 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, planted_device, planted_instance, real};
-use crate::common::host::{lent, open};
+use crate::common::host::{borrow_through, open};
 use crate::common::{eye, scene_of, shapes};
 use ash::vk;
-use revmap::gpu::{Device, HostDevice, MemoryUse};
+use revmap::gpu::MemoryUse;
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_offscreen::Offscreen;
 use std::ffi::c_void;
@@ -94,16 +94,12 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     let _alone = Layer::take();
     let host = open();
     let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
-    // SAFETY: plain queries of live handles.
-    let (all, entry) = unsafe {
-        let instance = &host.instance;
-        let all = instance.get_physical_device_memory_properties(host.physical);
-        (all, ash::Entry::load().unwrap())
-    };
+    // SAFETY: a plain query of live handles.
+    let all = unsafe { (host.instance).get_physical_device_memory_properties(host.physical) };
     let mut all = all.memory_types.iter();
     let found = all.position(|t| t.property_flags.contains(seen));
     TRUE_TYPE.store(found.unwrap(), SeqCst);
-    let instance = planted_instance(&entry, &host.instance, |name, _| {
+    let instance = planted_instance(&host.entry, &host.instance, |name, _| {
         (name == c"vkGetPhysicalDeviceMemoryProperties").then_some(types as *const c_void)
     });
     let raw = planted_device(&host.instance, &host.device, |name, real| {
@@ -116,13 +112,7 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
         REAL[n].store(real, SeqCst);
         Some(planted)
     });
-    let planted = HostDevice {
-        instance: &instance,
-        device: &raw,
-        ..lent(&host)
-    };
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe { Device::borrow(&planted) }.unwrap();
+    let device = borrow_through(&host, &instance, &raw).unwrap();
     assert_eq!(device.memory_use(), MemoryUse::default());
     let scene = scene_of(shapes::vase(), eye(25.0, 3.0));
     let settings = Settings {

@@ -1,12 +1,11 @@
 //! Frames prepared ahead: each slot keeps the plan of its view, whatever is prepared or changed
 //! before it is recorded.
 
-use crate::common::host::memory::HostBuffer;
-use crate::common::host::once;
-use crate::common::host::{self, Options, Stage, borrow, open};
+use crate::common::host::{
+    self, HostBuffer, Options, Stage, barrier, borrow, once, open, target, view_of,
+};
 use crate::common::{eye, placement, scene_of, shapes};
 use crate::embedding::options;
-use crate::embedding_outputs::{barrier, target};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use revmap::error::ErrorKind;
@@ -47,8 +46,7 @@ fn rows(side: u32) -> Vec<Placement> {
 fn views() -> [View; 2] {
     let of = |from: [f64; 3], to: [f64; 3]| {
         let camera = Camera::new(DVec3::from_array(from), DVec3::from_array(to));
-        let size = (small().width, small().height);
-        View::from_camera(&camera, size, [0.1, 50.0]).unwrap()
+        view_of(&Scene::new(camera), &small())
     };
     [
         of([2.0, 1.5, 1.8], [0.0, 0.0, 0.2]),
@@ -75,22 +73,20 @@ struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    fn fragments(host: &'a host::Host, device: &Device, settings: &SearchSettings) -> Self {
-        let stage = Stage::new(host, small()).unwrap();
-        Self {
-            renderer: host::renderer(device, &stage, settings, SLOTS),
-            stage: Some(stage),
-            words: Self::cleared(host),
-            host,
-            next: 0,
-        }
-    }
-
-    fn compute(host: &'a host::Host, device: &Device, settings: &SearchSettings) -> Self {
+    fn new(
+        host: &'a host::Host,
+        device: &Device,
+        settings: &SearchSettings,
+        compute: bool,
+    ) -> Self {
+        let stage = (!compute).then(|| Stage::new(host, small()).unwrap());
         let output = Output::Compute(Planes::Color);
         Self {
-            renderer: Renderer::new(device, output, settings, SLOTS).unwrap(),
-            stage: None,
+            renderer: match &stage {
+                Some(stage) => host::renderer(device, stage, settings, SLOTS),
+                None => Renderer::new(device, output, settings, SLOTS).unwrap(),
+            },
+            stage,
             words: Self::cleared(host),
             host,
             next: 0,
@@ -132,8 +128,10 @@ impl<'a> Drawn<'a> {
         once(self.host, |cmd| {
             let frame = prepare(renderer, cmd, slot);
             // SAFETY: `cmd` is recording outside of a pass, and the frame was prepared for it.
-            unsafe { renderer.record_compute(cmd, &frame) }.unwrap();
-            barrier(self.host, cmd);
+            unsafe {
+                renderer.record_compute(cmd, &frame).unwrap();
+                barrier(self.host, cmd, &[]);
+            }
         });
         let bytes = words.bytes();
         self.words = words;
@@ -152,10 +150,7 @@ fn in_both_stages(test: impl Fn(&mut Drawn, &[ObjectId], &str)) {
             device_lists,
             ..SearchSettings::exact()
         };
-        let mut drawn = match stage {
-            "compute" => Drawn::compute(&host, &device, &settings),
-            _ => Drawn::fragments(&host, &device, &settings),
-        };
+        let mut drawn = Drawn::new(&host, &device, &settings, stage == "compute");
         let ids = add(&mut drawn.renderer, &scene());
         test(&mut drawn, &ids, stage);
     }
@@ -268,7 +263,7 @@ fn objects_by_the_ten_thousand() {
         object
     };
     let bytes = |count: u32| {
-        let mut compute = Drawn::compute(&host, &device, &SearchSettings::exact());
+        let mut compute = Drawn::new(&host, &device, &SearchSettings::exact(), true);
         let ids: Vec<_> = (0..count)
             .map(|n| compute.renderer.add(object(n)).unwrap())
             .collect();

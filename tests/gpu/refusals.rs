@@ -3,16 +3,13 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::once;
-use crate::common::host::{borrow, lent, open, open_with};
+use crate::common::host::{borrow, borrow_through, once, open, open_with};
 use crate::common::{device, shapes};
 use ash::vk;
 use ash::vk::Handle as _;
 use glam::DVec3;
 use revmap::error::ErrorKind::{self, Unsupported, Usage};
-use revmap::gpu::{
-    ComputeTarget, Device, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer, View,
-};
+use revmap::gpu::{ComputeTarget, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
 use revmap::scene::{Camera, Lighting, Object, Shadow};
 use revmap::settings::{Planes, SearchSettings, Solver};
 use std::sync::Arc;
@@ -143,19 +140,12 @@ fn samples_that_the_device_has_not_are_refused() {
     }
     let layer = Layer::take();
     let host = open();
-    // SAFETY: the system's loader, as in the host.
-    let entry = unsafe { ash::Entry::load() }.unwrap();
     let mask = Mask {
         samples: true,
         ..Mask::default()
     };
-    let instance = layer.instance(&entry, &host.instance, mask);
-    let lent = HostDevice {
-        instance: &instance,
-        ..lent(&host)
-    };
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let poorer = unsafe { Device::borrow(&lent) }.unwrap();
+    let instance = layer.instance(&host.entry, &host.instance, mask);
+    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
     let own = PassKind::RenderPass {
         // The renderer refuses this handle before any use.
         pass: vk::RenderPass::from_raw(1),

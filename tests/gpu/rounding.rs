@@ -3,14 +3,13 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, planted_device, real};
-use crate::common::host::{lent, open_with};
+use crate::common::host::{borrow_through, open_with};
 use crate::common::passing::count;
 use crate::common::ways::apart;
 use crate::common::{eye, offset, reference, scene_of, shapes, sized};
 use crate::spirv::{Arithmetic, edited};
 use ash::vk;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, HostDevice};
 use revmap::maps::MapFormat;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
@@ -61,17 +60,11 @@ fn drawn(scene: &Scene, settings: &Settings, how: Option<Arithmetic>) -> Edited 
             create as *const c_void
         })
     });
-    let planted = HostDevice {
-        device: &raw,
-        ..lent(&host)
-    };
     *HOW.lock().unwrap() = how;
     EDITS.store(0, SeqCst);
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe { Device::borrow(&planted) }.unwrap();
-    let frame = revmap_offscreen::draw(&device, scene, settings)
-        .unwrap()
-        .frame;
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
+    let drawn = revmap_offscreen::draw(&device, scene, settings);
+    let frame = drawn.unwrap().frame;
     *HOW.lock().unwrap() = None;
     Edited {
         frame,

@@ -3,8 +3,8 @@
 
 use crate::common::ways::STAGES;
 use crate::common::{assert_sound, draw, placement, reference, shapes, sized};
+use crate::shadows::otherwise_lit;
 use glam::{DQuat, DVec3};
-use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene, Shadow};
 use revmap::settings::{Settings, Solver};
@@ -45,20 +45,6 @@ fn field(side: u32) -> Vec<Placement> {
         }
     };
     (0..side * side).map(of).collect()
-}
-
-/// Pixels that show the same point in both frames: those with another light, those in shadow, and
-/// all.
-fn otherwise_lit(a: &Frame, b: &Frame) -> [usize; 3] {
-    let mut counts = [0; 3];
-    for i in (0..a.pixels()).filter(|&i| a.hits(i) && b.hits(i)) {
-        if (a.distance[i] - b.distance[i]).abs() < 2e-3 {
-            counts[0] += usize::from((a.color[i][1] - b.color[i][1]).abs() > 0.05);
-            counts[1] += usize::from(a.color[i][1] < 0.2);
-            counts[2] += 1;
-        }
-    }
-    counts
 }
 
 #[test]

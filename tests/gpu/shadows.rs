@@ -67,18 +67,18 @@ fn cases() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Counts pixels hit by both frames at the same depth: those whose light differs by more than
-/// rounding, and those unlit in the first frame.
-fn otherwise_lit(a: &Frame, b: &Frame) -> (usize, usize) {
-    let (mut off, mut dark) = (0, 0);
-    for i in 0..a.pixels() {
-        let here = a.hits(i) && b.hits(i) && (a.distance[i] - b.distance[i]).abs() < 2e-3;
-        if here {
-            off += usize::from((a.color[i][1] - b.color[i][1]).abs() > 0.05);
-            dark += usize::from(a.color[i][1] < 0.2);
+/// Pixels that show the same point in both frames: those with another light, those in shadow, and
+/// all.
+pub fn otherwise_lit(a: &Frame, b: &Frame) -> [usize; 3] {
+    let mut counts = [0; 3];
+    for i in (0..a.pixels()).filter(|&i| a.hits(i) && b.hits(i)) {
+        if (a.distance[i] - b.distance[i]).abs() < 2e-3 {
+            counts[0] += usize::from((a.color[i][1] - b.color[i][1]).abs() > 0.05);
+            counts[1] += usize::from(a.color[i][1] < 0.2);
+            counts[2] += 1;
         }
     }
-    (off, dark)
+    counts
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn shadows_are_the_references() {
             let settings = Settings { solver, ..settings };
             let frame = draw(&scene, &settings);
             assert_sound(&frame, name);
-            let (off, dark) = otherwise_lit(&truth, &frame);
+            let [off, dark, _] = otherwise_lit(&truth, &frame);
             let what = format!("{name}, {solver}: {off} pixels lit otherwise, {dark} dark");
             println!("{what}");
             // Shadow edges are within a pixel of their place (rays start a texel and a half off the

@@ -2,13 +2,13 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, planted_device, real};
-use crate::common::host::{lent, open};
+use crate::common::host::{borrow_through, open};
 use crate::common::{next_frame, sized};
 use crate::embedding::three;
 use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostDevice, MemoryUse};
+use revmap::gpu::MemoryUse;
 use revmap::scene::Placement;
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_offscreen::{Offscreen, OffscreenOptions};
@@ -76,12 +76,7 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
         REAL[n].store(real, SeqCst);
         Some(planted)
     });
-    let planted = HostDevice {
-        device: &raw,
-        ..lent(&host)
-    };
-    // SAFETY: the host's own handles; the device is dropped before the host.
-    let device = unsafe { Device::borrow(&planted) }.unwrap();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let mut scene = three();
     let place = |n: u32| Placement {
         position: DVec3::new(f64::from(n / 300), f64::from(n % 300) - 150.0, 0.0) * -0.4,

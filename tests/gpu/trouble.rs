@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, Host, lent, open, open_with};
+use crate::common::host::{Checked, Host, borrow_through, open, open_with};
 use crate::common::ways::apart;
 use crate::common::{device, eye, next_frame, scene_of, shapes, updated};
 use crate::embedding::three;
@@ -11,7 +11,7 @@ use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostDevice};
+use revmap::gpu::{Device, DrawPath};
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_offscreen::Offscreen;
@@ -26,18 +26,6 @@ fn settings(stage: DrawStage) -> Settings {
     }
 }
 
-/// The host's device, through the layer.
-fn borrow(host: &Host, raw: &ash::Device, instance: &ash::Instance) -> revmap::Result<Device> {
-    // SAFETY: the host's own handles; each test drops the device before the host.
-    unsafe {
-        Device::borrow(&HostDevice {
-            instance,
-            device: raw,
-            ..lent(host)
-        })
-    }
-}
-
 /// One solid searched by its surface and one by its map. The second scene has some changes.
 fn scenes() -> [Scene; 2] {
     let before = scene_of(shapes::vase(), eye(25.0, 3.0));
@@ -48,7 +36,7 @@ fn scenes() -> [Scene; 2] {
 }
 
 fn work(host: &Host, raw: &ash::Device, settings: &Settings) -> revmap::Result<()> {
-    let device = borrow(host, raw, &host.instance)?;
+    let device = borrow_through(host, &host.instance, raw)?;
     let [before, after] = scenes();
     let mut drawn = Offscreen::new(&device, &before, settings)?;
     drawn.draw()?;
@@ -64,12 +52,6 @@ fn layered() -> (Layer, Checked, ash::Device) {
     let (layer, host) = (Layer::take(), open());
     let raw = layer.device(&host.instance, &host.device);
     (layer, host, raw)
-}
-
-/// The system's loader, as in the host.
-fn entry() -> ash::Entry {
-    // SAFETY: a plain load.
-    unsafe { ash::Entry::load() }.unwrap()
 }
 
 #[test]
@@ -113,7 +95,7 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
 #[test]
 fn a_renderer_survives_a_failed_update() {
     let (layer, host, raw) = layered();
-    let device = borrow(&host, &raw, &host.instance).unwrap();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let settings = settings(DrawStage::Fragment);
     let [before, after] = scenes();
     let wanted = picture(&device, &after, &settings);
@@ -142,7 +124,7 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
     let (layer, host, raw) = layered();
     for told_by in ["vkQueueSubmit", "vkWaitForFences"] {
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
-            let device = borrow(&host, &raw, &host.instance).unwrap();
+            let device = borrow_through(&host, &host.instance, &raw).unwrap();
             let [before, after] = scenes();
             let mut drawn = Offscreen::new(&device, &before, &settings(stage)).unwrap();
             drawn.draw().unwrap();
@@ -167,7 +149,7 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
 #[test]
 fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
     let (layer, host, raw) = layered();
-    let device = borrow(&host, &raw, &host.instance).unwrap();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
     layer.lose(Some("vkAllocateMemory"));
     let settings = settings(DrawStage::Fragment);
     let Err(error) = Offscreen::new(&device, &scenes()[0], &settings) else {
@@ -186,16 +168,13 @@ fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
 
 #[track_caller]
 fn assert_same(a: &Frame, b: &Frame) {
-    assert_eq!(a.pixels(), b.pixels());
-    let bits = |frame: &Frame, i| frame.pixel(i).map(f32::to_bits);
-    let differ = (0..a.pixels()).filter(|&i| bits(a, i) != bits(b, i));
-    assert_eq!(differ.count(), 0, "pixels differ");
+    assert_eq!(a.first_difference(b), None);
 }
 
 /// A device without a required feature is refused, and the error names the feature.
 #[test]
 fn a_device_without_what_is_needed_is_refused() {
-    let (layer, host, entry) = (Layer::take(), open(), entry());
+    let (layer, host) = (Layer::take(), open());
     const HALF: Option<vk::Format> = Some(vk::Format::R16_SFLOAT);
     const FLOAT: Option<vk::Format> = Some(vk::Format::R32_SFLOAT);
     const FLOATS: Option<vk::Format> = Some(vk::Format::R32G32B32A32_SFLOAT);
@@ -213,8 +192,8 @@ fn a_device_without_what_is_needed_is_refused() {
     for (change, lack) in lacks {
         let mut mask = Mask::default();
         change(&mut mask);
-        let instance = layer.instance(&entry, &host.instance, mask);
-        let Err(error) = borrow(&host, &host.device, &instance) else {
+        let instance = layer.instance(&host.entry, &host.instance, mask);
+        let Err(error) = borrow_through(&host, &instance, &host.device) else {
             panic!("taken without {lack}");
         };
         assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
@@ -226,7 +205,7 @@ fn a_device_without_what_is_needed_is_refused() {
 /// A device without optional features draws the same picture.
 #[test]
 fn a_device_without_what_is_optional_draws_the_same() {
-    let (layer, host, entry) = (Layer::take(), open(), entry());
+    let (layer, host) = (Layer::take(), open());
     let mut scene = three();
     scene.shadow = Shadow::Hard;
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
@@ -235,7 +214,7 @@ fn a_device_without_what_is_optional_draws_the_same() {
             height: 120,
             ..settings(stage)
         };
-        let whole = borrow(&host, &host.device, &host.instance).unwrap();
+        let whole = borrow_through(&host, &host.instance, &host.device).unwrap();
         let wanted = picture(&whole, &scene, &settings);
         let changes: [fn(&mut Mask); 3] = [
             |m| m.anisotropy = true,
@@ -245,8 +224,8 @@ fn a_device_without_what_is_optional_draws_the_same() {
         for change in changes {
             let mut mask = Mask::default();
             change(&mut mask);
-            let instance = layer.instance(&entry, &host.instance, mask);
-            let poorer = borrow(&host, &host.device, &instance).unwrap();
+            let instance = layer.instance(&host.entry, &host.instance, mask);
+            let poorer = borrow_through(&host, &instance, &host.device).unwrap();
             let mut drawn = Offscreen::new(&poorer, &scene, &settings).unwrap();
             let times = drawn.draw().unwrap();
             assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
@@ -268,7 +247,7 @@ fn a_device_without_what_is_optional_draws_the_same() {
 /// nothing else depends on the size.
 #[test]
 fn subgroups_of_any_size_draw_the_same() {
-    let (layer, host, entry) = (Layer::take(), open(), entry());
+    let (layer, host) = (Layer::take(), open());
     let scene = scene_of(shapes::vase(), eye(25.0, 0.9));
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let settings = Settings {
@@ -281,9 +260,9 @@ fn subgroups_of_any_size_draw_the_same() {
                 subgroup,
                 ..Mask::default()
             };
-            let instance = layer.instance(&entry, &host.instance, mask);
+            let instance = layer.instance(&host.entry, &host.instance, mask);
             picture(
-                &borrow(&host, &host.device, &instance).unwrap(),
+                &borrow_through(&host, &instance, &host.device).unwrap(),
                 &scene,
                 &settings,
             )
@@ -306,7 +285,7 @@ fn subgroups_of_any_size_draw_the_same() {
 fn colour_is_drawn_on_a_device_opened_without_features() {
     let _layer = Layer::take();
     let host = open_with(|_| vk::PhysicalDeviceFeatures::default());
-    let bare = borrow(&host, &host.device, &host.instance).unwrap();
+    let bare = borrow_through(&host, &host.instance, &host.device).unwrap();
     let settings = Settings {
         planes: Planes::Color,
         ..settings(DrawStage::Fragment)
@@ -356,7 +335,7 @@ fn renderers_on_one_device_do_not_disturb_each_other() {
 #[test]
 fn a_thousand_renderers_leave_nothing_behind() {
     let (layer, host, raw) = layered();
-    let device = borrow(&host, &raw, &host.instance).unwrap();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let scenes = scenes();
     let mut alive = [0; 2];
     for cycle in 0..1000 {

@@ -2,8 +2,7 @@
 
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
-use crate::pointers::{described, fill, list, put, read, take, text};
-use crate::values::size;
+use crate::pointers::{described, fill, list, put_bytes, read, sized, text};
 use ash::vk;
 use ash::vk::Handle as _;
 use revmap::gpu::{Device, HostDevice, Requirements};
@@ -123,8 +122,6 @@ unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outco
 ///
 /// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something; the text says what is
 /// missing.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_requirements(
     get_instance_proc_addr: GetInstanceProcAddr,
@@ -144,10 +141,10 @@ pub unsafe extern "C" fn revmap_requirements(
             return Err(Fault::new(RevmapResult::Internal, message));
         }
         let value = RevmapRequirements {
-            size: size(size_of::<RevmapRequirements>()),
             api_version: needs.api_version,
             queue_family: needs.queue_family,
             features: needs.features,
+            ..sized()
         };
         fill(requirements, value)
     })
@@ -159,8 +156,6 @@ pub unsafe extern "C" fn revmap_requirements(
 /// environment.
 ///
 /// Fails with REVMAP_RESULT_UNSUPPORTED if no device meets the requirements.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_open(
     choice: *const c_char,
@@ -186,8 +181,6 @@ pub unsafe extern "C" fn revmap_device_open(
 /// handle and everything made with it are destroyed, and the device is idle.
 ///
 /// Fails with REVMAP_RESULT_UNSUPPORTED for a device that lacks something.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_borrow(
     host: *const RevmapHostDevice,
@@ -218,8 +211,6 @@ pub unsafe extern "C" fn revmap_device_borrow(
 }
 
 /// Returns the properties of a device. The size of info must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_info(
     device: *const RevmapDevice,
@@ -228,11 +219,11 @@ pub unsafe extern "C" fn revmap_device_info(
     enter(|| {
         let device = RevmapDevice::get(device)?;
         let value = RevmapDeviceInfo {
-            size: size(size_of::<RevmapDeviceInfo>()),
             validated: u32::from(device.validated()),
             pipelines_compiled: device.pipelines_compiled(),
             name: short(&device.report().name),
             driver: short(&device.report().driver),
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(info, value) }
@@ -251,8 +242,6 @@ fn short(text: &str) -> [c_char; 256] {
 
 /// Fails with REVMAP_RESULT_OTHER if the validation layers have reported a message since the last
 /// call. A borrowed device's host has its own messenger, and this function always succeeds.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> RevmapResult {
     enter(|| Ok(RevmapDevice::get(device)?.check()?))
@@ -260,8 +249,6 @@ pub unsafe extern "C" fn revmap_device_check(device: *const RevmapDevice) -> Rev
 
 /// Labels the commands and names the buffers of all renderers of a device from now on, for
 /// debuggers of frames. The host's instance was made with VK_EXT_debug_utils.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_enable_debug_labels(
     device: *const RevmapDevice,
@@ -275,8 +262,6 @@ pub unsafe extern "C" fn revmap_device_enable_debug_labels(
 }
 
 /// Returns the memory that all buffers and images on a device take. The size of memory must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_memory_use(
     device: *const RevmapDevice,
@@ -285,10 +270,10 @@ pub unsafe extern "C" fn revmap_device_memory_use(
     enter(|| {
         let used = RevmapDevice::get(device)?.memory_use();
         let value = RevmapMemoryUse {
-            size: size(size_of::<RevmapMemoryUse>()),
             device: used.device,
             visible: used.visible,
             host: used.host,
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(memory, value) }
@@ -297,8 +282,6 @@ pub unsafe extern "C" fn revmap_device_memory_use(
 
 /// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
 /// another driver is ignored.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
     device: *const RevmapDevice,
@@ -315,8 +298,6 @@ pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
 /// Returns the driver's compiled pipelines. With null bytes, count becomes their number. Otherwise
 /// count is the room in bytes, which must be large enough, and becomes the number of bytes written.
 /// The number grows as pipelines are compiled.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_pipeline_cache(
     device: *const RevmapDevice,
@@ -325,24 +306,13 @@ pub unsafe extern "C" fn revmap_device_pipeline_cache(
 ) -> RevmapResult {
     // SAFETY: the caller's pointers; the bytes are as many as it says.
     enter(|| unsafe {
-        let room = take(count, "count")?;
-        let data = RevmapDevice::get(device)?.pipeline_cache_data()?;
-        let length = data.len();
-        if !bytes.is_null() {
-            if room < length {
-                let message = format!("{length} bytes do not fit into {room}");
-                return Err(Fault::usage(message));
-            }
-            let bytes = bytes.cast::<u8>();
-            bytes.copy_from_nonoverlapping(data.as_ptr(), length);
-        }
-        put(count, "count", || Ok(length))
+        put_bytes(bytes, count, || {
+            Ok(RevmapDevice::get(device)?.pipeline_cache_data()?)
+        })
     })
 }
 
 /// Destroys a device; null is none. Objects made with it stay usable.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_device_destroy(device: *mut RevmapDevice) -> RevmapResult {
     enter(|| RevmapDevice::destroy(device))

@@ -103,8 +103,6 @@ fn panic_text(panic: &(dyn Any + Send)) -> String {
 }
 
 /// The kind of this thread's last failure; REVMAP_RESULT_OK if there was none.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_last_error() -> RevmapResult {
     LAST.try_with(|last| last.borrow().0)
@@ -113,8 +111,6 @@ pub extern "C" fn revmap_last_error() -> RevmapResult {
 
 /// The reason of this thread's last failure: one line of UTF-8 with the cause and the remedy. Empty
 /// if none has failed. The text lasts until the next failure on this thread, or the thread's end.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_last_error_text() -> *const c_char {
     const NONE: &CStr = c"";

@@ -78,12 +78,12 @@ impl<T> Registry<T> {
 }
 
 /// The body of an entry point that makes a handle.
-pub(crate) unsafe fn create<H: Handle>(
+pub(crate) unsafe fn create<H: Handle, V: Into<H::Value>>(
     to: *mut *mut H,
-    value: impl FnOnce() -> Outcome<H::Value>,
+    value: impl FnOnce() -> Outcome<V>,
 ) -> RevmapResult {
     // SAFETY: the caller's pointer.
-    enter(|| unsafe { put(to, H::NAME, || Ok(H::create(value()?))) })
+    enter(|| unsafe { put(to, H::NAME, || Ok(H::create(value()?.into()))) })
 }
 
 /// Calls `work` with a value that one thread at a time may use.

@@ -30,16 +30,12 @@ use std::ffi::c_char;
 pub const REVMAP_ABI: u32 = 1;
 
 /// Version of the library, such as "0.1.0".
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }
 
 /// REVMAP_ABI of the library, to be compared with that of the header.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_abi() -> u32 {
     REVMAP_ABI

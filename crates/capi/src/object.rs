@@ -3,13 +3,12 @@
 use crate::enums;
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::Handle;
-use crate::pointers::{described, fill, list, text};
+use crate::pointers::{described, fill, list, sized, text};
 use crate::profile::RevmapProfile;
 use crate::texture::{RevmapColorMap, RevmapHeightMap};
-use crate::values::{RevmapOffset, RevmapPlacement, UPRIGHT, size};
+use crate::values::{RevmapOffset, RevmapPlacement, UPRIGHT};
 use revmap::scene::{Material, Object, Offset, Placement, Specular, Texturing};
 use std::ffi::c_char;
-use std::ptr::null;
 
 /// A solid of revolution, drawn once or as many copies. Defaults: revmap_object_defaults().
 #[repr(C)]
@@ -114,25 +113,16 @@ pub(crate) fn placements(from: &[RevmapPlacement]) -> Vec<Placement> {
 
 /// Fills in an object without a profile: light grey, plain, at the origin, one world unit high. The
 /// size must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -> RevmapResult {
     enter(|| {
         let (specular, texturing) = (Specular::default(), Texturing::default());
         let plain = Offset::default();
         let value = RevmapObjectInfo {
-            size: size(size_of::<RevmapObjectInfo>()),
             map_rows: Object::MAP_ROWS,
-            profile: null(),
-            name: null(),
-            color_map: null(),
-            height_map: null(),
             color: Object::COLOR,
             specular_strength: specular.strength,
             specular_shininess: specular.shininess,
-            projection: 0,
-            bump_form: 0,
             bump: texturing.bump,
             texture_repeat: texturing.repeat,
             offset: RevmapOffset {
@@ -142,14 +132,8 @@ pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -
             },
             axis: [0.5; 2],
             repeat: [1; 3],
-            mirror: [0; 3],
-            clip: 0,
             placement: UPRIGHT,
-            instances: null(),
-            instance_count: 0,
-            has_material: 0,
-            roughness: 0.0,
-            metalness: 0.0,
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(object, value) }

@@ -5,8 +5,8 @@ use crate::enums::{self, RevmapPlane};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
 use crate::object::RevmapObjectInfo;
-use crate::pointers::{described, fill, read, read_all, text};
-use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch, size};
+use crate::pointers::{described, fill, read, read_all, sized, text};
+use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch};
 use revmap::frame::Frame;
 use revmap::scene::Scene;
 use revmap::settings::{Planes, Settings};
@@ -137,18 +137,16 @@ fn with<R>(
 
 /// Fills in 800x600 pixels, REVMAP_STAGE_FRAGMENT, REVMAP_PLANES_COLOR and the default search. The
 /// size must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_picture_defaults(picture: *mut RevmapPicture) -> RevmapResult {
     let settings = Settings::default();
     let value = RevmapPicture {
-        size: size(size_of::<RevmapPicture>()),
         width: settings.width,
         height: settings.height,
         stage: enums::RevmapStage::Fragment as u32,
         planes: enums::RevmapPlanes::Color as u32,
         search: RevmapSearch::defaults(),
+        ..sized()
     };
     // SAFETY: the caller's structure.
     enter(|| unsafe { fill(picture, value) })
@@ -156,18 +154,13 @@ pub unsafe extern "C" fn revmap_picture_defaults(picture: *mut RevmapPicture) ->
 
 /// Fills in a scene without objects before transparent black, with the default camera and lights.
 /// The size must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_scene_defaults(scene: *mut RevmapScene) -> RevmapResult {
     enter(|| {
         let value = RevmapScene {
-            size: size(size_of::<RevmapScene>()),
-            background: [0.0; 4],
             camera: RevmapCamera::defaults(),
             lighting: RevmapLighting::defaults(),
-            objects: std::ptr::null(),
-            object_count: 0,
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(scene, value) }
@@ -176,8 +169,6 @@ pub unsafe extern "C" fn revmap_scene_defaults(scene: *mut RevmapScene) -> Revma
 
 /// Takes a scene onto a device, with a picture to draw it into. A borrowed device must have a
 /// queue, which nobody else uses while a picture is drawn or read.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_offscreen_create(
     device: *const RevmapDevice,
@@ -191,20 +182,18 @@ pub unsafe extern "C" fn revmap_offscreen_create(
             let settings = read(picture)?.settings()?;
             let scene = read(scene)?.scene()?;
             let device = RevmapDevice::get(device)?;
-            Ok(Arc::new(Mutex::new(Drawing {
+            Ok(Mutex::new(Drawing {
                 offscreen: Offscreen::new(&device, &scene, &settings)?,
                 planes: settings.planes,
                 frame: None,
                 drawn: false,
-            })))
+            }))
         })
     }
 }
 
 /// Updates the picture to another scene. The cost depends on the differences from the former scene.
 /// If it fails, the former scene can still be drawn.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_offscreen_update(
     offscreen: *mut RevmapOffscreen,
@@ -218,8 +207,6 @@ pub unsafe extern "C" fn revmap_offscreen_update(
 }
 
 /// Compiles every pipeline that updates can come to need, as long as no object's technique changes.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_offscreen_prewarm(offscreen: *mut RevmapOffscreen) -> RevmapResult {
     enter(|| {
@@ -232,8 +219,6 @@ pub extern "C" fn revmap_offscreen_prewarm(offscreen: *mut RevmapOffscreen) -> R
 }
 
 /// Draws the picture and waits for it. times may be null; else its size must be set.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_offscreen_draw(
     offscreen: *mut RevmapOffscreen,
@@ -251,10 +236,10 @@ pub unsafe extern "C" fn revmap_offscreen_draw(
             return Ok(());
         }
         let value = RevmapTimes {
-            size: size(size_of::<RevmapTimes>()),
             prepare_ms: drawn.prepare_ms,
             gpu_ms: drawn.gpu_ms.unwrap_or(-1.0),
             frame_ms: drawn.frame_ms,
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(times, value) }
@@ -264,8 +249,6 @@ pub unsafe extern "C" fn revmap_offscreen_draw(
 /// Reads a plane of the picture that was drawn last: width * height pixels, row by row from the
 /// top. plane is a RevmapPlane; REVMAP_PLANES_COLOR has REVMAP_PLANE_SRGB8 and REVMAP_PLANE_COLOR.
 /// count is the number of bytes, which must be exact.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_offscreen_read(
     offscreen: *mut RevmapOffscreen,
@@ -317,8 +300,6 @@ unsafe fn copy<T: Copy>(from: &[T], to: *mut c_void, count: usize) -> Outcome<()
 
 /// Writes the picture that was drawn last as a PNG file of 8-bit sRGB with alpha. The path is
 /// UTF-8.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_offscreen_write_png(
     offscreen: *mut RevmapOffscreen,
@@ -334,8 +315,6 @@ pub unsafe extern "C" fn revmap_offscreen_write_png(
 }
 
 /// Destroys a picture; null is none.
-///
-/// Thread: one at a time for a picture.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_offscreen_destroy(offscreen: *mut RevmapOffscreen) -> RevmapResult {
     enter(|| RevmapOffscreen::destroy(offscreen))

@@ -1,7 +1,7 @@
 //! Pointers from the caller, checked before use.
 
 use crate::fault::{Fault, Outcome};
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, c_char, c_void};
 use std::mem::MaybeUninit;
 
 /// A structure of the header that begins with its size, a `u32`. Its other fields are plain numbers
@@ -53,16 +53,27 @@ unsafe fn checked_size<T: Described>(from: *const T) -> Outcome<usize> {
     Err(Fault::usage(message))
 }
 
+/// A structure of zeros that holds its size.
+pub(crate) fn sized<T: Described>() -> T {
+    let size = u32::try_from(size_of::<T>()).unwrap_or(u32::MAX);
+    let mut value = MaybeUninit::<T>::zeroed();
+    // SAFETY: the structure begins with its size, and zeros are valid.
+    unsafe {
+        value.as_mut_ptr().cast::<u32>().write(size);
+        value.assume_init()
+    }
+}
+
 /// A structure from the caller. Fields that were added since its size are zeros.
 pub(crate) unsafe fn read<T: Described>(from: *const T) -> Outcome<T> {
-    let mut value = MaybeUninit::<T>::zeroed();
-    // SAFETY: null or the caller's, of the size that it says; zeros are valid.
+    let mut value = sized::<T>();
+    // SAFETY: null or the caller's, of the size that it says.
     unsafe {
         let size = checked_size(from)?;
-        let to = value.as_mut_ptr().cast::<u8>();
+        let to = (&raw mut value).cast::<u8>();
         to.copy_from_nonoverlapping(from.cast(), size);
-        Ok(value.assume_init())
     }
+    Ok(value)
 }
 
 /// Structures from the caller, one behind the other, all of the size that the first one says.
@@ -111,6 +122,29 @@ pub(crate) unsafe fn put<T>(
 pub(crate) unsafe fn take<T: Copy>(from: *const T, what: &str) -> Outcome<T> {
     // SAFETY: null or the caller's.
     unsafe { from.as_ref() }.copied().ok_or_else(|| null(what))
+}
+
+/// Writes bytes, or with a null pointer their number alone. `count` is the room, and becomes the number.
+pub(crate) unsafe fn put_bytes(
+    to: *mut c_void,
+    count: *mut usize,
+    data: impl FnOnce() -> Outcome<Vec<u8>>,
+) -> Outcome<()> {
+    // SAFETY: the caller's pointers; the room is as large as it says.
+    unsafe {
+        let room = take(count, "count")?;
+        let data = data()?;
+        if !to.is_null() {
+            if room < data.len() {
+                let message = format!("{} bytes do not fit into {room}", data.len());
+                return Err(Fault::usage(message));
+            }
+            to.cast::<u8>()
+                .copy_from_nonoverlapping(data.as_ptr(), data.len());
+        }
+        count.write(data.len());
+    }
+    Ok(())
 }
 
 /// An array from the caller; null if it is empty.

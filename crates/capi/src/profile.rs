@@ -18,8 +18,6 @@ handle!(RevmapProfile, "profile", Arc<Profile>);
 ///
 /// Fails with REVMAP_RESULT_CONTENT for fewer than 3 points, a point with r < 0, no area, or
 /// numbers that are not finite.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_profile_from_points(
     points: *const [f64; 2],
@@ -31,7 +29,7 @@ pub unsafe extern "C" fn revmap_profile_from_points(
     unsafe {
         create(profile, || {
             let points = list(points, count, "points")?;
-            Ok(Arc::new(Profile::polygon(points, radius)?))
+            Ok(Profile::polygon(points, radius)?)
         })
     }
 }
@@ -42,8 +40,6 @@ pub unsafe extern "C" fn revmap_profile_from_points(
 ///
 /// Fails with REVMAP_RESULT_FILE if that is not possible, and with REVMAP_RESULT_CONTENT if there
 /// is nothing to turn.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_profile_from_bytes(
     bytes: *const c_void,
@@ -55,16 +51,13 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     unsafe {
         create(profile, || {
             let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            let made = revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?;
-            Ok(Arc::new(made))
+            Ok(revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?)
         })
     }
 }
 
 /// Makes a profile from a file, as revmap_profile_from_bytes() does from its content. The path is
 /// UTF-8.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_profile_from_file(
     path: *const c_char,
@@ -74,15 +67,15 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     // SAFETY: the caller's pointers.
     unsafe {
         create(profile, || {
-            let made = revmap_files::profile(text(path, "path")?, enums::axis(axis)?)?;
-            Ok(Arc::new(made))
+            Ok(revmap_files::profile(
+                text(path, "path")?,
+                enums::axis(axis)?,
+            )?)
         })
     }
 }
 
 /// Returns the radius of the profile's box, object units.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_profile_radius(
     profile: *const RevmapProfile,
@@ -93,8 +86,6 @@ pub unsafe extern "C" fn revmap_profile_radius(
 }
 
 /// Destroys a profile; null is none. Objects that were made from it stay as they are.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_profile_destroy(profile: *mut RevmapProfile) -> RevmapResult {
     enter(|| RevmapProfile::destroy(profile))

@@ -48,17 +48,15 @@ pub struct RevmapBounds {
 }
 
 /// An object prepared for rays.
-pub(crate) fn caster(object: &Object) -> Outcome<Arc<RayCaster>> {
+pub(crate) fn caster(object: &Object) -> Outcome<RayCaster> {
     object.check()?;
-    Ok(Arc::new(RayCaster::new(object)?))
+    Ok(RayCaster::new(object)?)
 }
 
 /// Prepares an object for rays, without a device.
 ///
 /// Fails with REVMAP_RESULT_CONTENT for values out of range, or if the contour under the offset does
 /// not close. If nothing of the solid is left, rays hit nothing.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_ray_caster_create(
     object: *const RevmapObjectInfo,
@@ -71,8 +69,6 @@ pub unsafe extern "C" fn revmap_ray_caster_create(
 /// Finds the first hit of each ray at t >= 0: the surface that is drawn, without bumps. A ray that
 /// starts in a copy hits the point where it leaves that copy. A ray with a number that is not
 /// finite, or without a direction, hits nothing. Both arrays have count elements.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_ray_caster_cast(
     ray_caster: *const RevmapRayCaster,
@@ -114,8 +110,6 @@ fn cast(caster: &RayCaster, ray: &RevmapRay) -> RevmapRayHit {
 }
 
 /// Returns the least box around the object, all of its copies.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_ray_caster_bounds(
     ray_caster: *const RevmapRayCaster,
@@ -133,8 +127,6 @@ pub unsafe extern "C" fn revmap_ray_caster_bounds(
 }
 
 /// Destroys a ray caster; null is none.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_ray_caster_destroy(ray_caster: *mut RevmapRayCaster) -> RevmapResult {
     enter(|| RevmapRayCaster::destroy(ray_caster))

@@ -1,17 +1,15 @@
 //! Renderers: objects recorded into a host's command buffers.
 
 pub mod frame;
-pub mod images;
 pub mod objects;
-pub mod prewarm;
-pub mod shading;
 pub mod statistics;
 
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
-use crate::pointers::{described, list, read};
+use crate::pointers::{described, list, put, read};
+use crate::shading::RevmapShading;
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{
@@ -171,6 +169,14 @@ fn with<R>(
     alone(&shared, RevmapRenderer::NAME, work)
 }
 
+/// The body of an entry point that works with a renderer.
+fn enter_with(
+    renderer: *const RevmapRenderer,
+    work: impl FnOnce(&mut Recorder) -> Outcome<()>,
+) -> RevmapResult {
+    enter(|| with(renderer, work))
+}
+
 /// A renderer without objects.
 ///
 /// # Safety
@@ -181,7 +187,7 @@ unsafe fn recorder(
     search: *const RevmapSearch,
     frames: u32,
     shading: Option<&HostShading>,
-) -> Outcome<Arc<Mutex<Recorder>>> {
+) -> Outcome<Mutex<Recorder>> {
     // SAFETY: as the caller promised.
     let settings = unsafe { crate::values::search(search) }?;
     let device = RevmapDevice::get(device)?;
@@ -192,18 +198,16 @@ unsafe fn recorder(
         // SAFETY: the shading and its layout are as the caller has promised.
         Some(host) => unsafe { Renderer::with_shading(&device, output, &settings, slots, host) },
     }?;
-    Ok(Arc::new(Mutex::new(Recorder {
+    Ok(Mutex::new(Recorder {
         renderer,
         in_pass,
         prepared: (0..frames).map(|_| None).collect(),
         notes: Vec::new(),
-    })))
+    }))
 }
 
 /// Makes a renderer without objects that draws fragments in a host's pass. A null search is the
 /// default one. frames is the number of slots, 1 to 64: frames in flight times views.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_create(
     device: *const RevmapDevice,
@@ -224,8 +228,6 @@ pub unsafe extern "C" fn revmap_renderer_create(
 /// Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
 /// planes is a RevmapPlanes. A null search is the default one. frames is the number of slots, 1 to
 /// 64: frames in flight times views.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_create_compute(
     device: *const RevmapDevice,
@@ -243,9 +245,85 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     }
 }
 
-/// Sets lights and shadows for all objects.
+fn host_shading(
+    shading: *const RevmapShading,
+    set_layout: vk::DescriptorSetLayout,
+) -> Outcome<HostShading> {
+    Ok(HostShading {
+        shading: RevmapShading::get(shading)?,
+        set_layout,
+    })
+}
+
+/// Makes a renderer as revmap_renderer_create() does, with a host's function that shades in place of
+/// the library's. The function takes no lights of revmap_renderer_set_lighting(). set_layout is the
+/// layout of descriptor set 3, for fragments; null if the function reads none. The layout has every
+/// binding that the function reads, and lives as long as the renderer.
 ///
-/// Thread: one at a time for a renderer.
+/// Whenever the renderer records, a set of the layout is bound at number 3 with
+/// revmap_renderer_pipeline_layout().
+///
+/// Fails with REVMAP_RESULT_USAGE for a shading of the other stage, for a pass without colour, and for
+/// a function that reads set 3 if the layout is null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_create_with_shading(
+    device: *const RevmapDevice,
+    pass: *const RevmapPass,
+    shading: *const RevmapShading,
+    set_layout: vk::DescriptorSetLayout,
+    search: *const RevmapSearch,
+    frames: u32,
+    renderer: *mut *mut RevmapRenderer,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    unsafe {
+        create(renderer, || {
+            let output = Output::Pass(read(pass)?.formats()?);
+            let host = host_shading(shading, set_layout)?;
+            recorder(device, output, search, frames, Some(&host))
+        })
+    }
+}
+
+/// Makes a renderer as revmap_renderer_create_compute() does, with a host's function that shades as in
+/// revmap_renderer_create_with_shading(). planes must be REVMAP_PLANES_COLOR; set_layout is for
+/// compute.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_create_compute_with_shading(
+    device: *const RevmapDevice,
+    planes: u32,
+    shading: *const RevmapShading,
+    set_layout: vk::DescriptorSetLayout,
+    search: *const RevmapSearch,
+    frames: u32,
+    renderer: *mut *mut RevmapRenderer,
+) -> RevmapResult {
+    // SAFETY: the caller's pointers and handles.
+    unsafe {
+        create(renderer, || {
+            let output = Output::Compute(enums::planes(planes)?);
+            let host = host_shading(shading, set_layout)?;
+            recorder(device, output, search, frames, Some(&host))
+        })
+    }
+}
+
+/// Returns the layout of all pipelines of a renderer, with which a host binds its set 3. The layout
+/// lives as long as the renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_pipeline_layout(
+    renderer: *mut RevmapRenderer,
+    layout: *mut vk::PipelineLayout,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe {
+        put(layout, "layout", || {
+            with(renderer, |r| Ok(r.renderer.pipeline_layout()?))
+        })
+    })
+}
+
+/// Sets lights and shadows for all objects.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_lighting(
     renderer: *mut RevmapRenderer,
@@ -263,8 +341,6 @@ pub unsafe extern "C" fn revmap_renderer_set_lighting(
 /// another target is set and the frames recorded before are done.
 ///
 /// Fails with REVMAP_RESULT_USAGE if the renderer's shaders write to no such target.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_compute_target(
     renderer: *mut RevmapRenderer,
@@ -289,33 +365,25 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
 /// With hides not 0, revmap_renderer_prepare() compiles no pipeline: draws that need one that is
 /// not compiled are left out, until revmap_prewarm_compile() has made it on another thread.
 /// RevmapFrameStatistics counts what is left out. A new renderer compiles what it needs.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_hide_until_compiled(
     renderer: *mut RevmapRenderer,
     hides: u32,
 ) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            r.renderer.hide_until_compiled(hides != 0);
-            Ok(())
-        })
+    enter_with(renderer, |r| {
+        r.renderer.hide_until_compiled(hides != 0);
+        Ok(())
     })
 }
 
 /// Returns the second word of a pixel of a linear colour, for REVMAP_PLANES_COLOR: the clear value
 /// of a RevmapComputeTarget's colours.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_color_word(red: f32, green: f32, blue: f32, alpha: f32) -> u32 {
     ComputeTarget::color_word([red, green, blue, alpha])
 }
 
 /// Destroys a renderer; null is none. The frames that it recorded must be done.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_destroy(renderer: *mut RevmapRenderer) -> RevmapResult {
     enter(|| RevmapRenderer::destroy(renderer))

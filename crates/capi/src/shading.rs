@@ -3,7 +3,7 @@
 use crate::enums;
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
-use crate::pointers::{list, take, text};
+use crate::pointers::{list, put_bytes, text};
 use revmap::settings::DrawStage;
 use revmap::shading::Shading;
 use std::ffi::{c_char, c_void};
@@ -17,8 +17,6 @@ handle!(RevmapShading, "shading", Arc<Shading>);
 ///
 /// Fails with REVMAP_RESULT_CONTENT for bytes of another version of the library, and for damaged
 /// bytes.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_shading_from_bytes(
     bytes: *const c_void,
@@ -29,7 +27,7 @@ pub unsafe extern "C" fn revmap_shading_from_bytes(
     unsafe {
         create(shading, || {
             let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            Ok(Arc::new(Shading::from_bytes(bytes)?))
+            Ok(Shading::from_bytes(bytes)?)
         })
     }
 }
@@ -39,8 +37,6 @@ pub unsafe extern "C" fn revmap_shading_from_bytes(
 ///
 /// Fails with REVMAP_RESULT_CONTENT for GLSL that does not compile, with file, line and message; with
 /// REVMAP_RESULT_USAGE if the library was built without the feature `shaderc`.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_shading_compile(
     stage: u32,
@@ -63,12 +59,12 @@ pub unsafe extern "C" fn revmap_shading_compile(
 }
 
 #[cfg(feature = "shaderc")]
-fn compiled(stage: DrawStage, files: &[(&str, &str)]) -> Outcome<Arc<Shading>> {
-    Ok(Arc::new(Shading::compile(stage, files)?))
+fn compiled(stage: DrawStage, files: &[(&str, &str)]) -> Outcome<Shading> {
+    Ok(Shading::compile(stage, files)?)
 }
 
 #[cfg(not(feature = "shaderc"))]
-fn compiled(_: DrawStage, _: &[(&str, &str)]) -> Outcome<Arc<Shading>> {
+fn compiled(_: DrawStage, _: &[(&str, &str)]) -> Outcome<Shading> {
     let message = "this library was built without the feature `shaderc`, which compiles GLSL; \
                    write bytes with `revmap shading`";
     Err(Fault::usage(message))
@@ -77,8 +73,6 @@ fn compiled(_: DrawStage, _: &[(&str, &str)]) -> Outcome<Arc<Shading>> {
 /// Returns a shading's bytes for revmap_shading_from_bytes() of the same version of the library. With
 /// null bytes, count becomes their number. Otherwise count is the room in bytes, which must be large
 /// enough, and becomes the number of bytes written.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_shading_bytes(
     shading: *const RevmapShading,
@@ -87,24 +81,15 @@ pub unsafe extern "C" fn revmap_shading_bytes(
 ) -> RevmapResult {
     // SAFETY: the caller's pointers; the room is as large as it says.
     enter(|| unsafe {
-        let room = take(count, "count")?;
-        let data = RevmapShading::get(shading)?.to_bytes()?;
-        if !bytes.is_null() {
-            if room < data.len() {
-                let message = format!("{} bytes do not fit into {room}", data.len());
-                return Err(Fault::usage(message));
-            }
-            let to = bytes.cast::<u8>();
-            to.copy_from_nonoverlapping(data.as_ptr(), data.len());
-        }
-        count.write(data.len());
-        Ok(())
+        put_bytes(
+            bytes,
+            count,
+            || Ok(RevmapShading::get(shading)?.to_bytes()?),
+        )
     })
 }
 
 /// Destroys a shading; null is none. Renderers that use it stay as they are.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_shading_destroy(shading: *mut RevmapShading) -> RevmapResult {
     enter(|| RevmapShading::destroy(shading))

@@ -19,8 +19,6 @@ handle!(RevmapHeightMap, "height map", Arc<DisplacementMap>);
 /// Makes a colour map from a PNG or JPEG file. The path is UTF-8.
 ///
 /// Fails with REVMAP_RESULT_FILE if it cannot be read.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_color_map_from_file(
     path: *const c_char,
@@ -29,16 +27,13 @@ pub unsafe extern "C" fn revmap_color_map_from_file(
     // SAFETY: the caller's pointers.
     unsafe {
         create(color_map, || {
-            let made = revmap_files::color_map(text(path, "path")?)?;
-            Ok(Arc::new(made))
+            Ok(revmap_files::color_map(text(path, "path")?)?)
         })
     }
 }
 
 /// Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
 /// from the top.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_color_map_from_texels(
     width: u32,
@@ -50,15 +45,12 @@ pub unsafe extern "C" fn revmap_color_map_from_texels(
     unsafe {
         create(color_map, || {
             let texels = list(texels, width as usize * height as usize, "texels")?;
-            let made = ColorMap::from_texels(width, height, texels.to_vec())?;
-            Ok(Arc::new(made))
+            Ok(ColorMap::from_texels(width, height, texels.to_vec())?)
         })
     }
 }
 
 /// Destroys a colour map; null is none. Objects that use it stay as they are.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_color_map_destroy(color_map: *mut RevmapColorMap) -> RevmapResult {
     enter(|| RevmapColorMap::destroy(color_map))
@@ -68,8 +60,6 @@ pub extern "C" fn revmap_color_map_destroy(color_map: *mut RevmapColorMap) -> Re
 /// filter is a RevmapSlopeFilter.
 ///
 /// Fails with REVMAP_RESULT_FILE if it cannot be read.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_height_map_from_file(
     path: *const c_char,
@@ -80,16 +70,13 @@ pub unsafe extern "C" fn revmap_height_map_from_file(
     unsafe {
         create(height_map, || {
             let filter = enums::slope_filter(filter)?;
-            let made = revmap_files::displacement_map(text(path, "path")?, filter)?;
-            Ok(Arc::new(made))
+            Ok(revmap_files::displacement_map(text(path, "path")?, filter)?)
         })
     }
 }
 
 /// Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
 /// RevmapSlopeFilter.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_height_map_from_heights(
     width: u32,
@@ -103,15 +90,14 @@ pub unsafe extern "C" fn revmap_height_map_from_heights(
         create(height_map, || {
             let heights = list(heights, width as usize * height as usize, "heights")?;
             let filter = enums::slope_filter(filter)?;
-            let made = DisplacementMap::from_heights(width, height, heights, filter)?;
-            Ok(Arc::new(made))
+            Ok(DisplacementMap::from_heights(
+                width, height, heights, filter,
+            )?)
         })
     }
 }
 
 /// Destroys a height map; null is none. Objects that use it stay as they are.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_height_map_destroy(height_map: *mut RevmapHeightMap) -> RevmapResult {
     enter(|| RevmapHeightMap::destroy(height_map))

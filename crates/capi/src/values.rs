@@ -2,7 +2,7 @@
 
 use crate::enums::{self, RevmapShadow};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::pointers::{described, fill, list, read};
+use crate::pointers::{described, fill, list, read, sized};
 use glam::{DMat4, DQuat, DVec3};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
@@ -179,11 +179,11 @@ impl RevmapLighting {
         });
         let lighting = Lighting::default();
         Self {
-            size: size(size_of::<Self>()),
             shadow: RevmapShadow::Off as u32,
             ambient: lighting.ambient,
             light_count: 2,
             lights: LIGHTS.as_ptr(),
+            ..sized()
         }
     }
 
@@ -207,11 +207,11 @@ impl RevmapCamera {
     pub(crate) fn defaults() -> Self {
         let from = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
         Self {
-            size: size(size_of::<Self>()),
             eye: from.eye.to_array(),
             target: from.target.to_array(),
             up: from.up.to_array(),
             fov_y: from.fov_y,
+            ..sized()
         }
     }
 
@@ -278,28 +278,15 @@ impl RevmapSearch {
 
     pub(crate) fn defaults() -> Self {
         Self {
-            size: size(size_of::<Self>()),
-            solver: 0,
-            max_steps: 0,
-            map_rows: 0,
-            map_source: 0,
-            map_format: 0,
             proxy_min_pixels: SearchSettings::default().proxy_min_pixels,
             tolerance: Tolerance::DEFAULT.pixels(),
+            ..sized()
         }
     }
 }
 
-/// A structure's size, as its first field holds it.
-pub(crate) const fn size(bytes: usize) -> u32 {
-    assert!(bytes < 1 << 16);
-    bytes as u32
-}
-
 /// Fills in a little ambient light, REVMAP_SHADOW_OFF, and one white light from above, which lasts
 /// as long as the program. The size must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_lighting_defaults(lighting: *mut RevmapLighting) -> RevmapResult {
     // SAFETY: the caller's structure.
@@ -308,8 +295,6 @@ pub unsafe extern "C" fn revmap_lighting_defaults(lighting: *mut RevmapLighting)
 
 /// Fills in a camera at (2, 0, 0.5) that looks at (0, 0, 0.5), z up, 40 degrees. The size must be
 /// set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_camera_defaults(camera: *mut RevmapCamera) -> RevmapResult {
     // SAFETY: the caller's structure.
@@ -317,8 +302,6 @@ pub unsafe extern "C" fn revmap_camera_defaults(camera: *mut RevmapCamera) -> Re
 }
 
 /// Fills in the default search. The size must be set.
-///
-/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_search_defaults(search: *mut RevmapSearch) -> RevmapResult {
     // SAFETY: the caller's structure.

@@ -1,10 +1,9 @@
 //! `revmap animate`: a turntable, or changing parameters, as numbered pictures with the time of
 //! every frame.
 
-use super::options::{Drawing, Tracing};
+use super::options::{Drawing, Samples, Tracing};
 use super::output;
 use super::progress::Progress;
-use super::samples::Samples;
 use clap::Args;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, ErrorKind, Result};

@@ -1,9 +1,9 @@
-//! `revmap bench`: frame rates, step counts and errors, measured side by side.
+//! `revmap bench`: frame rates, step counts and errors, measured side by side. `revmap chart`: speed
+//! against accuracy.
 
-use super::interrupt;
 use super::lists::Lists;
 use super::options::named;
-use super::progress::Progress;
+use super::progress::{Progress, interrupt};
 use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -45,16 +45,39 @@ pub struct Bench {
     how: How,
 }
 
+/// Charts speed against accuracy: every search over its budget and its maps
+///
+/// Steps, rows, sources and formats of maps are swept one at a time; where one of their lists is
+/// given, every combination of the lists is measured instead.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap chart --quick --out out/chart\n  \
+    revmap chart assets/scenes/vase.toml --solver circle,live --max-steps 10,20,40,80")]
+pub struct Chart {
+    #[command(flatten)]
+    lists: Lists,
+    #[command(flatten)]
+    scale: Scale,
+}
+
+impl Chart {
+    pub fn run(self) -> Result<()> {
+        let full = self.scale.full;
+        let name = if full { "chart-full" } else { "chart" };
+        run(embedded::plan(name)?, &self.lists, self.scale.quick)
+    }
+}
+
 /// How much is measured.
 #[derive(Args)]
-pub struct Scale {
+struct Scale {
     /// A quick look: fewer solids, methods and values. Without another plan: one solid, within 20
     /// seconds
     #[arg(long, conflicts_with = "full")]
-    pub quick: bool,
+    quick: bool,
     /// The whole suite from three elevations, every search: takes above an hour on two cores
     #[arg(long)]
-    pub full: bool,
+    full: bool,
 }
 
 /// The task; one of these at a time
@@ -201,7 +224,7 @@ fn list(name: &str) -> Result<()> {
 }
 
 /// Measures a plan with what the command line changes in it, and writes its report.
-pub fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
+fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
     lists.check()?;
     let given = lists.overrides(quick)?;
     file.apply(&given);
@@ -248,13 +271,12 @@ impl Session {
     fn open(lists: &Lists) -> Result<Self> {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
-        let (name, kind, driver) = (&report.name, report.kind, &report.driver);
-        let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
+        let machine = output::machine(report, &Lists::command());
         let out = lists.folder(&machine.folder())?;
         overrun::keep_folder(&out);
         overrun::try_out(lists.device.as_deref());
         if !lists.quiet {
-            output::note(&format!("device: {name} ({kind}), driver {driver}"));
+            output::device(report);
         }
         Ok(Self {
             device,
@@ -272,7 +294,7 @@ impl Session {
         let progress = Progress::start("measuring", self.quiet);
         let mut bench = DeviceBench::new(self.device.clone(), !file.wall_clock)?;
         let mut observer = Observer {
-            stop: interrupt::flag()?,
+            stop: interrupt()?,
             progress: &|what, gone, all| {
                 progress.say(what);
                 progress.report(gone as usize, all as usize);

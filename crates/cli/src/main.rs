@@ -6,27 +6,22 @@
 mod animate;
 mod bake;
 mod bench;
-mod chart;
 mod compare;
 mod devices;
 mod failure;
-mod interrupt;
 mod levels;
 mod lists;
 mod options;
 mod output;
 mod overrun;
-mod pipelines;
 mod progress;
 mod render;
-mod samples;
 mod searches;
 mod shaders;
 mod shading;
 mod shell;
 mod stability;
 mod submit;
-mod usage;
 #[cfg(feature = "viewer")]
 mod view;
 #[cfg(not(feature = "viewer"))]
@@ -58,7 +53,7 @@ enum Command {
     Animate(animate::Animate),
     Bake(bake::Bake),
     Bench(bench::Bench),
-    Chart(chart::Chart),
+    Chart(bench::Chart),
     Stability(stability::Stability),
     Submit(submit::Submit),
     Shaders(shaders::Shaders),
@@ -99,7 +94,7 @@ const FAILED: u8 = 1;
 fn main() -> ExitCode {
     let program = match Program::try_parse() {
         Ok(program) => program,
-        Err(error) => return usage::report(&error),
+        Err(error) => return failure::wrong_usage(&error),
     };
     overrun::watch();
     // If RUST_BACKTRACE is set, the usual panic message is kept. Otherwise a bug is one line too,

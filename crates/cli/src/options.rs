@@ -1,15 +1,17 @@
 //! Options of every drawing command.
 
-use super::pipelines::{self, Kept};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use revmap::error::{Error, ErrorKind};
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_lab::method::{Edges, Method, MethodSettings};
-use revmap_searches::folder;
+use revmap_lab::samples::averaged;
+use revmap_searches::{cache, folder};
+use std::path::PathBuf;
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 16384;
@@ -120,8 +122,8 @@ impl Drawing {
     }
 
     /// Opens the device with the pipelines of earlier runs and the memory limit.
-    pub fn open(&self) -> revmap::Result<(Device, Kept)> {
-        let (device, kept) = pipelines::open(self.device.as_deref())?;
+    pub fn open(&self) -> Result<(Device, Kept)> {
+        let (device, kept) = open(self.device.as_deref())?;
         device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
         Ok((device, kept))
     }
@@ -148,6 +150,79 @@ impl Drawing {
             .filter(|(name, is)| *is && !reads.contains(name));
         found.extend(idle.map(|(name, _)| format!("{name}: {who} makes no use of it")));
         found
+    }
+}
+
+/// Smoothing of edges
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Samples {
+    /// Rays per pixel. Colours are averaged; all other channels come from the middle ray
+    #[arg(long = "samples", value_name = "N", default_value = "1", value_parser = named(&COUNTS))]
+    pub count: u32,
+    /// Blends pixels that a silhouette cuts by the part beyond it; other channels than colour stay
+    /// [default: on, but off with more than one ray per pixel, where an .exr is written, and in the
+    /// stage reference]
+    #[arg(long, value_name = "WHETHER", value_parser = named(&SWITCH))]
+    pub antialias: Option<bool>,
+}
+
+const COUNTS: [(&str, u32); 4] = [("1", 1), ("4", 4), ("16", 16), ("64", 64)];
+const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
+
+impl Samples {
+    /// Returns true if silhouettes are smoothed. With `exact`, for pictures that are compared with
+    /// others, they are smoothed only if the option says so.
+    pub fn antialias(self, exact: bool) -> bool {
+        self.antialias.unwrap_or(self.count == 1 && !exact)
+    }
+
+    /// The errors of [`averaged`].
+    ///
+    /// # Errors
+    /// The errors of `draw`.
+    pub fn draw(self, scene: &Scene, draw: impl FnMut(&Scene) -> Result<Frame>) -> Result<Frame> {
+        averaged(self.count, scene, draw)
+    }
+}
+
+/// The file of a device's pipelines.
+pub struct Kept {
+    file: Option<PathBuf>,
+}
+
+/// Opens a device, with the pipelines of earlier runs: one file per driver in the user's cache folder.
+/// Errors with this file are no failures, since pipelines are compiled again.
+fn open(choice: Option<&str>) -> Result<(Device, Kept)> {
+    let device = Device::open(choice)?;
+    let report = device.report();
+    let name: String = format!("{} {}", report.name, report.driver)
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    let file = cache::folder().map(|folder| folder.join(format!("{name}.pipelines")));
+    if let Some(data) = file.as_deref().and_then(cache::read) {
+        // The driver ignores data that is not its own.
+        let _ = device.add_pipeline_cache(&data);
+    }
+    Ok((device, Kept { file }))
+}
+
+impl Kept {
+    /// Stores the compiled pipelines, if there are any.
+    pub fn save(&self, device: &Device) {
+        let Some(file) = self
+            .file
+            .as_ref()
+            .filter(|_| device.pipelines_compiled() > 0)
+        else {
+            return;
+        };
+        let Ok(data) = device.pipeline_cache_data() else {
+            return;
+        };
+        if cache::read(file).as_deref() != Some(&data) {
+            cache::write(file, &data);
+        }
     }
 }
 
@@ -196,7 +271,7 @@ impl TypedValueParser for MethodParser {
         command: &clap::Command,
         argument: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
-    ) -> Result<Method, clap::Error> {
+    ) -> std::result::Result<Method, clap::Error> {
         let own = |text: &str| {
             text.starts_with("mesh") || text == Method::Floor.name() || folder::is_named(text)
         };
@@ -223,7 +298,7 @@ impl TypedValueParser for MethodParser {
 ///
 /// # Errors
 /// [`ErrorKind::Usage`] for a mesh and for the floor.
-pub fn searches(methods: &[Method]) -> revmap::Result<Vec<Solver>> {
+pub fn searches(methods: &[Method]) -> Result<Vec<Solver>> {
     let search = |method: &Method| {
         method.solver().ok_or_else(|| {
             let message = format!("{method} is no search; give searches");
@@ -234,12 +309,12 @@ pub fn searches(methods: &[Method]) -> revmap::Result<Vec<Solver>> {
 }
 
 /// A tolerance in pixels.
-pub fn tolerance(text: &str) -> Result<Tolerance, String> {
+pub fn tolerance(text: &str) -> std::result::Result<Tolerance, String> {
     text.parse().map_err(|e: revmap::Error| e.message)
 }
 
 /// `WIDTHxHEIGHT`, each from 1 to [`MAX_SIDE`].
-pub fn size(text: &str) -> Result<(u32, u32), String> {
+pub fn size(text: &str) -> std::result::Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']).ok_or("write it as 800x600")?;
     let side = |side: &str, what: &str| match side.parse::<u64>() {
         Ok(n) if (1..=u64::from(MAX_SIDE)).contains(&n) => Ok(n as u32),

@@ -2,6 +2,7 @@
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::DeviceReport;
+use revmap_lab::report::machine::Machine;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,11 @@ pub fn device(device: &DeviceReport) {
         name, kind, driver, ..
     } = device;
     note(&format!("device: {name} ({kind}), driver {driver}"));
+}
+
+/// The note on this machine for the results of a command.
+pub fn machine(device: &DeviceReport, command: &str) -> Machine {
+    Machine::here(&device.name, device.kind, &device.driver, VERSION, command)
 }
 
 /// Prints a warning; the exit code stays the same.

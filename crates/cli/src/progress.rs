@@ -1,7 +1,11 @@
-//! A progress bar on standard error, only on a terminal, and only for work of more than a second.
+//! Long work: its interruption, and a progress bar on standard error, only on a terminal, and only
+//! for work of more than a second.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use revmap::error::{Error, ErrorKind, Result};
 use std::io::IsTerminal;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -62,5 +66,30 @@ impl Drop for Progress {
             let _ = thread.join();
         }
         self.bar.finish_and_clear();
+    }
+}
+
+/// The exit code that shells give to a program ended by an interrupt.
+const INTERRUPTED: i32 = 130;
+
+/// The flag that Ctrl-C sets after this call: long work ends early but cleanly. A second one ends the
+/// program at once.
+pub fn interrupt() -> Result<&'static AtomicBool> {
+    static STOP: AtomicBool = AtomicBool::new(false);
+    static SET: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+    let set = SET.get_or_init(|| {
+        ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(INTERRUPTED);
+            }
+        })
+        .map_err(|e| e.to_string())
+    });
+    match set {
+        Ok(()) => Ok(&STOP),
+        Err(why) => Err(Error::new(
+            ErrorKind::Other,
+            format!("interrupts cannot be watched for ({why}); run it again"),
+        )),
     }
 }

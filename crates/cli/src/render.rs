@@ -1,8 +1,7 @@
 //! `revmap render`: one frame, off screen.
 
-use super::options::{self, Drawing, Tracing};
+use super::options::{self, Drawing, Samples, Tracing};
 use super::progress::Progress;
-use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};

@@ -38,13 +38,12 @@ impl Shading {
         use revmap::error::{Error, ErrorKind};
         let inputs: Vec<_> = self.files.iter().map(PathBuf::as_path).collect();
         output::check(&self.output, "--output", &["shading"], &inputs)?;
-        let failed = |file: &PathBuf, does: &str, e: std::io::Error| {
-            let message = format!("cannot be {does} ({e})");
-            Error::new(ErrorKind::File, message).in_file(file)
-        };
         let mut texts = Vec::new();
         for (n, file) in self.files.iter().enumerate() {
-            let text = std::fs::read_to_string(file).map_err(|e| failed(file, "read", e))?;
+            let text = std::fs::read_to_string(file).map_err(|e| {
+                let message = format!("cannot be read ({e})");
+                Error::new(ErrorKind::File, message).in_file(file)
+            })?;
             let included = file.file_name().filter(|_| n > 0);
             let name = included.unwrap_or(file.as_os_str()).to_string_lossy();
             texts.push((name, text));
@@ -58,7 +57,7 @@ impl Shading {
             return Ok(());
         };
         let bytes = made.to_bytes()?;
-        std::fs::write(file, &bytes).map_err(|e| failed(file, "written", e))?;
+        revmap_files::write_bytes(file, &bytes)?;
         output::result(&format!("{}: {} bytes", file.display(), bytes.len()));
         Ok(())
     }

@@ -1,9 +1,8 @@
 //! `revmap stability`: the cases in which methods fail.
 
-use super::interrupt;
 use super::lists::Lists;
 use super::options::{MethodParser, searches};
-use super::progress::Progress;
+use super::progress::{Progress, interrupt};
 use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -11,7 +10,6 @@ use revmap::gpu::Device;
 use revmap::settings::Solver;
 use revmap_lab::method::Method;
 use revmap_lab::report::folder;
-use revmap_lab::report::machine::Machine;
 use revmap_lab::stability::case::SOLVERS as USUAL;
 use revmap_lab::stability::run::{Plan, run};
 use revmap_lab::stability::{cases, random, report};
@@ -63,8 +61,7 @@ impl Stability {
         let solvers = self.solvers()?;
         let device = Device::open(self.device.as_deref())?;
         let about = device.report();
-        let (name, kind, driver) = (&about.name, about.kind, &about.driver);
-        let machine = Machine::here(name, kind, driver, output::VERSION, &Lists::command());
+        let machine = output::machine(about, &Lists::command());
         let out = match &self.out {
             Some(out) => {
                 folder::claim(out, self.overwrite || overrun::is_again(), [])?;
@@ -81,7 +78,7 @@ impl Stability {
             return self.random(&device, count, &out);
         }
         let progress = Progress::start("stability", self.quiet);
-        let stop = interrupt::flag()?;
+        let stop = interrupt()?;
         let plan = Plan {
             cases: &chosen,
             solvers: &solvers,
@@ -128,7 +125,7 @@ impl Stability {
 
     fn random(&self, device: &Device, count: u64, out: &Path) -> Result<()> {
         let progress = Progress::start("random scenes", self.quiet);
-        let stop = interrupt::flag()?;
+        let stop = interrupt()?;
         let mut drawn = 0;
         let failures = random::run(device, (self.seed, count), out, &mut |done| {
             drawn = done;

@@ -1,12 +1,11 @@
 //! `revmap submit`: the figures of this device in a small file, for others to gather.
 
 use super::options::size;
-use super::progress::Progress;
-use super::{interrupt, output, shaders};
+use super::progress::{Progress, interrupt};
+use super::{output, shaders};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
-use revmap_lab::report::machine::Machine;
 use revmap_lab::report::measure::{Measured, Observer, measure};
 use revmap_lab::report::plan::{Lists, Overrides, Plan, PlanFile, embedded};
 use revmap_lab::report::submission::{self, OneShader, Pictures};
@@ -56,8 +55,7 @@ impl Submit {
         if !self.quiet {
             output::device(&report);
         }
-        let (name, driver) = (&report.name, &report.driver);
-        let machine = Machine::here(name, report.kind, driver, output::VERSION, "revmap submit");
+        let machine = output::machine(&report, "revmap submit");
         let given = Overrides {
             quick: self.quick,
             lists: Lists {
@@ -100,7 +98,7 @@ impl Submit {
         let progress = Progress::start("measuring", self.quiet);
         let mut bench = DeviceBench::new(device, true)?;
         let mut observer = Observer {
-            stop: interrupt::flag()?,
+            stop: interrupt()?,
             progress: &|what, gone, all| {
                 progress.say(what);
                 progress.report(gone as usize, all as usize);

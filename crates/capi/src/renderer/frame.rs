@@ -1,12 +1,14 @@
-//! A frame of a renderer: prepared, then recorded.
+//! A frame of a renderer: prepared, then recorded. Pipelines compiled before they are needed.
 
-use super::{Recorder, RevmapRenderer, with};
+use super::{Recorder, RevmapRenderer, enter_with, with};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::pointers::read;
+use crate::handle::{Handle, create, handle};
+use crate::pointers::{put, read};
 use crate::values::{RevmapCamera, RevmapView};
 use ash::vk;
 use ash::vk::Handle as _;
-use revmap::gpu::{PreparedFrame, View};
+use revmap::gpu::{PreparedFrame, Prewarm, View};
+use std::sync::Arc;
 
 impl Recorder {
     unsafe fn prepare(&mut self, cmd: vk::CommandBuffer, slot: u32, view: &View) -> Outcome<()> {
@@ -25,7 +27,7 @@ impl Recorder {
     }
 
     /// The frame of a slot, to be recorded.
-    pub(super) fn frame(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<&PreparedFrame> {
+    fn frame(&self, cmd: vk::CommandBuffer, slot: u32) -> Outcome<&PreparedFrame> {
         if cmd.is_null() {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
@@ -51,8 +53,6 @@ impl Recorder {
 ///
 /// Fails with REVMAP_RESULT_CONTENT for an object that cannot be drawn; the object keeps its former
 /// values. The text begins with the object's number.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_prepare(
     renderer: *mut RevmapRenderer,
@@ -70,23 +70,17 @@ pub unsafe extern "C" fn revmap_renderer_prepare(
 /// Ends a frame of all views: the motion of the next frame is that from the present values. The
 /// host calls it before the next frame's changes. Objects that were added since the last call begin
 /// without motion. Renderers without REVMAP_ATTACHMENT_MOTION need no call.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_end_frame(renderer: *mut RevmapRenderer) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            r.renderer.end_frame();
-            Ok(())
-        })
+    enter_with(renderer, |r| {
+        r.renderer.end_frame();
+        Ok(())
     })
 }
 
 /// Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
 /// height pixels. Depth is 0 at near and 1 at far, both along the view. The output's depth order is
 /// REVMAP_DEPTH_ORDER_NORMAL.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_prepare_camera(
     renderer: *mut RevmapRenderer,
@@ -115,24 +109,20 @@ pub unsafe extern "C" fn revmap_renderer_prepare_camera(
 ///
 /// Fails with REVMAP_RESULT_USAGE, and records nothing, if the slot is not prepared. Values set
 /// since then are not drawn yet.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_record(
     renderer: *mut RevmapRenderer,
     command_buffer: vk::CommandBuffer,
     slot: u32,
 ) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            let frame = r.frame(command_buffer, slot)?;
-            if !r.in_pass {
-                let message = "this renderer computes; call revmap_renderer_record_compute";
-                return Err(Fault::usage(message));
-            }
-            // SAFETY: the slot was prepared; the rest the caller has promised.
-            Ok(unsafe { r.renderer.record(command_buffer, frame) }?)
-        })
+    enter_with(renderer, |r| {
+        let frame = r.frame(command_buffer, slot)?;
+        if !r.in_pass {
+            let message = "this renderer computes; call revmap_renderer_record_compute";
+            return Err(Fault::usage(message));
+        }
+        // SAFETY: the slot was prepared; the rest the caller has promised.
+        Ok(unsafe { r.renderer.record(command_buffer, frame) }?)
     })
 }
 
@@ -145,23 +135,78 @@ pub unsafe extern "C" fn revmap_renderer_record(
 /// commands have run.
 ///
 /// Fails like revmap_renderer_record().
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_record_compute(
     renderer: *mut RevmapRenderer,
     command_buffer: vk::CommandBuffer,
     slot: u32,
 ) -> RevmapResult {
-    enter(|| {
-        with(renderer, |r| {
-            let frame = r.frame(command_buffer, slot)?;
-            if r.in_pass {
-                let message = "this renderer draws in a pass; call revmap_renderer_record";
-                return Err(Fault::usage(message));
-            }
-            // SAFETY: the slot was prepared; the rest the caller has promised.
-            Ok(unsafe { r.renderer.record_compute(command_buffer, frame) }?)
-        })
+    enter_with(renderer, |r| {
+        let frame = r.frame(command_buffer, slot)?;
+        if r.in_pass {
+            let message = "this renderer draws in a pass; call revmap_renderer_record";
+            return Err(Fault::usage(message));
+        }
+        // SAFETY: the slot was prepared; the rest the caller has promised.
+        Ok(unsafe { r.renderer.record_compute(command_buffer, frame) }?)
+    })
+}
+
+/// Pipelines that a renderer may come to need.
+pub struct RevmapPrewarm;
+handle!(RevmapPrewarm, "prewarm", Arc<Prewarm>);
+
+/// Lists every pipeline that the objects can reach while parameters, lights, placements and the
+/// view change. Other techniques make others necessary: textures where there were none, replicas,
+/// shadows; in compute also more objects or copies than one. Nothing is compiled yet.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_prewarm(
+    renderer: *mut RevmapRenderer,
+    prewarm: *mut *mut RevmapPrewarm,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    unsafe { create(prewarm, || with(renderer, |r| Ok(r.renderer.prewarm()?))) }
+}
+
+/// Compiles those that are not compiled yet. The renderer must live until this returns.
+///
+/// Another thread may use the renderer meanwhile.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_prewarm_compile(prewarm: *const RevmapPrewarm) -> RevmapResult {
+    enter(|| Ok(RevmapPrewarm::get(prewarm)?.compile()?))
+}
+
+/// Returns the number of pipelines, compiled or not.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_prewarm_count(
+    prewarm: *const RevmapPrewarm,
+    count: *mut usize,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe { put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len())) })
+}
+
+/// Destroys the list; null is none. Compiled pipelines stay.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_prewarm_destroy(prewarm: *mut RevmapPrewarm) -> RevmapResult {
+    enter(|| RevmapPrewarm::destroy(prewarm))
+}
+
+/// Records draws of no pixel, or dispatches of no group, with every pipeline of
+/// revmap_renderer_prewarm(): some drivers compile shaders at the first draw, and do it when these
+/// commands run. In a pass it sets the scissor, too, to nothing.
+///
+/// The slot is prepared; the caller meets the conditions of revmap_renderer_record() or
+/// revmap_renderer_record_compute().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_record_prewarm(
+    renderer: *mut RevmapRenderer,
+    command_buffer: vk::CommandBuffer,
+    slot: u32,
+) -> RevmapResult {
+    enter_with(renderer, |r| {
+        let frame = r.frame(command_buffer, slot)?;
+        // SAFETY: the slot was prepared; the rest the caller has promised.
+        Ok(unsafe { r.renderer.record_prewarm(command_buffer, frame) }?)
     })
 }

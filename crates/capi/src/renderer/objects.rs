@@ -1,20 +1,22 @@
-//! Objects of a renderer: added, changed, removed.
+//! Objects of a renderer: added, changed, removed; images of a host as their textures.
 
 use super::{RevmapRenderer, with};
 use crate::fault::{Outcome, RevmapResult, enter};
-use crate::handle::create;
+use crate::handle::{Handle, create, handle};
 use crate::object::{RevmapObjectInfo, placements};
 use crate::pointers::{list, put, read, take};
 use crate::rays::{self, RevmapRayCaster};
 use crate::values::{RevmapOffset, RevmapPlacement};
-use revmap::gpu::{ObjectId, Renderer};
+use ash::vk;
+use revmap::gpu::{HostImage, ObjectId, Renderer};
+use std::sync::Arc;
 
 /// An object of one renderer, which refuses those of others; never 0. The number refers to the same
 /// object for all its values, and is never reused after its removal.
 pub type RevmapObject = u64;
 
 /// Calls `change` with a renderer and one of its objects.
-pub(super) fn with_object(
+fn with_object(
     renderer: *const RevmapRenderer,
     object: RevmapObject,
     change: impl FnOnce(&mut Renderer, ObjectId) -> revmap::Result<()>,
@@ -26,8 +28,6 @@ pub(super) fn with_object(
 /// Adds an object, which is drawn from the next prepared frame on.
 ///
 /// Fails with REVMAP_RESULT_CONTENT for values out of range.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_add(
     renderer: *mut RevmapRenderer,
@@ -47,8 +47,6 @@ pub unsafe extern "C" fn revmap_renderer_add(
 ///
 /// Fails with REVMAP_RESULT_USAGE for an object that is not there, as do all functions that take
 /// one.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_remove(
     renderer: *mut RevmapRenderer,
@@ -60,8 +58,6 @@ pub extern "C" fn revmap_renderer_remove(
 /// Gives an object other values, all of them. Values that are equal cost nothing.
 ///
 /// Fails with REVMAP_RESULT_CONTENT for values out of range.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set(
     renderer: *mut RevmapRenderer,
@@ -77,8 +73,6 @@ pub unsafe extern "C" fn revmap_renderer_set(
 
 /// Sets which views show an object: those whose mask shares a bit with this one. With 0 no view
 /// shows it. A hidden object throws no shadow. New objects are in all masks.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_set_mask(
     renderer: *mut RevmapRenderer,
@@ -90,8 +84,6 @@ pub extern "C" fn revmap_renderer_set_mask(
 
 /// Returns the number of an object in REVMAP_ATTACHMENT_IDENTITY. No two objects of a renderer have
 /// the same one at a time.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_object_number(
     renderer: *const RevmapRenderer,
@@ -112,8 +104,6 @@ pub unsafe extern "C" fn revmap_renderer_object_number(
 /// Prepares an object for rays, with the values that it has now.
 ///
 /// Fails like revmap_ray_caster_create().
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_ray_caster(
     renderer: *const RevmapRenderer,
@@ -133,8 +123,6 @@ pub unsafe extern "C" fn revmap_renderer_ray_caster(
 /// Moves the surface of an object: extension, bevel and chamfer.
 ///
 /// Fails like revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_offset(
     renderer: *mut RevmapRenderer,
@@ -151,8 +139,6 @@ pub unsafe extern "C" fn revmap_renderer_set_offset(
 /// Moves an object that is one copy.
 ///
 /// Fails like revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_placement(
     renderer: *mut RevmapRenderer,
@@ -170,8 +156,6 @@ pub unsafe extern "C" fn revmap_renderer_set_placement(
 /// Gives an object other copies; with a count of 0 it is one, at its placement.
 ///
 /// Fails like revmap_renderer_set().
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_set_instances(
     renderer: *mut RevmapRenderer,
@@ -184,4 +168,91 @@ pub unsafe extern "C" fn revmap_renderer_set_instances(
         let all = placements(unsafe { list(instances, count, "instances") }?);
         with_object(renderer, object, |r, id| r.set_instances(id, all))
     })
+}
+
+/// An image of the host for textures of objects. Objects with the same image share draws.
+pub struct RevmapHostImage;
+handle!(RevmapHostImage, "host image", Arc<HostImage>);
+
+/// Makes an image of a 2D view and a sampler, both of the renderer's device. They stay valid while
+/// revmap_host_image_is_held() gives 1, and until commands recorded before have run. The image is in
+/// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL while recorded frames run, and its writes are visible to
+/// the stage that draws.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_host_image_create(
+    view: vk::ImageView,
+    sampler: vk::Sampler,
+    image: *mut *mut RevmapHostImage,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer and handles.
+    unsafe { create(image, || Ok(HostImage::new(view, sampler)?)) }
+}
+
+/// Returns 1 if an object or a slot holds the image, else 0. A slot holds the images of its last frame
+/// until it is prepared again.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_host_image_is_held(
+    image: *const RevmapHostImage,
+    held: *mut u32,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    enter(|| unsafe {
+        put(held, "held", || {
+            Ok(u32::from(RevmapHostImage::get(image)?.is_held()))
+        })
+    })
+}
+
+/// Destroys the handle; null is none. Objects keep the image, and the handle can no longer say whether
+/// it is held.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_host_image_destroy(image: *mut RevmapHostImage) -> RevmapResult {
+    enter(|| RevmapHostImage::destroy(image))
+}
+
+/// Sets an image of an object by a function of the renderer; null for none.
+fn set(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    image: *const RevmapHostImage,
+    set: fn(&mut Renderer, ObjectId, Option<HostImage>) -> revmap::Result<()>,
+) -> RevmapResult {
+    enter(|| {
+        let image = RevmapHostImage::get_optional(image)?.map(|image| HostImage::clone(&image));
+        with_object(renderer, object, |r, id| set(r, id, image))
+    })
+}
+
+/// Sets an image as the colours of an object, in place of its color_map; null for that map again.
+/// Frames that were prepared earlier keep their image.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_set_color_image(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    image: *const RevmapHostImage,
+) -> RevmapResult {
+    set(renderer, object, image, Renderer::set_color_image)
+}
+
+/// Sets an image as the slopes of an object, in place of its height_map; null for that map again. The
+/// first two channels are the slopes of heights over texture coordinates: to the right over the whole
+/// width, upwards over the whole height. It replaces an image of heights.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_set_slope_image(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    image: *const RevmapHostImage,
+) -> RevmapResult {
+    set(renderer, object, image, Renderer::set_slope_image)
+}
+
+/// Same as revmap_renderer_set_slope_image, for an image whose first channel is heights, 0 to 1. Each
+/// pixel reads it four times: an image of slopes is faster. It replaces an image of slopes.
+#[unsafe(no_mangle)]
+pub extern "C" fn revmap_renderer_set_height_image(
+    renderer: *mut RevmapRenderer,
+    object: RevmapObject,
+    image: *const RevmapHostImage,
+) -> RevmapResult {
+    set(renderer, object, image, Renderer::set_height_image)
 }

@@ -2,8 +2,7 @@
 
 use super::{Recorder, RevmapRenderer, with};
 use crate::fault::{Fault, RevmapResult, enter};
-use crate::pointers::{described, fill, put};
-use crate::values::size;
+use crate::pointers::{described, fill, put, sized};
 use revmap::gpu::DrawPath;
 use std::ffi::{CString, c_char};
 
@@ -64,7 +63,6 @@ impl Recorder {
         let drawn = |path| number(paths.iter().filter(|p| **p == path).count());
         let [shape_map_bytes, texture_bytes] = self.renderer.map_bytes();
         RevmapStatistics {
-            size: size(size_of::<RevmapStatistics>()),
             objects: number(self.renderer.object_count()),
             surfaces_made: self.renderer.rebuild_count(),
             shape_map_bytes,
@@ -74,13 +72,12 @@ impl Recorder {
             drawn_by_hull: drawn(DrawPath::Cells),
             drawn_by_tiles: drawn(DrawPath::Tiles),
             notes: number(self.renderer.notes().len()),
+            ..sized()
         }
     }
 }
 
 /// Returns the contents and work of a renderer. The size of statistics must be set.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_statistics(
     renderer: *const RevmapRenderer,
@@ -96,8 +93,6 @@ pub unsafe extern "C" fn revmap_renderer_statistics(
 /// Returns what the frame that was prepared for a slot records. The size of statistics must be set.
 ///
 /// Fails with REVMAP_RESULT_USAGE if the slot is not prepared.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_frame_statistics(
     renderer: *const RevmapRenderer,
@@ -107,13 +102,13 @@ pub unsafe extern "C" fn revmap_renderer_frame_statistics(
     enter(|| {
         let of = with(renderer, |r| Ok(r.prepared(slot)?.statistics()))?;
         let value = RevmapFrameStatistics {
-            size: size(size_of::<RevmapFrameStatistics>()),
             objects: of.objects,
             draws: of.draws,
             dispatches: of.dispatches,
             hidden: of.hidden,
             tiles: of.tiles,
             slot_bytes: of.slot_bytes,
+            ..sized()
         };
         // SAFETY: the caller's structure.
         unsafe { fill(statistics, value) }
@@ -122,8 +117,6 @@ pub unsafe extern "C" fn revmap_renderer_frame_statistics(
 
 /// Returns a note: a deviation from the settings, and its reason. The text lasts as long as the
 /// renderer.
-///
-/// Thread: one at a time for a renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_note(
     renderer: *const RevmapRenderer,

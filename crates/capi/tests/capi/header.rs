@@ -1,49 +1,22 @@
 //! The kept header is what the sources give.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// With this variable set, the header is written instead of compared.
 const KEEP: &str = "REVMAP_KEEP_HEADER";
-
-/// The sources in the order of the header.
-const SOURCES: [&str; 12] = [
-    "lib",
-    "fault",
-    "enums",
-    "values",
-    "device",
-    "profile",
-    "texture",
-    "object",
-    "rays",
-    "shading",
-    "renderer",
-    "offscreen",
-];
-/// What has no part in the header.
-const INNER: [&str; 2] = ["handle", "pointers"];
 
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn sources() -> Vec<PathBuf> {
-    let mut all = Vec::new();
-    for name in SOURCES {
-        all.push(folder().join(format!("src/{name}.rs")));
-        if name == "renderer" {
-            let parts = [
-                "frame",
-                "objects",
-                "images",
-                "shading",
-                "prewarm",
-                "statistics",
-            ];
-            all.extend(parts.map(|n| folder().join(format!("src/renderer/{n}.rs"))));
-        }
-    }
-    all
+/// The texts of all sources below a folder.
+fn texts(below: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(below).unwrap();
+    let texts = entries.map(|entry| match entry.unwrap().path() {
+        path if path.is_dir() => texts(&path),
+        path => vec![std::fs::read_to_string(path).unwrap()],
+    });
+    texts.flatten().collect()
 }
 
 #[test]
@@ -69,8 +42,7 @@ fn the_header_is_what_the_sources_give() {
     );
     // Every exported name of the sources is declared, and once.
     let mut count = 0;
-    for source in sources() {
-        let text = std::fs::read_to_string(source).unwrap();
+    for text in texts(&folder().join("src")) {
         for part in text.split("extern \"C\" fn ").skip(1) {
             let name = part.split('(').next().unwrap();
             let declared = |line: &&str| {
@@ -83,18 +55,4 @@ fn the_header_is_what_the_sources_give() {
         }
     }
     assert!(count > 50, "{count} functions");
-}
-
-#[test]
-fn every_source_is_in_the_header_or_named_as_inner() {
-    let mut found: Vec<String> = std::fs::read_dir(folder().join("src"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|e| e == "rs"))
-        .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
-        .collect();
-    found.sort();
-    let mut known = [&SOURCES[..], &INNER[..]].concat();
-    known.sort_unstable();
-    assert_eq!(found, known);
 }

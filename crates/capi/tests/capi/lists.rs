@@ -1,9 +1,8 @@
 //! Lists of planes through the C interface, as for a G-buffer: what the Rust renderer draws, bit for
 //! bit. Motion, masks, depth tests, rays through samples.
 
-use crate::host::attachments::Attachments;
 use crate::host::{
-    COLOR, DEPTH, Host, Options, Stage, borrow, dynamic, frame, once, open, open_with,
+    Attachments, COLOR, DEPTH, Host, Options, Stage, borrow, dynamic, frame, once, open, open_with,
     view_and_projection, viewport,
 };
 use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
@@ -53,7 +52,11 @@ const BIAS: f64 = 1.0 / 1024.0;
 /// What every plane is drawn into.
 fn attachments(host: &Host) -> Attachments<'_> {
     let formats = PLANES.map(|(_, _, format, bytes)| (format, bytes));
-    Attachments::new(host, OPTIONS, &formats).unwrap()
+    let options = Options {
+        dynamic: true,
+        ..OPTIONS
+    };
+    Attachments::new(host, options, &formats).unwrap()
 }
 
 /// Draws a frame and waits for it.

@@ -14,7 +14,6 @@ use revmap_capi::object::*;
 use revmap_capi::profile::*;
 use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::prewarm::*;
 use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
 use revmap_capi::values::*;
@@ -108,6 +107,16 @@ pub fn camera() -> RevmapCamera {
     }
 }
 
+/// The stage's render pass.
+pub fn render_pass(stage: &Stage) -> RevmapPass {
+    RevmapPass {
+        kind: RevmapPassKind::RenderPass as u32,
+        samples: 1,
+        render_pass: stage.into.pass,
+        ..sized!(RevmapPass)
+    }
+}
+
 /// What the Rust renderer records into the stage's pass.
 fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
     let device = borrow(host);
@@ -121,69 +130,10 @@ fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
     stage.read().unwrap().0
 }
 
-#[test]
-fn a_render_pass_shows_what_rust_draws() {
-    let host = open();
-    let mut stage = Stage::new(&host, OPTIONS).unwrap();
-    let wanted = drawn(&host, &mut stage);
-    let (device, camera) = (lend(&host), camera());
-    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
-    // the renderer's.
-    unsafe {
-        let mut pass = sized!(RevmapPass);
-        pass.kind = RevmapPassKind::RenderPass as u32;
-        pass.samples = 1;
-        pass.render_pass = stage.pass;
-        let (mut renderer, mut prewarm) = (null_mut(), null_mut());
-        ok! { revmap_renderer_create(device, &pass, null(), 2, &mut renderer); }
-        add(renderer);
-        ok! {
-            revmap_renderer_prewarm(renderer, &mut prewarm);
-            revmap_prewarm_compile(prewarm);
-            revmap_prewarm_destroy(prewarm);
-        }
-        let compiled = || {
-            let mut info = sized!(RevmapDeviceInfo);
-            ok! { revmap_device_info(device, &mut info); }
-            info.pipelines_compiled
-        };
-        let before = compiled();
-        for warms in [true, false, false] {
-            let prepare = |cmd, slot: usize| {
-                let (w, h, [near, far]) = (OPTIONS.width, OPTIONS.height, RANGE);
-                ok! { revmap_renderer_prepare_camera(renderer, cmd, slot as u32, &camera, w, h, near, far); }
-                Ok(slot)
-            };
-            let record = |cmd, &slot: &usize| {
-                if warms {
-                    ok! { revmap_renderer_record_prewarm(renderer, cmd, slot as u32); }
-                } else {
-                    ok! { revmap_renderer_record(renderer, cmd, slot as u32); }
-                }
-                let refused = revmap_renderer_record_compute(renderer, cmd, slot as u32);
-                assert_eq!(refused, RevmapResult::Usage);
-                Ok(())
-            };
-            stage
-                .frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record)
-                .unwrap();
-        }
-        assert!(stage.read().unwrap().0 == wanted, "pixels differ");
-        let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);
-        assert!(solid.count() > 3000);
-        // No frame has compiled anything.
-        assert_eq!((before > 0, compiled()), (true, before));
-        ok! {
-            revmap_renderer_destroy(renderer);
-            revmap_device_destroy(device);
-        }
-    }
-}
-
 /// A renderer that hides compiles nothing while it prepares. What it leaves out appears once it is
-/// compiled.
+/// compiled, as Rust draws it.
 #[test]
-fn objects_are_hidden_until_they_are_compiled() {
+fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
     let host = open();
     let mut stage = Stage::new(&host, OPTIONS).unwrap();
     let wanted = drawn(&host, &mut stage);
@@ -193,10 +143,7 @@ fn objects_are_hidden_until_they_are_compiled() {
     // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
     // the renderer's.
     unsafe {
-        let mut pass = sized!(RevmapPass);
-        pass.kind = RevmapPassKind::RenderPass as u32;
-        pass.samples = 1;
-        pass.render_pass = stage.pass;
+        let pass = render_pass(&stage);
         ok! {
             revmap_renderer_create(device, &pass, null(), 2, &mut renderer);
             revmap_renderer_hide_until_compiled(renderer, 1);
@@ -207,7 +154,7 @@ fn objects_are_hidden_until_they_are_compiled() {
             ok! { revmap_device_info(device, &mut info); }
             info.pipelines_compiled
         };
-        let mut shown = || {
+        let mut shown = |warms: bool| {
             let mut statistics = sized!(RevmapFrameStatistics);
             let prepare = |cmd, slot: usize| {
                 let (slot, w, h, [near, far]) = (slot as u32, OPTIONS.width, OPTIONS.height, RANGE);
@@ -218,16 +165,23 @@ fn objects_are_hidden_until_they_are_compiled() {
                 Ok(slot)
             };
             let record = |cmd, &slot: &u32| {
-                ok! { revmap_renderer_record(renderer, cmd, slot); }
+                if warms {
+                    ok! { revmap_renderer_record_prewarm(renderer, cmd, slot); }
+                } else {
+                    ok! { revmap_renderer_record(renderer, cmd, slot); }
+                }
+                let refused = revmap_renderer_record_compute(renderer, cmd, slot);
+                assert_eq!(refused, RevmapResult::Usage);
                 Ok(())
             };
             let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
             drawn.unwrap();
             (stage.read().unwrap().0, statistics)
         };
+        let is_empty = |picture: &[u8]| picture.chunks_exact(4).all(|p| p == &picture[..4]);
         let before = compiled();
-        let (picture, statistics) = shown();
-        assert!(picture.chunks_exact(4).all(|p| p == &picture[..4]), "drawn");
+        let (picture, statistics) = shown(false);
+        assert!(is_empty(&picture), "drawn");
         assert!(
             statistics.hidden > 0 && statistics.draws == 0,
             "{statistics:?}"
@@ -238,10 +192,19 @@ fn objects_are_hidden_until_they_are_compiled() {
             revmap_prewarm_compile(prewarm);
             revmap_prewarm_destroy(prewarm);
         }
-        let (picture, statistics) = shown();
-        assert!(picture == wanted, "pixels differ");
-        assert_eq!((statistics.hidden, statistics.objects), (0, 2));
-        assert!(statistics.draws > 0 && statistics.slot_bytes > 0);
+        let ready = compiled();
+        assert!(ready > before);
+        assert!(is_empty(&shown(true).0), "draws of no pixel have drawn");
+        for _ in 0..2 {
+            let (picture, statistics) = shown(false);
+            assert!(picture == wanted, "pixels differ");
+            assert_eq!((statistics.hidden, statistics.objects), (0, 2));
+            assert!(statistics.draws > 0 && statistics.slot_bytes > 0);
+        }
+        let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);
+        assert!(solid.count() > 3000);
+        assert_eq!(compiled(), ready, "a frame has compiled");
+        let (_, statistics) = shown(false);
         ok! { revmap_device_memory_use(device, &mut used); }
         assert!(
             used.device + used.visible >= statistics.slot_bytes,

@@ -1,7 +1,6 @@
 //! Recording through the C interface in compute: what the Rust renderer draws.
 
-use crate::host::memory::HostBuffer;
-use crate::host::{Host, Stage, open};
+use crate::host::{HostBuffer, Stage, barrier, open};
 use crate::recording::{OPTIONS, RANGE, add, camera, lend, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
@@ -18,32 +17,6 @@ use revmap_offscreen::Offscreen;
 use std::ptr::{null, null_mut};
 
 const PIXELS: usize = (OPTIONS.width * OPTIONS.height) as usize;
-
-/// Records a barrier between two uses.
-unsafe fn barrier(host: &Host, cmd: vk::CommandBuffer, from: Use, to: Use) {
-    let barrier = [vk::MemoryBarrier::default()
-        .src_access_mask(from.1)
-        .dst_access_mask(to.1)];
-    let none = vk::DependencyFlags::empty();
-    // SAFETY: `cmd` is recording outside of a pass.
-    unsafe {
-        host.device
-            .cmd_pipeline_barrier(cmd, from.0, to.0, none, &barrier, &[], &[]);
-    }
-}
-
-type Use = (vk::PipelineStageFlags, vk::AccessFlags);
-const COMPUTE: Use = (
-    vk::PipelineStageFlags::COMPUTE_SHADER,
-    vk::AccessFlags::from_raw(
-        vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
-    ),
-);
-const CLEAR: Use = (
-    vk::PipelineStageFlags::TRANSFER,
-    vk::AccessFlags::TRANSFER_WRITE,
-);
-const READ: Use = (vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ);
 
 const BACKGROUND: [f32; 4] = [0.05, 0.2, 0.6, 0.5];
 
@@ -70,14 +43,14 @@ fn compute_writes_what_rust_draws() {
                 let [r, g, b, a] = BACKGROUND;
                 let half = 4 * PIXELS as u64;
                 let (color, raw) = (revmap_color_word(r, g, b, a), &host.device);
-                barrier(&host, cmd, COMPUTE, CLEAR);
+                barrier(&host, cmd, &[]);
                 raw.cmd_fill_buffer(cmd, words.raw, 0, half, 1f32.to_bits());
                 raw.cmd_fill_buffer(cmd, words.raw, half, half, color);
-                barrier(&host, cmd, CLEAR, COMPUTE);
+                barrier(&host, cmd, &[]);
                 let refused = revmap_renderer_record(renderer, cmd, slot);
                 assert_eq!(refused, RevmapResult::Usage);
                 ok! { revmap_renderer_record_compute(renderer, cmd, slot); }
-                barrier(&host, cmd, COMPUTE, READ);
+                barrier(&host, cmd, &[]);
                 Ok(())
             };
             stage

@@ -1,9 +1,7 @@
 //! A host's shading and images through the C interface: what the Rust renderer draws.
 
-use crate::host::memory::HostImage as Memory;
-use crate::host::set::UniformSet;
-use crate::host::{Host, Options, Stage, borrow, once, open};
-use crate::recording::{OPTIONS, POINTS, RANGE, camera, lend, scene};
+use crate::host::{Host, Stage, Texture, UniformSet, borrow, open};
+use crate::recording::{OPTIONS, POINTS, RANGE, camera, lend, render_pass, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{self, HostShading, Output, PassFormats, PassKind, Renderer, View};
@@ -15,9 +13,7 @@ use revmap_capi::fault::*;
 use revmap_capi::object::*;
 use revmap_capi::profile::*;
 use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::images::*;
 use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::shading::*;
 use revmap_capi::renderer::*;
 use revmap_capi::shading::*;
 use std::cell::RefCell;
@@ -35,56 +31,11 @@ fn lights(host: &Host) -> UniformSet<'_> {
     UniformSet::of(host, &all).unwrap()
 }
 
-/// A texture with one colour, ready to be sampled.
-fn texture(host: &Host) -> (Memory<'_>, vk::Sampler) {
-    let size = Options {
-        width: 4,
-        height: 4,
-        ..OPTIONS
-    };
-    type Usage = vk::ImageUsageFlags;
-    let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
-    let format = vk::Format::R8G8B8A8_UNORM;
-    let memory = Memory::with_usage(host, &size, format, 1, usage).unwrap();
-    let (to, read) = (
-        vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-        vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-    );
-    let all = vk::PipelineStageFlags::ALL_COMMANDS;
-    once(host, |cmd| {
-        let wait = |from, to| {
-            let (barrier, none) = ([memory.barrier(from, to)], vk::DependencyFlags::empty());
-            // SAFETY: `cmd` is recording, outside of a pass.
-            unsafe {
-                host.device
-                    .cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &barrier);
-            }
-        };
-        wait(vk::ImageLayout::UNDEFINED, to);
-        let color = vk::ClearColorValue {
-            float32: [0.9, 0.3, 0.1, 1.0],
-        };
-        let whole = vk::ImageSubresourceRange::default()
-            .aspect_mask(vk::ImageAspectFlags::COLOR)
-            .level_count(1)
-            .layer_count(1);
-        // SAFETY: as above.
-        unsafe {
-            let raw = &host.device;
-            raw.cmd_clear_color_image(cmd, memory.raw, to, &color, &[whole]);
-        }
-        wait(to, read);
-    });
-    // SAFETY: a plain creation, which the caller destroys.
-    let sampler = unsafe { host.device.create_sampler(&Default::default(), None) };
-    (memory, sampler.unwrap())
-}
-
 /// What the Rust renderer draws with the shading and the image.
 fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &gpu::HostImage) -> Vec<u8> {
     let device = borrow(host);
     let begun = PassKind::RenderPass {
-        pass: stage.pass,
+        pass: stage.into.pass,
         subpass: 0,
     };
     let output = Output::Pass(PassFormats::new(begun, Planes::Color));
@@ -121,18 +72,15 @@ fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &gpu::HostImag
 fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
     let host = open();
     let mut stage = Stage::new(&host, OPTIONS).unwrap();
-    let (set, (memory, sampler)) = (lights(&host), texture(&host));
-    // SAFETY: the texture outlives all renderers.
-    let image = unsafe { gpu::HostImage::new(memory.view, sampler) }.unwrap();
+    let set = lights(&host);
+    let texture = Texture::new(&host, vk::Format::R8G8B8A8_UNORM, &[[230, 77, 26, 255]; 16]);
+    let image = texture.image();
     let wanted = drawn(&host, &mut stage, &set, &image);
     let (device, camera) = (lend(&host), camera());
     // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
     // the renderer's.
     unsafe {
-        let mut pass = sized!(RevmapPass);
-        pass.kind = RevmapPassKind::RenderPass as u32;
-        pass.samples = 1;
-        pass.render_pass = stage.pass;
+        let pass = render_pass(&stage);
         let (mut renderer, mut shading, mut image) = (null_mut(), null_mut(), null_mut());
         let (mut profile, mut object) = (null_mut(), 0);
         let bytes = BYTES.as_ptr().cast();
@@ -141,7 +89,7 @@ fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
             revmap_renderer_create_with_shading(device, &pass, shading, set.layout, null(), 2, &mut renderer);
             revmap_shading_destroy(shading);
             revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), 0.4, &mut profile);
-            revmap_host_image_create(memory.view, sampler, &mut image);
+            revmap_host_image_create(texture.memory.view, texture.sampler, &mut image);
         }
         let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
         info.profile = profile;
@@ -189,9 +137,6 @@ fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
             revmap_device_destroy(device);
         }
     }
-    drop(image);
-    // SAFETY: all renderers are gone, and the stage is idle.
-    unsafe { host.device.destroy_sampler(sampler, None) };
 }
 
 #[test]

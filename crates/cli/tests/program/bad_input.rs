@@ -43,31 +43,6 @@ fn profiles_that_are_none() {
 }
 
 #[test]
-fn a_picture_too_large_is_refused_by_its_header() {
-    let bench = Bench::new();
-    const SIDE: u32 = 20_000;
-    let file = std::fs::File::create(bench.path("large.png")).unwrap();
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIDE, SIDE);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::One);
-    encoder.set_compression(png::Compression::Fastest);
-    // White above, black below: its size is all that is wrong with it.
-    let bytes = (SIDE * SIDE / 8) as usize;
-    let pixels: Vec<u8> = (0..bytes)
-        .map(|i| if i < bytes / 2 { 255 } else { 0 })
-        .collect();
-    encoder
-        .write_header()
-        .unwrap()
-        .write_image_data(&pixels)
-        .unwrap();
-    bench.object("profile = \"large.png\"");
-    bench.refused(RENDER, 1, &["large.png", "object.0.profile", "20000"]);
-    bench.object("polygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\ncolor_map = \"large.png\"");
-    bench.refused(RENDER, 1, &["large.png", "object.0.color_map", "20000"]);
-}
-
-#[test]
 fn polygons_that_turn_into_nothing() {
     let bench = Bench::new();
     for points in [

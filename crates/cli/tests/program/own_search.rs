@@ -4,6 +4,7 @@
 use crate::run::{Bench, lines, table};
 use revmap::frame::Frame;
 use revmap::gpu::Device;
+use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Solver};
 use revmap_files::SceneFile;
 use revmap_lab::compare::{CompareOptions, compare};
@@ -29,6 +30,16 @@ const BODY: &str = "{
 
 /// The last line of the body.
 const END: &str = "return s > m.s_end ? LEFT : f < 1e-3 ? FOUND : EXHAUSTED;";
+
+/// A text with a change, `FROM => TO`. `; ` stands for a line break, `END` for the last line of the
+/// body.
+fn changed(text: &str, change: &str) -> String {
+    let decoded = |part: &str| part.replace("; ", "\n").replace("END", END);
+    let (from, to) = change.split_once(" =>").unwrap();
+    let (from, to) = (decoded(from), decoded(to.strip_prefix(' ').unwrap_or(to)));
+    assert!(text.contains(&from), "{from}");
+    text.replacen(&from, &to, 1)
+}
 
 /// A folder `mine` in a folder of its own, with a cache of its own.
 struct Own {
@@ -93,15 +104,19 @@ fn repository(path: &str) -> String {
     format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A scene of the repository by a search, under the validation layers.
-fn drawn(device: &Device, solver: Solver, stage: DrawStage, sets: &[&str]) -> Frame {
+/// The vase of the repository with these keys set.
+fn vase(sets: &[&str]) -> Scene {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     let mut file = SceneFile::open(repository("assets/scenes/vase.toml")).unwrap();
-    let scene = file.scene(&sets).unwrap();
+    file.scene(&sets).unwrap()
+}
+
+/// The vase by a search, under the validation layers.
+fn drawn(device: &Device, solver: Solver, stage: DrawStage, sets: &[&str]) -> Frame {
     let settings = MethodSettings::default().sized(160, 120);
     let methods = MethodDevice::new(device.clone()).unwrap();
     let settings = settings.by(solver).in_stage(stage);
-    let frame = methods.draw(&scene, &settings).unwrap();
+    let frame = methods.draw(&vase(sets), &settings).unwrap();
     folder::check_frame(solver, &frame).unwrap();
     frame
 }
@@ -111,18 +126,9 @@ const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 #[test]
 fn examples_draw_a_vase_as_the_reference_does() {
     let device = Device::open_validated(None).unwrap();
-    let scene = SceneFile::open(repository("assets/scenes/vase.toml"));
     for sets in [&[][..], &["object.0.bevel=0.2"]] {
-        let sets_of = sets.iter().map(|set| (*set).to_owned()).collect::<Vec<_>>();
-        let scene = scene.as_ref().map(|_| ()).map(|()| {
-            SceneFile::open(repository("assets/scenes/vase.toml"))
-                .unwrap()
-                .scene(&sets_of)
-                .unwrap()
-        });
         let settings = MethodSettings::default().sized(160, 120);
-        let truth =
-            revmap_reference::draw(&scene.unwrap(), &(&settings).into(), &|_, _| {}).unwrap();
+        let truth = revmap_reference::draw(&vase(sets), &(&settings).into(), &|_, _| {}).unwrap();
         for name in [
             "interval",
             "over-relaxed",
@@ -350,58 +356,27 @@ fn a_new_folder_draws_and_is_listed() {
 /// Faults of `search.toml`, of names, and of values of parameters: nothing is drawn.
 #[test]
 fn faults_of_descriptions_name_the_file_and_the_remedy() {
-    let with = |key: &str, value: &str| {
-        let line = |line: &str| line.split(" =").next() == Some(key);
-        let all = TOML.lines().map(|l| {
-            if line(l) {
-                format!("{key} = {value}")
-            } else {
-                l.to_owned()
-            }
-        });
-        all.collect::<Vec<_>>().join("\n")
-    };
     let parameters = "[parameters.omega]\nabout = 'x'\ndefault = 1.5\nrange = [1.0, 2.0]\n";
-    for (toml, words) in [
-        (
-            with("reads", "'mapp'"),
-            &["line 5", "mapp", "binary map"][..],
-        ),
-        (with("reads", "'map"), &["line 5"]),
-        (with("bevels", "1\nbevel = 2"), &["line 7", "bevel"]),
-        (TOML.replace("inside", "insight"), &["line 7", "insight"]),
-        (TOML.replace("name = 'mine'\n", ""), &["name"]),
-        (with("name", "'My search'"), &["name", "small letters"]),
-        (with("about", "' '"), &["about", "empty"]),
-        (
-            TOML.replace("[steps]\ndefault = 64", ""),
-            &["steps", "missing"],
-        ),
-        (with("default", "0"), &["steps", "1 or more"]),
-        (with("reads", "'table'"), &["table", "missing", "program"]),
-        (
-            format!("{TOML}[table]\nprogram = ['a']"),
-            &["table", "reads = "],
-        ),
-        (
-            TOML.replace("[steps]", "glsl = 'other.glsl'\n[steps]"),
-            &["glsl", "other.glsl"],
-        ),
-        (
-            format!("{TOML}{}", parameters.replace("1.5", "3.5")),
-            &["parameters.omega", "outside"],
-        ),
-        (
-            format!("{TOML}{}", parameters.replace("1.5", "1")),
-            &["parameters.omega", "two kinds"],
-        ),
-    ] {
-        let own = Own::new(&toml, &format!("{HEAD}{BODY}"));
-        own.refused(
-            &format!("{RENDER} mine"),
-            2,
-            &[&["mine/search.toml"], words].concat(),
-        );
+    let whole = format!("{TOML}{parameters}");
+    for row in table(
+        "'map' => 'mapp'                       | line 5 | mapp | binary map
+         'map' => 'map                         | line 5
+         bevels = true => bevels = 1; bevel = 2 | line 7 | bevel
+         inside => insight                     | line 7 | insight
+         name = 'mine' =>                      | name
+         'mine' => 'My search'                 | name | small letters
+         'a test' => ' '                       | about | empty
+         [steps]; default = 64 =>              | steps | missing
+         default = 64 => default = 0           | steps | 1 or more
+         'map' => 'table'                      | table | missing | program
+         64 => 64; [table]; program = ['a']    | table | reads =
+         [steps] => glsl = 'other.glsl'; [steps] | glsl | other.glsl
+         1.5 => 3.5                            | parameters.omega | outside
+         1.5 => 1                              | parameters.omega | two kinds",
+    ) {
+        let own = Own::new(&changed(&whole, row[0]), &format!("{HEAD}{BODY}"));
+        let words = [&["mine/search.toml"], &row[1..]].concat();
+        own.refused(&format!("{RENDER} mine"), 2, &words);
     }
     let own = Own::new(&format!("{TOML}{parameters}"), &format!("{HEAD}{BODY}"));
     own.renders("mine:omega=1.9");
@@ -424,61 +399,24 @@ fn faults_of_descriptions_name_the_file_and_the_remedy() {
 /// Errors of GLSL name the line of the person's own file.
 #[test]
 fn errors_of_glsl_name_file_and_line() {
-    let body = |line: &str| BODY.replace("        ++steps;", line);
-    for (glsl, words) in [
-        (
-            format!("{HEAD}{}", body("        s += omega;")),
-            &["mine/search.glsl:6:", "omega", "undeclared"][..],
-        ),
-        (
-            format!("{HEAD}{}", body("        ++steps")),
-            &["mine/search.glsl:7:", "syntax"],
-        ),
-        (
-            format!("#include \"none.glsl\"\n{HEAD}{BODY}"),
-            &["mine/search.glsl:1:", "none.glsl"],
-        ),
-        (
-            format!("#include \"own.glsl\"\n{HEAD}{BODY}"),
-            &["mine/own.glsl:2:", "syntax"],
-        ),
-        (
-            "int x;\n".to_owned(),
-            &[
-                "mine/search.glsl",
-                "does not define",
-                "uint search(Meridian m",
-            ],
-        ),
-        (
-            format!("{}{BODY}", HEAD.replace("float pixel, ", "")),
-            &["mine/search.glsl", "does not define"],
-        ),
-        (
-            format!("\n{}{BODY}", HEAD.replace("uint search", "float search")),
-            &[
-                "mine/search.glsl:2: search returns float",
-                "uint search(Meridian m",
-            ],
-        ),
-        (
-            format!("{HEAD}{}", BODY.replace(END, "")),
-            &["mine/search.glsl:1:", "does not return a value"],
-        ),
-        (
-            format!(
-                "{HEAD}{}",
-                BODY.replace(END, "if (s > m.s_end) { return LEFT; }")
-            ),
-            &["mine/search.glsl", "`search` can end without a return"],
-        ),
-    ] {
+    for row in table(
+        "++steps; => s += omega;      | mine/search.glsl:6: | omega | undeclared
+         ++steps; => ++steps          | mine/search.glsl:7: | syntax
+         uint search => #include \"none.glsl\"; uint search | mine/search.glsl:1: | none.glsl
+         uint search => #include \"own.glsl\"; uint search  | mine/own.glsl:2: | syntax
+         uint search => uint find     | mine/search.glsl | does not define | uint search(Meridian m
+         float pixel, =>              | mine/search.glsl | does not define
+         uint search => ; float search | mine/search.glsl:2: search returns float | uint search(Meridian m
+         END =>                       | mine/search.glsl:1: | does not return a value
+         END => if (s > m.s_end) { return LEFT;} | mine/search.glsl | `search` can end without a return",
+    ) {
+        let glsl = changed(&format!("{HEAD}{BODY}"), row[0]);
         // The text that is compiled differs.
         for inside in ["true", "false"] {
             let toml = TOML.replace("inside = true", &format!("inside = {inside}"));
             let own = Own::new(&toml, &glsl);
             own.bench.file("mine/own.glsl", "\nvec5 x;\n");
-            own.refused(&format!("{RENDER} mine"), 1, words);
+            own.refused(&format!("{RENDER} mine"), 1, &row[1..]);
         }
     }
     // Every way through these functions returns.

@@ -61,8 +61,6 @@ fn maps_are_written_and_weighed() {
     );
 }
 
-/// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other
-/// channels are the plain picture's.
 #[test]
 fn silhouettes_are_smoothed_in_pictures_and_not_in_data() {
     let bench = Bench::new();
@@ -83,6 +81,8 @@ fn silhouettes_are_smoothed_in_pictures_and_not_in_data() {
     assert!(plain != on);
 }
 
+/// Many samples come to the colours of a picture 8 times as wide and high, averaged; the other
+/// channels are the plain picture's.
 #[test]
 fn samples_average_colours_alone() {
     let bench = Bench::new();

@@ -3,7 +3,6 @@
 use super::*;
 use revmap_capi::renderer::frame::*;
 use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::prewarm::*;
 use revmap_capi::renderer::statistics::*;
 use revmap_capi::renderer::*;
 

@@ -1,19 +1,17 @@
-//! A small engine of its own: instance, device, images, two frames in flight, meshes. Nothing here
-//! is revmap's.
+//! A small engine that the examples share: instance, device, images, passes, meshes, frames in flight.
+//! [`lend`] and [`solids`] alone know revmap.
+#![allow(dead_code, unused_imports)] // each example takes what it needs
 
-#[allow(dead_code)] // for the deferred host, tests and benches
 pub mod attachments;
+pub mod lend;
 pub mod memory;
 mod mesh;
-mod mesh_pipeline;
-mod pass;
-#[allow(dead_code)] // for the forward host and tests
 pub mod set;
+pub mod solids;
 mod stage;
 
-pub use mesh::Mesh;
-#[allow(unused_imports)] // for hosts with shaders of their own
-pub use mesh_pipeline::{MeshPipeline, MeshShaders, module};
+pub use attachments::Attachments;
+pub use mesh::{Mesh, MeshPipeline, MeshShaders, module};
 pub use stage::Stage;
 
 use ash::{ext, vk};
@@ -60,7 +58,7 @@ pub struct Host {
     pub features: vk::PhysicalDeviceFeatures,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Mutex<Vec<String>>>,
-    #[allow(dead_code)] // tests load functions by it
+    /// Loads functions.
     pub entry: ash::Entry,
 }
 
@@ -242,7 +240,6 @@ pub fn write_png(path: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
 }
 
 /// The number of pixels that differ by more than 2 of 255.
-#[allow(dead_code)] // for hosts that compare pictures
 pub fn differing(a: &[u8], b: &[u8]) -> usize {
     let pixels = a.chunks(4).zip(b.chunks(4));
     let far = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));

@@ -3,6 +3,23 @@
 use super::{DEPTH, Fallible, Host, Options};
 use ash::vk;
 
+/// Records a barrier between all stages, and of these images.
+///
+/// # Safety
+/// `cmd` is recording, outside of a pass.
+pub unsafe fn barrier(host: &Host, cmd: vk::CommandBuffer, images: &[vk::ImageMemoryBarrier]) {
+    let memory = [vk::MemoryBarrier::default()
+        .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+        .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)];
+    let (all, none) = (
+        vk::PipelineStageFlags::ALL_COMMANDS | vk::PipelineStageFlags::HOST,
+        vk::DependencyFlags::empty(),
+    );
+    let device = &host.device;
+    // SAFETY: as the caller promised.
+    unsafe { device.cmd_pipeline_barrier(cmd, all, all, none, &memory, &[], images) };
+}
+
 /// A buffer in host memory, mapped for as long as it lives.
 pub struct HostBuffer<'a> {
     pub raw: vk::Buffer,
@@ -75,39 +92,18 @@ pub struct HostImage<'a> {
 }
 
 impl<'a> HostImage<'a> {
+    /// An image of one sample, used in `more` ways than by a pass and for reading back.
     pub fn new(
         host: &'a Host,
         options: &Options,
         format: vk::Format,
-        samples: u32,
-    ) -> Fallible<Self> {
-        let more = vk::ImageUsageFlags::empty();
-        Self::with_usage(host, options, format, samples, more)
-    }
-
-    /// An image of so many layers, for a pass of as many views.
-    pub fn layered(
-        host: &'a Host,
-        options: &Options,
-        format: vk::Format,
-        layers: u32,
-    ) -> Fallible<Self> {
-        let more = vk::ImageUsageFlags::empty();
-        Self::made(host, options, format, [1, layers], more)
-    }
-
-    /// An image that is also used in other ways than by a pass and for reading back.
-    pub fn with_usage(
-        host: &'a Host,
-        options: &Options,
-        format: vk::Format,
-        samples: u32,
         more: vk::ImageUsageFlags,
     ) -> Fallible<Self> {
-        Self::made(host, options, format, [samples, 1], more)
+        Self::of(host, options, format, [1, 1], more)
     }
 
-    fn made(
+    /// An image of so many samples, or of so many layers for a pass of as many views.
+    pub fn of(
         host: &'a Host,
         options: &Options,
         format: vk::Format,

@@ -1,6 +1,6 @@
 //! Solids that several hosts draw.
 
-use super::host::Fallible;
+use super::Fallible;
 use glam::{DVec3, Vec3};
 use revmap::profile::Profile;
 use revmap::scene::{Object, Placement};
@@ -17,7 +17,6 @@ pub fn chessman(name: &str, color: [f32; 3]) -> Fallible<Object> {
 }
 
 /// A ball, its outline half of a polygon of many corners.
-#[allow(dead_code)] // for hosts that compare it with a mesh
 pub fn ball(middle: DVec3, radius: f64, color: Vec3) -> Fallible<Object> {
     const CORNERS: u32 = 512;
     let corner = |n: u32| {

@@ -1,0 +1,301 @@
+//! The images of a pass, and the pass: colours of any formats and a depth, drawn by dynamic rendering
+//! or in a render pass, and read back.
+
+use super::memory::{HostBuffer, HostImage, barrier};
+use super::{COLOR, DEPTH, Fallible, Host, Options};
+use ash::vk;
+
+/// An image and the bytes that it is copied to.
+struct Attachment<'a> {
+    image: HostImage<'a>,
+    read: HostBuffer<'a>,
+}
+
+/// Colour attachments and a depth. They have a layer for each view of a pass.
+pub struct Attachments<'a> {
+    options: Options,
+    /// Of one sample.
+    colors: Vec<Attachment<'a>>,
+    /// Of several samples, where there are: resolved into the first colour.
+    multisampled: Option<HostImage<'a>>,
+    depth: Attachment<'a>,
+    views: u32,
+    /// Null with dynamic rendering.
+    pub pass: vk::RenderPass,
+    framebuffer: vk::Framebuffer,
+    host: &'a Host,
+}
+
+impl<'a> Attachments<'a> {
+    /// Attachments of these formats, and how many bytes a pixel of each has. A render pass has one,
+    /// of [`COLOR`].
+    pub fn new(
+        host: &'a Host,
+        options: Options,
+        formats: &[(vk::Format, usize)],
+    ) -> Fallible<Self> {
+        Self::of_views(host, options, formats, 1)
+    }
+
+    /// Attachments for a pass of several views, by multiview.
+    pub fn of_views(
+        host: &'a Host,
+        options: Options,
+        formats: &[(vk::Format, usize)],
+        views: u32,
+    ) -> Fallible<Self> {
+        let pixels = (options.width * options.height * views) as usize;
+        let of = |(format, bytes), samples| {
+            let more = match samples {
+                1 => vk::ImageUsageFlags::SAMPLED,
+                _ => vk::ImageUsageFlags::empty(),
+            };
+            Ok(Attachment {
+                image: HostImage::of(host, &options, format, [samples, views], more)?,
+                read: HostBuffer::new(host, bytes * pixels, vk::BufferUsageFlags::TRANSFER_DST)?,
+            })
+        };
+        let several = || of((COLOR, 4), options.samples).map(|color| color.image);
+        let colors = formats.iter().map(|format| of(*format, 1));
+        let mut made = Self {
+            colors: colors.collect::<Fallible<_>>()?,
+            multisampled: (options.samples > 1).then(several).transpose()?,
+            depth: of((DEPTH, 4), options.samples)?,
+            options,
+            views,
+            pass: vk::RenderPass::null(),
+            framebuffer: vk::Framebuffer::null(),
+            host,
+        };
+        if !options.dynamic {
+            made.make_pass()?;
+        }
+        Ok(made)
+    }
+
+    /// The colours and the depth.
+    fn all(&self) -> impl Iterator<Item = &Attachment<'a>> {
+        self.colors.iter().chain([&self.depth])
+    }
+
+    /// The images of the colours and of the depth.
+    pub fn images(&self) -> impl Iterator<Item = &HostImage<'a>> {
+        self.all().map(|attachment| &attachment.image)
+    }
+
+    /// Makes a render pass of one colour, and its framebuffer.
+    fn make_pass(&mut self) -> Fallible<()> {
+        let (color, depth) = (&self.colors[0].image, &self.depth.image);
+        let samples = vk::SampleCountFlags::from_raw(self.options.samples);
+        let attachment = |format, samples, layout| {
+            vk::AttachmentDescription::default()
+                .format(format)
+                .samples(samples)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .initial_layout(vk::ImageLayout::UNDEFINED)
+                .final_layout(layout)
+        };
+        let mut attachments = vec![
+            attachment(COLOR, samples, color.drawn()),
+            attachment(DEPTH, samples, depth.drawn()),
+        ];
+        let mut views = vec![color.view, depth.view];
+        if let Some(several) = &self.multisampled {
+            let one = vk::SampleCountFlags::TYPE_1;
+            attachments.push(attachment(COLOR, one, color.drawn()));
+            views = vec![several.view, depth.view, color.view];
+        }
+        let reference = |n, layout| {
+            vk::AttachmentReference::default()
+                .attachment(n)
+                .layout(layout)
+        };
+        let (colors, depths) = ([reference(0, color.drawn())], reference(1, depth.drawn()));
+        let resolves = [reference(2, color.drawn())];
+        let mut subpass = vk::SubpassDescription::default()
+            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+            .color_attachments(&colors)
+            .depth_stencil_attachment(&depths);
+        if self.multisampled.is_some() {
+            subpass = subpass.resolve_attachments(&resolves);
+        }
+        let subpasses = [subpass];
+        let info = vk::RenderPassCreateInfo::default()
+            .attachments(&attachments)
+            .subpasses(&subpasses);
+        let device = &self.host.device;
+        // SAFETY: plain creations, destroyed in Drop.
+        unsafe {
+            self.pass = device.create_render_pass(&info, None)?;
+            let info = vk::FramebufferCreateInfo::default()
+                .render_pass(self.pass)
+                .attachments(&views)
+                .width(self.options.width)
+                .height(self.options.height)
+                .layers(1);
+            self.framebuffer = device.create_framebuffer(&info, None)?;
+        }
+        Ok(())
+    }
+
+    /// Clears everything and records `draws` in a pass. `secondary`: all draws are secondary
+    /// commands.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside of a pass; the attachments live until it has run.
+    pub unsafe fn draw<T>(
+        &self,
+        cmd: vk::CommandBuffer,
+        clears: &[vk::ClearColorValue],
+        secondary: bool,
+        draws: impl FnOnce() -> T,
+    ) -> T {
+        let device = &self.host.device;
+        // What was drawn before is over: its writes, and the copies that read them.
+        let images = self.images().chain(&self.multisampled);
+        let begun = images.map(|image| image.barrier(vk::ImageLayout::UNDEFINED, image.drawn()));
+        // SAFETY: as the caller promised.
+        unsafe {
+            barrier(self.host, cmd, &begun.collect::<Vec<_>>());
+            match self.options.dynamic {
+                true => self.begin_rendering(cmd, clears, secondary),
+                false => self.begin_pass(cmd, clears[0]),
+            }
+            if !secondary {
+                set_viewport(self.host, cmd, &self.options);
+            }
+            let drawn = draws();
+            match self.options.dynamic {
+                true => device.cmd_end_rendering(cmd),
+                false => device.cmd_end_render_pass(cmd),
+            }
+            drawn
+        }
+    }
+
+    fn far(&self) -> vk::ClearValue {
+        let depth_stencil = vk::ClearDepthStencilValue {
+            depth: if self.options.reversed { 0.0 } else { 1.0 },
+            stencil: 0,
+        };
+        vk::ClearValue { depth_stencil }
+    }
+
+    unsafe fn begin_rendering(
+        &self,
+        cmd: vk::CommandBuffer,
+        clears: &[vk::ClearColorValue],
+        secondary: bool,
+    ) {
+        let attachment = |image: &HostImage, clear| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(image.view)
+                .image_layout(image.drawn())
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .clear_value(clear)
+        };
+        let color = |(of, &color): (&Attachment, &_)| {
+            let (into, color) = (&of.image, vk::ClearValue { color });
+            match &self.multisampled {
+                None => attachment(into, color),
+                Some(several) => attachment(several, color)
+                    .resolve_mode(vk::ResolveModeFlags::AVERAGE)
+                    .resolve_image_view(into.view)
+                    .resolve_image_layout(into.drawn()),
+            }
+        };
+        let colors: Vec<_> = self.colors.iter().zip(clears).map(color).collect();
+        let depth = attachment(&self.depth.image, self.far());
+        let info = vk::RenderingInfo::default()
+            .flags(match secondary {
+                true => vk::RenderingFlags::CONTENTS_SECONDARY_COMMAND_BUFFERS,
+                false => vk::RenderingFlags::empty(),
+            })
+            .render_area(vk::Rect2D::default().extent(self.options.extent()))
+            .layer_count(1)
+            .view_mask(match self.views {
+                1 => 0,
+                views => (1 << views) - 1,
+            })
+            .color_attachments(&colors)
+            .depth_attachment(&depth);
+        // SAFETY: `cmd` is recording; the images live as long as `self`.
+        unsafe { self.host.device.cmd_begin_rendering(cmd, &info) };
+    }
+
+    unsafe fn begin_pass(&self, cmd: vk::CommandBuffer, color: vk::ClearColorValue) {
+        let color = vk::ClearValue { color };
+        let clears = [color, self.far(), color];
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(self.pass)
+            .framebuffer(self.framebuffer)
+            .render_area(vk::Rect2D::default().extent(self.options.extent()))
+            .clear_values(&clears);
+        let device = &self.host.device;
+        // SAFETY: as above.
+        unsafe { device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE) };
+    }
+
+    /// Records copies of everything of one sample, to be read once the commands have run.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside of a pass, after [`Attachments::draw`].
+    pub unsafe fn copy(&self, cmd: vk::CommandBuffer) {
+        let copied = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        let depth = (self.options.samples == 1).then_some(&self.depth);
+        let all = || self.colors.iter().chain(depth);
+        let ended = all().map(|a| a.image.barrier(a.image.drawn(), copied));
+        // SAFETY: as the caller promised.
+        unsafe {
+            barrier(self.host, cmd, &ended.collect::<Vec<_>>());
+            for of in all() {
+                let (region, to) = ([of.image.region(&self.options)], of.read.raw);
+                let raw = &self.host.device;
+                raw.cmd_copy_image_to_buffer(cmd, of.image.raw, copied, to, &region);
+            }
+            barrier(self.host, cmd, &[]);
+        }
+    }
+
+    /// The bytes of a colour attachment, view after view, once the commands have run.
+    pub fn color(&self, number: usize) -> Vec<u8> {
+        self.colors[number].read.bytes()
+    }
+
+    /// The depths of one sample, view after view, once the commands have run.
+    pub fn depths(&self) -> Vec<f32> {
+        bytemuck::pod_collect_to_vec(&self.depth.read.bytes())
+    }
+}
+
+impl Drop for Attachments<'_> {
+    fn drop(&mut self) {
+        let device = &self.host.device;
+        // SAFETY: the device is done with them; null handles may be destroyed.
+        unsafe {
+            device.destroy_framebuffer(self.framebuffer, None);
+            device.destroy_render_pass(self.pass, None);
+        }
+    }
+}
+
+/// Sets viewport and scissor to the whole picture.
+///
+/// # Safety
+/// `cmd` is recording.
+pub unsafe fn set_viewport(host: &Host, cmd: vk::CommandBuffer, options: &Options) {
+    let area = vk::Rect2D::default().extent(options.extent());
+    let viewport = vk::Viewport {
+        width: area.extent.width as f32,
+        height: area.extent.height as f32,
+        max_depth: 1.0,
+        ..Default::default()
+    };
+    // SAFETY: as the caller promised.
+    unsafe {
+        host.device.cmd_set_viewport(cmd, 0, &[viewport]);
+        host.device.cmd_set_scissor(cmd, 0, &[area]);
+    }
+}
