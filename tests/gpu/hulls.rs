@@ -136,7 +136,8 @@ fn what_the_box_cuts() {
             (0.25, [0.4, 0.5]),
             (0.5, [0.45, 0.55]),
         ] {
-            let side = 0.5 - axis.iter().fold(0.0, |m: f64, x| m.max((x - 0.5).abs()));
+            let [x, y] = axis.map(|a: f64| (a - 0.5).abs());
+            let side = 0.5 - x.max(y);
             let whole = profile.outline.bounds().unwrap().r_max + extend < side + 1e-3;
             let ways = if whole { WRAPPED } else { WALKED };
             for elevation in [-50.0, 0.0, 30.0, 89.5] {
