@@ -224,9 +224,7 @@ impl InPicture {
     }
 
     fn may_show(&self, copy: &Placement) -> bool {
-        let seen = |projector: &Projector| {
-            projector.bounds(&projector.axes(copy, self.shape.axis), &self.shape)
-        };
+        let seen = |projector: &Projector| projector.bounds(copy, &self.shape);
         self.projector.as_ref().is_none_or(|f| seen(f).is_some())
     }
 

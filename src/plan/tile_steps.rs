@@ -1,7 +1,7 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::LIST_LENGTHS;
-use super::tiles::{Batch, Drawer, LEAST_QUEUE, LayerTiles, Visible};
+use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
 };
@@ -52,18 +52,13 @@ impl FramePlan {
             let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
             layer_of.push(layer as u32);
         }
-        let drawer = if with.compute {
-            Drawer::Groups
-        } else {
-            Drawer::Fragments
-        };
         let queues = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].copies().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
             enough && Conditions::takes_queues(&objects[layer.objects[0] as usize])
         };
         let queues: Vec<bool> = layers.iter().map(queues).collect();
-        let mut dealt = visible.deal(drawer, &layer_of, &queues);
+        let mut dealt = visible.deal(with.compute, &layer_of, &queues);
         let layers_of_lists = layers.iter().zip(&mut dealt.layers);
         for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
             let patches = |&n: &u32| objects[n as usize].listed_patches();

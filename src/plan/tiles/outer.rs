@@ -149,7 +149,7 @@ mod tests {
             };
             let axes = projector.axes(&copy, shape.axis);
             let pixels = projector
-                .bounds(&axes, &shape)
+                .bounds(&copy, &shape)
                 .unwrap()
                 .pixels
                 .map(u32::from);
