@@ -7,7 +7,7 @@ use crate::solid::outline_cache::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::table_slot::{Part, Slot};
 use crate::solid::tables::{self, GpuTables};
-use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
+use crate::surface::{Cylinders, FitOptions, QuadricPatch, fit_patches};
 use std::sync::{Arc, OnceLock};
 
 /// One surface, made on first use, shared by all objects that show it.
@@ -17,8 +17,8 @@ pub(crate) struct OffsetSurface {
     tables: OnceLock<GpuTables>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
-    inner: OnceLock<InnerCylinders>,
-    outer: OnceLock<OuterCylinders>,
+    inner: OnceLock<Cylinders>,
+    outer: OnceLock<Cylinders>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -95,20 +95,20 @@ impl OffsetSurface {
     }
 
     /// Cylinders inside its solid, which hide everything behind them; only for patches.
-    pub fn inner(&self) -> Option<&InnerCylinders> {
+    pub fn inner(&self) -> Option<&Cylinders> {
         match self.made() {
             Ok(Made::Patches(patches, _)) => {
-                Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
+                Some(self.inner.get_or_init(|| Cylinders::inner(patches)))
             }
             _ => None,
         }
     }
 
     /// Cylinders around its solid; only for patches.
-    pub fn outer(&self) -> Option<&OuterCylinders> {
+    pub fn outer(&self) -> Option<&Cylinders> {
         match self.made() {
             Ok(Made::Patches(patches, _)) => {
-                Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
+                Some(self.outer.get_or_init(|| Cylinders::outer(patches)))
             }
             _ => None,
         }

@@ -3,14 +3,14 @@
 use crate::error::{Error, Result};
 use crate::profile::Profile;
 use crate::scene::Offset;
-use crate::surface::{Contour, ContourSource, OuterCylinders};
+use crate::surface::{Contour, ContourSource, Cylinders};
 use std::sync::{Arc, OnceLock};
 
 /// A profile, and the source of its contours under offsets.
 pub(crate) struct OutlineCache {
     pub profile: Arc<Profile>,
     source: OnceLock<Result<ContourSource>>,
-    outer: OnceLock<OuterCylinders>,
+    outer: OnceLock<Cylinders>,
 }
 
 impl OutlineCache {
@@ -23,10 +23,10 @@ impl OutlineCache {
     }
 
     /// Cylinders that contain the solid without its offset.
-    pub fn outer(&self) -> &OuterCylinders {
+    pub fn outer(&self) -> &Cylinders {
         let outline = &self.profile.outline;
         self.outer
-            .get_or_init(|| OuterCylinders::of_outline(outline))
+            .get_or_init(|| Cylinders::around_outline(outline))
     }
 
     /// The contour under `offset`.

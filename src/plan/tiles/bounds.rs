@@ -21,6 +21,9 @@ pub(crate) struct Cylinder {
 pub(crate) struct Projector {
     eye: DVec3,
     rows: DMat3,
+    /// Products of each map with itself, and of the first two with the third.
+    squares: DVec3,
+    products: DVec2,
     /// First and last pixel centre, both axes.
     low: DVec2,
     high: DVec2,
@@ -84,6 +87,8 @@ impl Projector {
                 last_pixel(high.y),
             ],
             eye: view.eye,
+            squares: rows.map(DVec3::length_squared).into(),
+            products: DVec2::new(rows[0].dot(rows[2]), rows[1].dot(rows[2])),
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
             low: low + 0.5,
             high: high - 0.5,
@@ -141,13 +146,27 @@ impl Projector {
 
     /// The bounds of a copy's cylinder. Returns none if no pixel's ray can meet it.
     pub fn bounds(&self, copy: &Placement, of: &Cylinder) -> Option<ScreenBounds> {
-        let ProjectedAxes { middle, along, .. } = self.axes(copy, of.axis);
-        let [x, y, z] = along;
-        let square = |i: usize, k: usize| of.radius * of.radius * (x[i] * x[k] + y[i] * y[k]);
-        let squares = DVec3::new(square(0, 0), square(1, 1), square(2, 2));
-        let products = DVec2::new(square(0, 2), square(1, 2));
+        // Products of the maps over a disc: of each with itself, and of the first two with depth.
+        let (middle, z, squares, products);
+        if copy.scale.x == copy.scale.y && of.axis == DVec2::ZERO {
+            // A disc at right angles to its axis, however it is turned about it.
+            let axis = DMat3::from_quat(copy.rotation).z_axis;
+            let way = self.rows * axis;
+            let away = way / axis.length_squared();
+            let square = (of.radius * copy.scale.x).powi(2);
+            middle = self.rows * (copy.position - self.eye);
+            z = way * copy.scale.z;
+            squares = (self.squares - way * away) * square;
+            products = (self.products - way.truncate() * away.z) * square;
+        } else {
+            let axes = self.axes(copy, of.axis);
+            let [x, y] = [0, 1].map(|k| axes.along[k] * of.radius);
+            (middle, z) = (axes.middle, axes.along[2]);
+            squares = x * x + y * y;
+            products = x.truncate() * x.z + y.truncate() * y.z;
+        }
         let discs = [of.low, of.high].map(|h| middle + z * h);
-        let deep = squares.z.sqrt();
+        let deep = squares.z.max(0.0).sqrt();
         let near = discs[0].z.min(discs[1].z) - deep;
         let far = discs[0].z.max(discs[1].z) + deep;
         if far <= 0.0 {
@@ -255,6 +274,15 @@ mod tests {
     use crate::scene::Copies;
     use glam::{DMat4, DVec4};
 
+    /// Two copies at one place.
+    fn pair(position: DVec3) -> Copies {
+        let copy = Placement {
+            position,
+            ..Placement::default()
+        };
+        vec![copy; 2].into()
+    }
+
     /// A viewport may begin and end anywhere. Copies larger than it cover the pixels whose centres
     /// it holds. A cluster of such copies covers the same pixels, in front of the eye and around
     /// it.
@@ -302,14 +330,7 @@ mod tests {
                 assert_eq!(projector.picture(), wanted, "{viewport:?}");
                 for away in [0.0, 52.0] {
                     let position = DVec3::new(away, 0.0, 0.0);
-                    let copies: Copies = vec![
-                        Placement {
-                            position,
-                            ..Placement::default()
-                        };
-                        2
-                    ]
-                    .into();
+                    let copies = pair(position);
                     let one = projector.bounds(&copies[0], &shape).unwrap();
                     let cluster = &copies.clusters().all()[0];
                     let all = projector.cluster_bounds(cluster, &shape).unwrap();
@@ -335,14 +356,7 @@ mod tests {
         let mut seen = [0; 2];
         for n in 0..500 {
             let position = DVec3::new(0.0, 0.11 * f64::from(n) - 27.0, 0.07 * f64::from(n % 90));
-            let copies: Copies = vec![
-                Placement {
-                    position,
-                    ..Placement::default()
-                };
-                2
-            ]
-            .into();
+            let copies = pair(position);
             let all = projector.cluster_bounds(&copies.clusters().all()[0], &shape);
             let one = projector.bounds(&copies[0], &shape);
             seen[usize::from(all.is_some())] += 1;

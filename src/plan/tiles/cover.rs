@@ -3,7 +3,7 @@
 //! a row of pixels have similar depths.
 
 use super::bounds::{ProjectedAxes, SLACK, first_pixel, last_pixel};
-use crate::surface::{CylinderPiece, InnerCylinders};
+use crate::surface::{CylinderPiece, Cylinders};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
@@ -110,21 +110,25 @@ impl Cover {
         (y * (self.columns.end - self.columns.start) + x - self.columns.start) as usize
     }
 
-    /// The squares in which some of these pixels may show a copy at `near` or farther: the square's
-    /// position in the picture, and the pixels.
-    pub fn open(&self, pixels: [u16; 4], near: f32) -> impl Iterator<Item = ([u32; 2], u64)> + '_ {
+    /// Finds the squares in which some of these pixels may show a copy at `near` or farther: the
+    /// square's position in the picture, and the pixels.
+    pub fn open(&self, pixels: [u16; 4], near: f32, found: &mut Vec<([u32; 2], u64)>) {
         let [x0, y0, x1, y1] = self.squares_of(pixels);
         let pixels = pixels.map(u32::from);
-        let squares = (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| [x, y]));
-        squares.filter_map(move |[x, y]| {
-            let hidden = self.squares[self.at(x, y)].hidden(near);
-            let bits = within([x, y], pixels) & !hidden;
-            (bits != 0).then_some(([x, y], bits))
-        })
+        found.clear();
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                let hidden = self.squares[self.at(x, y)].hidden(near);
+                let bits = within([x, y], pixels) & !hidden;
+                if bits != 0 {
+                    found.push(([x, y], bits));
+                }
+            }
+        }
     }
 
     /// Adds the pixels that a copy hides. The copy must be wholly in front of the eye.
-    pub fn add(&mut self, axes: &ProjectedAxes, inner: &InnerCylinders, pixels: [u16; 4]) {
+    pub fn add(&mut self, axes: &ProjectedAxes, inner: &Cylinders, pixels: [u16; 4]) {
         let high = pixels[3] - pixels[1];
         // The section through the axis that faces the eye.
         let beside = axes.eye.truncate();
@@ -260,13 +264,18 @@ mod tests {
         let mut cover = Cover::new(0..4, 4, 1.0 / 16.0);
         let at = |x: f64, y: f64| DVec3::new(2.0 * x, 2.0 * y, 2.0);
         cover.polygon(&[at(3.0, 4.0), at(21.0, 4.0), at(21.0, 20.0), at(3.0, 20.0)]);
-        let open = |cover: &Cover, near| -> u32 {
-            let all = cover.open([0, 0, 31, 31], near);
+        let open = |cover: &Cover, pixels, near| {
+            let mut found = Vec::new();
+            cover.open(pixels, near, &mut found);
+            found
+        };
+        let count = |cover: &Cover, near| -> u32 {
+            let all = open(cover, [0, 0, 31, 31], near).into_iter();
             all.map(|(_, bits)| bits.count_ones()).sum()
         };
-        assert_eq!(open(&cover, 1.9), 1024);
-        assert_eq!(open(&cover, 2.1), 1024 - 18 * 16);
-        assert!(cover.open([3, 4, 20, 19], 2.1).next().is_none());
+        assert_eq!(count(&cover, 1.9), 1024);
+        assert_eq!(count(&cover, 2.1), 1024 - 18 * 16);
+        assert!(open(&cover, [3, 4, 20, 19], 2.1).is_empty());
         // Clockwise or counterclockwise, and slanted: no pixel outside is marked.
         cover.polygon(&[
             at(31.0, 31.0),
@@ -274,7 +283,7 @@ mod tests {
             at(31.0, 20.0),
             at(31.0, 30.0),
         ]);
-        for ([left, top], bits) in cover.open([0, 0, 31, 31], 2.1) {
+        for ([left, top], bits) in open(&cover, [0, 0, 31, 31], 2.1) {
             for bit in (0..64).filter(|bit| bits & (1 << bit) == 0) {
                 let (x, y) = (left * 8 + bit % 8, top * 8 + bit / 8);
                 let first = (3..21).contains(&x) && (4..20).contains(&y);

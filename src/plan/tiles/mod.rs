@@ -30,7 +30,7 @@ pub(crate) use deal::LEAST_QUEUE;
 use super::view::View;
 use crate::scene::{Cluster, Copies, Placement};
 use crate::solid::offset_surface::OffsetSurface;
-use crate::surface::{InnerCylinders, OuterCylinders};
+use crate::surface::Cylinders;
 use bounds::ScreenBounds;
 use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
@@ -44,10 +44,10 @@ pub(crate) struct Batch<'a> {
     pub first: u32,
     pub shape: Cylinder,
     /// Cylinders inside the solid, which hide everything behind them; none if unknown.
-    pub inner: Option<&'a InnerCylinders>,
+    pub inner: Option<&'a Cylinders>,
     /// Cylinders around the solid, and a margin in object units; none if only its bounding cylinder
     /// is known.
-    pub outer: Option<(&'a OuterCylinders, f64)>,
+    pub outer: Option<(&'a Cylinders, f64)>,
     /// The surface; none unless its patches are searched and there are no replicas.
     pub surface: Option<&'a OffsetSurface>,
     /// Half of the box's side.
@@ -290,46 +290,43 @@ impl<'a> Visible<'a> {
 
 /// Joins the records and queues of all bands to one buffer.
 fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
-    let mut records: Vec<[u32; 4]> = Vec::new();
-    let mut lists = 0;
+    let count = |of: &BandRecords| {
+        let lists = [&of.quads, &of.listed, &of.single, &of.queued];
+        lists.map(Vec::len).iter().sum::<usize>()
+    };
+    let records: usize = bands.iter().flatten().map(count).sum();
+    let queues: usize = bands.iter().flatten().map(|of| of.words.len()).sum();
+    // Queues follow all records.
+    let mut queue = 4 * records;
+    let mut words: Vec<u32> = Vec::with_capacity(queue + queues);
     let mut all = Vec::with_capacity(layers);
     for layer in 0..layers {
+        let here = || bands.iter().map(|band| &band[layer]);
         let mut put = |of: for<'b> fn(&'b BandRecords) -> &'b [[u32; 4]]| {
-            let first = records.len() as u32;
-            for band in bands {
-                records.extend(of(&band[layer]));
-            }
-            first..records.len() as u32
+            let first = (words.len() / 4) as u32;
+            here().for_each(|band| words.extend(of(band).as_flattened()));
+            first..(words.len() / 4) as u32
         };
-        let (quads, listed, single) = (put(|l| &l.quads), put(|l| &l.listed), put(|l| &l.single));
-        let first = records.len() as u32;
-        for band in bands {
-            let of = |[corner, list, count, near]: &[u32; 4]| {
-                [*corner, list + lists as u32, *count, *near]
-            };
-            records.extend(band[layer].queued.iter().map(of));
-            lists += band[layer].words.len();
+        let tiles = LayerTiles {
+            quads: put(|of| &of.quads),
+            listed: put(|of| &of.listed),
+            single: put(|of| &of.single),
+            queued: put(|of| &of.queued),
+        };
+        let mut at = 4 * tiles.queued.start as usize;
+        for band in here() {
+            for _ in &band.queued {
+                words[at + 1] += queue as u32;
+                at += 4;
+            }
+            queue += band.words.len();
         }
-        all.push(LayerTiles {
-            quads,
-            listed,
-            single,
-            queued: first..records.len() as u32,
-        });
+        all.push(tiles);
     }
-    // Queues follow all records.
-    let behind = 4 * records.len() as u32;
-    for layer in &all {
-        for record in &mut records[layer.queued.start as usize..layer.queued.end as usize] {
-            record[1] += behind;
-        }
-    }
-    let mut words = Vec::with_capacity(behind as usize + lists);
-    words.extend(records.as_flattened());
     for layer in 0..layers {
-        for band in bands {
-            words.extend(&band[layer].words);
-        }
+        bands
+            .iter()
+            .for_each(|band| words.extend(&band[layer].words));
     }
     TileWords { words, layers: all }
 }

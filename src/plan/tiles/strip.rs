@@ -41,6 +41,8 @@ pub(super) struct Strip<'a> {
     cover: Cover,
     /// The ends of each row of the current copy.
     rows: Vec<[f64; 2]>,
+    /// The squares and pixels that may show it.
+    open: Vec<([u32; 2], u64)>,
     /// Copies that may be farther than those of the next cluster.
     waiting: Vec<Item>,
     /// The listed copies of each tile, nearest first.
@@ -91,6 +93,7 @@ impl<'a> Strip<'a> {
             tiles: vec![Vec::new(); columns.len() * down as usize],
             cover: Cover::new(columns, down, projector.margin),
             rows: Vec::new(),
+            open: Vec::new(),
             waiting: Vec::new(),
             copies: Vec::new(),
             facts: vec![facts; batches.len()],
@@ -124,7 +127,8 @@ impl<'a> Strip<'a> {
     /// than it.
     fn add(&mut self, item: &Item) {
         let ScreenBounds { pixels, near } = item.bounds;
-        if self.cover.open(pixels, near).next().is_none() {
+        self.cover.open(pixels, near, &mut self.open);
+        if self.open.is_empty() {
             return;
         }
         let batch = &self.batches[item.batch as usize];
@@ -139,7 +143,7 @@ impl<'a> Strip<'a> {
             rows(outer, &axes, margin, within, bottom - top, &mut self.rows)
         });
         let mut shows = false;
-        for ([x, y], mut pixels) in self.cover.open(pixels, near) {
+        for &([x, y], mut pixels) in &self.open {
             if known {
                 pixels &= within_rows([x, y], &self.rows, top);
             }
