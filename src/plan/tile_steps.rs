@@ -4,6 +4,7 @@ use super::path::LIST_LENGTHS;
 use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
+    with_depths,
 };
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
@@ -49,7 +50,7 @@ impl FramePlan {
                 outside: u32::from(of.is_whole() && visible.is_apart(batch)),
                 ..variants[n]
             };
-            let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
+            let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
             layer_of.push(layer as u32);
         }
         let queues = |layer: &Layer| {
@@ -127,11 +128,7 @@ impl FramePlan {
         let mut head = 0;
         self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
-            let base = Variant {
-                depth_test: u32::from(self.compares_depths),
-                depth_keep: u32::from(self.compares_depths),
-                ..layer.variant
-            };
+            let base = with_depths(layer.variant, self.compares_depths);
             let step = |phase, kind, variant: Variant, call| Step {
                 phase,
                 variant: variant.of_kind(kind),
