@@ -8,7 +8,9 @@
 //! comes from an earlier frame. `crowd.glsl` names the passes and the lists.
 
 use super::tiles::Projector;
-use super::{Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View, projector};
+use super::{
+    Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View, projector, with_depths,
+};
 use crate::scene::Placement;
 use crate::shader::generated as g;
 use crate::shader::{CrowdBlock, CrowdObject, Kind, Pushed, Variant};
@@ -55,11 +57,7 @@ pub(super) fn add(
     if members.is_empty() {
         return;
     }
-    let kind = if with.compute {
-        Kind::TileCopies
-    } else {
-        Kind::Tiles
-    };
+    let [.., kind] = with.crowd_kinds();
     let mut layers = Vec::new();
     let mut layer_of = Vec::with_capacity(members.len());
     for &n in &members {
@@ -67,7 +65,7 @@ pub(super) fn add(
             outside: 0,
             ..variants[n as usize]
         };
-        let (layer, _) = Layer::of(&mut layers, objects, n as usize, (variant, kind));
+        let layer = Layer::of(&mut layers, objects, n, (variant, kind));
         layer_of.push(layer as u32);
         plan.parts[n as usize].tables = true;
         plan.copies[n as usize] = Some(Vec::new());
@@ -111,12 +109,7 @@ pub(super) fn add(
     for (n, layer) in (0u32..).zip(&layers) {
         let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
         plan.compares_depths |= several || (with.compute && with.host_depths);
-        let kept = u32::from(plan.compares_depths);
-        let variant = Variant {
-            depth_test: kept,
-            depth_keep: kept,
-            ..layer.variant
-        };
+        let variant = with_depths(layer.variant, plan.compares_depths);
         plan.steps.push(Step {
             phase: if with.compute { first_phase + n } else { 0 },
             variant: variant.of_kind(kind),
@@ -128,12 +121,7 @@ pub(super) fn add(
     if with.compute && plan.compares_depths {
         // Tiles that were drawn before keep their depths.
         for step in &mut plan.steps {
-            let variant = Variant {
-                depth_test: 1,
-                depth_keep: 1,
-                ..step.variant
-            };
-            step.variant = variant.of_kind(step.kind);
+            step.variant = with_depths(step.variant, true).of_kind(step.kind);
         }
     }
     plan.crowds = Some(Crowds {
@@ -162,9 +150,8 @@ struct Places {
     cover: u32,
     /// Of each tile of each layer: number of entries, nearest depth, marked pixels, first place.
     of_tiles: [u32; 4],
-    /// Copies in the picture, their order, listed copies.
-    copies: [u32; 3],
-    entries: u32,
+    /// Copies in the picture, their order, listed copies; entries.
+    copies: [u32; 4],
     bin_words: u32,
     // Tiles.
     records: u32,
@@ -178,38 +165,34 @@ impl Places {
         let tiles = lists / layers;
         let wanted = ENTRIES[0] * lists + ENTRIES[1] * copies.min(MOST_RESERVED);
         let entries_most = wanted.min((with.room() / 8) as u32);
-        let after = |next: &mut u32, words: u32| {
-            let at = *next;
-            *next += words;
-            at
+        let places = |mut next: u32| {
+            move |words: u32| {
+                let first = next;
+                next += words;
+                first
+            }
         };
-        let mut next = plan.bin_words;
-        let mut bins = |words: u32| after(&mut next, words);
-        let head = bins(g::CROWD_HEAD + g::LAYER_HEAD * layers);
-        let cover = bins(g::GROUP_PIXELS * tiles);
-        let of_tiles = [lists, lists, 2 * lists, lists].map(&mut bins);
-        let copies_at = [g::VISIBLE_WORDS * copies, copies, copies].map(&mut bins);
-        let entries = bins(g::ENTRY_WORDS * entries_most);
-        let bin_words = next;
+        let mut bins = places(plan.bin_words);
         // Records have four words each, from the first word on.
-        let mut next = (plan.words.len() as u32).next_multiple_of(4);
-        let mut words = |words: u32| after(&mut next, words);
-        let records = words(if with.compute { 3 * PIXELS } else { 4 } * lists);
-        let listed = words(g::QUEUE_WORDS * copies.next_multiple_of(g::QUEUE_BLOCK));
-        // The queue of each tile begins with a new block.
-        let queues = words(g::QUEUE_WORDS * (entries_most + (g::QUEUE_BLOCK - 1) * lists));
+        let mut words = places((plan.words.len() as u32).next_multiple_of(4));
         Self {
             entries_most,
-            head,
-            cover,
-            of_tiles,
-            copies: copies_at,
-            entries,
-            bin_words,
-            records,
-            listed,
-            queues,
-            tile_words: next,
+            head: bins(g::CROWD_HEAD + g::LAYER_HEAD * layers),
+            cover: bins(g::GROUP_PIXELS * tiles),
+            of_tiles: [lists, lists, 2 * lists, lists].map(&mut bins),
+            copies: [
+                g::VISIBLE_WORDS * copies,
+                copies,
+                copies,
+                g::ENTRY_WORDS * entries_most,
+            ]
+            .map(&mut bins),
+            bin_words: bins(0),
+            records: words(if with.compute { 3 * PIXELS } else { 4 } * lists),
+            listed: words(g::QUEUE_WORDS * copies.next_multiple_of(g::QUEUE_BLOCK)),
+            // The queue of each tile begins with a new block.
+            queues: words(g::QUEUE_WORDS * (entries_most + (g::QUEUE_BLOCK - 1) * lists)),
+            tile_words: words(0),
         }
     }
 }
@@ -341,15 +324,12 @@ fn block(
     copies: u32,
 ) -> CrowdBlock {
     let doubles = |v: DVec3| {
-        let mut words = [0; 8];
-        let all = v.to_array().map(words_of);
-        words[..6].copy_from_slice(all.as_flattened());
-        words
+        let [[a, b], [c, d], [e, f]] = v.to_array().map(words_of);
+        [a, b, c, d, e, f, 0, 0]
     };
     let [clip_x, clip_y] = view.clip_rows();
     let ([row_x, row_y, row_z], limits) = projector.for_crowds();
     let [across, down] = projector.tiles();
-    let [by_list, by_depth, listed] = places.copies;
     CrowdBlock {
         eye: doubles(view.eye),
         forward: doubles(view.forward),
@@ -364,7 +344,7 @@ fn block(
         size: [across, down, layers, objects],
         counts: [copies, places.entries_most, places.head, places.cover],
         lists: places.of_tiles,
-        copies: [by_list, by_depth, listed, places.entries],
+        copies: places.copies,
         tiles: [
             places.records,
             places.listed,

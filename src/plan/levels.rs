@@ -51,33 +51,17 @@ impl CopyLevels {
         tolerance: Tolerance,
         at_once: bool,
     ) -> Self {
-        let radius = object.profile.radius;
-        let reach = (radius * SQRT_2).hypot(0.5);
+        let reach = (object.profile.radius * SQRT_2).hypot(0.5);
         let pixels = stretch(view) / (pixel_of(view) * height);
         let error = tolerance.pixels() / (COPIES * GRAZING);
         #[allow(clippy::cast_possible_truncation)]
         let limit = |level: u8| ((reach + bound(level) * pixels / error) * (1.0 + 1e-6)) as f32;
         let limits: [f32; 4] = std::array::from_fn(|n| limit(COPY_LEVELS[n + 1]));
-        // The least depth over scale of any copy.
-        let at_least = |cluster: &Cluster| {
-            let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
-            let nearest = around.along(view.forward)[0] / cluster.most_scale.max_element();
-            nearest.max(0.0) * (1.0 - 1e-6)
-        };
-        let visible = InPicture::new(object, view, false);
-        let or_none = |shows: bool, value: f64| if shows { value } else { f64::INFINITY };
+        let depths = CopyDepths::new(object, view, false);
         let least = if at_once {
-            at_least(object.instances.whole())
+            depths.of_cluster(object.instances.whole())
         } else {
-            object.least_of_copies(
-                |cluster| or_none(visible.may_show_any(cluster), at_least(cluster)),
-                |copy| {
-                    let middle = copy.position + copy.rotation * (0.5 * DVec3::Z * copy.scale);
-                    let depth = (middle - view.eye).dot(view.forward).max(0.0);
-                    let least = depth / copy.scale.max_element() * (1.0 - 1e-6);
-                    or_none(visible.may_show(copy), least)
-                },
-            )
+            depths.least(0.0) * (1.0 - 1e-6)
         };
         Self {
             first: limits.iter().filter(|l| f64::from(**l) <= least).count(),
@@ -141,41 +125,8 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
 /// if a copy may reach the eye. `height`: height of the box in units of the profile's. `all`:
 /// includes copies outside of the picture, whose shadows may be in it.
 pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
-    let (stretch, pixel) = (stretch(view), pixel_of(view));
-    let of = |scale: f64, [nearest, farthest]: [f64; 2]| {
-        if farthest <= 0.0 {
-            0.0
-        } else if view.parallel {
-            scale / pixel
-        } else {
-            // A copy that the near plane cuts is nearest at that plane.
-            scale * stretch / (nearest.max(view.near) * pixel)
-        }
-    };
-    let visible = InPicture::new(object, view, all);
-    let radius = object.profile.radius;
-    let at_most = |cluster: &Cluster| {
-        let around = cluster.around(view.eye, [radius * SQRT_2, 1.0]);
-        of(cluster.most_scale.max_element(), around.along(view.forward)) * (1.0 + 1e-9)
-    };
-    let least = object.least_of_copies(
-        |cluster| {
-            if visible.may_show_any(cluster) {
-                -at_most(cluster)
-            } else {
-                0.0
-            }
-        },
-        |copy| {
-            let pixels = of(copy.scale.max_element(), depths(radius, copy, view));
-            if pixels > 0.0 && visible.may_show(copy) {
-                -pixels
-            } else {
-                0.0
-            }
-        },
-    );
-    -least / height
+    let nearest = CopyDepths::new(object, view, all).least(1.0);
+    stretch(view) / (pixel_of(view) * height * nearest)
 }
 
 /// The pixels that a length across the ray covers, over those that it covers in the middle of the
@@ -202,16 +153,21 @@ fn pixel_of(view: &View) -> f64 {
     view.dir_x.length().min(view.dir_y.length())
 }
 
-/// Selects the copies that may be in the picture.
-struct InPicture {
-    /// None if all copies count as visible.
+/// Depths of an object's copies, each over the copy's largest scale; infinite for copies that do not
+/// show. An object unit covers the most pixels on the copy with the least one.
+struct CopyDepths<'a> {
+    object: &'a Object,
+    view: &'a View,
+    /// Selects the copies that may be in the picture; none if all count.
     projector: Option<Projector>,
     shape: Cylinder,
 }
 
-impl InPicture {
-    fn new(object: &Object, view: &View, all: bool) -> Self {
+impl<'a> CopyDepths<'a> {
+    fn new(object: &'a Object, view: &'a View, all: bool) -> Self {
         Self {
+            object,
+            view,
             // No ray leaves its pixel.
             projector: (!all && !view.parallel).then(|| Projector::new(view, 1.0, 0.0)),
             shape: Cylinder {
@@ -223,26 +179,46 @@ impl InPicture {
         }
     }
 
-    fn may_show(&self, copy: &Placement) -> bool {
-        let seen = |projector: &Projector| {
-            projector.bounds(&projector.axes(copy, self.shape.axis), &self.shape)
+    fn over_scale(&self, scale: DVec3, [nearest, farthest]: [f64; 2]) -> f64 {
+        let depth = if farthest <= 0.0 {
+            f64::INFINITY
+        } else if self.view.parallel {
+            1.0
+        } else {
+            // A copy that the near plane cuts is nearest at that plane.
+            nearest.max(self.view.near)
         };
-        self.projector.as_ref().is_none_or(|f| seen(f).is_some())
+        depth / scale.max_element()
     }
 
-    /// True if the picture may show a copy of the cluster.
-    fn may_show_any(&self, cluster: &Cluster) -> bool {
-        let seen = |projector: &Projector| projector.cluster_bounds(cluster, &self.shape);
-        self.projector.as_ref().is_none_or(|f| seen(f).is_some())
+    /// A lower bound for the copies of a cluster.
+    fn of_cluster(&self, cluster: &Cluster) -> f64 {
+        let seen = |projector: &Projector| projector.cluster_bounds(cluster, &self.shape).is_some();
+        if !self.projector.as_ref().is_none_or(seen) {
+            return f64::INFINITY;
+        }
+        let around = cluster.around(self.view.eye, [self.shape.radius, 1.0]);
+        self.over_scale(cluster.most_scale, around.along(self.view.forward)) * (1.0 - 1e-6)
     }
-}
 
-/// Least and largest depth of a copy's box.
-fn depths(radius: f64, copy: &Placement, view: &View) -> [f64; 2] {
-    let forward = copy.rotation.conjugate() * view.forward * copy.scale;
-    let middle = (copy.position - view.eye).dot(view.forward) + 0.5 * forward.z;
-    let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
-    [middle - reach, middle + reach]
+    /// The least of all copies: that of their boxes' nearest points (`part` 1), or of their middles
+    /// (0).
+    fn least(&self, part: f64) -> f64 {
+        let radius = self.object.profile.radius;
+        let of_copy = |copy: &Placement| {
+            let seen = |projector: &Projector| projector.bounds(copy, &self.shape).is_some();
+            if !self.projector.as_ref().is_none_or(seen) {
+                return f64::INFINITY;
+            }
+            let forward = copy.rotation.conjugate() * self.view.forward * copy.scale;
+            let middle = copy.position - self.view.eye;
+            let middle = middle.dot(self.view.forward) + 0.5 * forward.z;
+            let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
+            self.over_scale(copy.scale, [middle - part * reach, middle + reach])
+        };
+        self.object
+            .least_of_copies(|cluster| self.of_cluster(cluster), of_copy)
+    }
 }
 
 #[cfg(test)]

@@ -170,29 +170,33 @@ struct Layer {
 }
 
 impl Layer {
-    /// The layer of an object; created for the first object of that layer.
-    fn of<'a>(
-        all: &'a mut Vec<Self>,
-        objects: &[PlanObject],
-        number: usize,
-        (variant, kind): (Variant, Kind),
-    ) -> (usize, &'a mut Self) {
-        let textures = objects[number].textures;
+    /// The index of an object's layer; the layer is created for its first object.
+    fn of(all: &mut Vec<Self>, objects: &[PlanObject], number: u32, key: (Variant, Kind)) -> usize {
+        let textures = |n: u32| objects[n as usize].textures;
         let same = |layer: &Self| {
-            let like = layer.objects.first().map(|&n| objects[n as usize].textures);
-            (layer.variant, layer.kind, like) == (variant, kind, Some(textures))
+            (layer.variant, layer.kind) == key && textures(layer.objects[0]) == textures(number)
         };
         let at = all.iter().position(same).unwrap_or_else(|| {
             all.push(Self {
-                variant,
-                kind,
+                variant: key.0,
+                kind: key.1,
                 objects: Vec::new(),
                 draws: Vec::new(),
             });
             all.len() - 1
         });
-        all[at].objects.push(number as u32);
-        (at, &mut all[at])
+        all[at].objects.push(number);
+        at
+    }
+}
+
+/// A variant that compares depths with those of the target and writes them, or does neither.
+fn with_depths(variant: Variant, compares: bool) -> Variant {
+    let depths = u32::from(compares);
+    Variant {
+        depth_test: depths,
+        depth_keep: depths,
+        ..variant
     }
 }
 
@@ -204,7 +208,7 @@ impl FramePlan {
         objects: &[PlanObject],
         (paths, variants): (&[Path], &[Variant]),
     ) {
-        let mut layers = Vec::new();
+        let mut layers: Vec<Layer> = Vec::new();
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
@@ -230,8 +234,8 @@ impl FramePlan {
                 outside: u32::from(outside),
                 ..variants[n]
             };
-            let (_, layer) = Layer::of(&mut layers, objects, n, (variant.of_kind(kind), kind));
-            layer.draws.extend(draws);
+            let layer = Layer::of(&mut layers, objects, n as u32, (variant.of_kind(kind), kind));
+            layers[layer].draws.extend(draws);
         }
         for layer in layers {
             let first = self.draws.len() as u32;

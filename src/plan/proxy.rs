@@ -1,7 +1,7 @@
 //! Selection of the objects that can be drawn by proxies of cells.
 
 use super::view::View;
-use crate::scene::{Clip, Cluster, Object, Placement};
+use crate::scene::{Clip, Object, Placement};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
@@ -41,21 +41,6 @@ pub(crate) fn is_apart(surface: &OffsetSurface, point: DVec3) -> bool {
     point.x > r_max + CLEARANCE || point.y < z_min - CLEARANCE || point.y > z_max + CLEARANCE
 }
 
-/// True if [`is_apart`] may be false for a copy of the cluster. `axis`: distance of a copy's axis
-/// from the middle of its box; `forward`: the view's.
-pub(crate) fn may_hold_eye(
-    surface: &OffsetSurface,
-    axis: f64,
-    cluster: &Cluster,
-    eye: DVec3,
-    forward: DVec3,
-) -> bool {
-    let [r_max, z_min, z_max] = surface.extent();
-    let beside = axis + r_max + CLEARANCE;
-    let along = z_min.abs().max(z_max.abs()) + CLEARANCE;
-    cluster.around(eye, [beside, along]).along(forward)[0] <= 0.0
-}
-
 /// The eye, relative to the axis, and the direction of sight, both in object space. The depth of a
 /// point `p` there is `(p - eye) . forward`.
 fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVec3) {
@@ -74,13 +59,6 @@ const LOPSIDED: f64 = 32.0;
 pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
     sides.max_element() > LOPSIDED * sides.min_element()
-}
-
-/// True if a cluster may hold a copy for which [`is_lopsided`] is true.
-pub(crate) fn may_be_lopsided(radius: f64, cluster: &Cluster) -> bool {
-    let sides = DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
-    let most = (cluster.most_scale * sides).max_element();
-    most > LOPSIDED * (cluster.least_scale * sides).min_element()
 }
 
 /// The frusta of `object`'s cells. Returns none unless they show all that the box shows from this

@@ -1,9 +1,10 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::LIST_LENGTHS;
-use super::tiles::{Batch, Drawer, LEAST_QUEUE, LayerTiles, Visible};
+use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
+    with_depths,
 };
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
@@ -49,21 +50,16 @@ impl FramePlan {
                 outside: u32::from(of.is_whole() && visible.is_apart(batch)),
                 ..variants[n]
             };
-            let (layer, _) = Layer::of(&mut layers, objects, n, (variant, kind));
+            let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
             layer_of.push(layer as u32);
         }
-        let drawer = if with.compute {
-            Drawer::Groups
-        } else {
-            Drawer::Fragments
-        };
         let queues = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].copies().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
             enough && Conditions::takes_queues(&objects[layer.objects[0] as usize])
         };
         let queues: Vec<bool> = layers.iter().map(queues).collect();
-        let mut dealt = visible.deal(drawer, &layer_of, &queues);
+        let mut dealt = visible.deal(with.compute, &layer_of, &queues);
         let layers_of_lists = layers.iter().zip(&mut dealt.layers);
         for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
             let patches = |&n: &u32| objects[n as usize].listed_patches();
@@ -132,11 +128,7 @@ impl FramePlan {
         let mut head = 0;
         self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
-            let base = Variant {
-                depth_test: u32::from(self.compares_depths),
-                depth_keep: u32::from(self.compares_depths),
-                ..layer.variant
-            };
+            let base = with_depths(layer.variant, self.compares_depths);
             let step = |phase, kind, variant: Variant, call| Step {
                 phase,
                 variant: variant.of_kind(kind),

@@ -2,10 +2,9 @@
 //! host's matrices.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{Camera, CameraFrame, Cluster, Growth, Placement, Scene};
+use crate::scene::{Camera, CameraFrame, Scene};
 use crate::shader::generated::GROUP_PIXELS;
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
 /// The end of the depth range that is near.
@@ -29,6 +28,16 @@ pub struct Viewport {
     pub width: f64,
     /// Height; negative where clip space has `y` upwards (Vulkan 1.1).
     pub height: f64,
+}
+
+impl Viewport {
+    /// Clip position, from -1 to 1, of a framebuffer position.
+    fn clip(&self, x: f64, y: f64) -> DVec2 {
+        DVec2::new(
+            2.0 * (x - self.x) / self.width - 1.0,
+            2.0 * (y - self.y) / self.height - 1.0,
+        )
+    }
 }
 
 /// An eye, the ray of every pixel, and the depth of every point.
@@ -103,29 +112,47 @@ impl View {
             depth_row,
         )
         .transpose();
+        let viewport = Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: f64::from(size.0),
+            height: f64::from(size.1),
+        };
+        let dir_00 = camera.pixel(0, 0);
+        let rays = [dir_00, camera.right, -camera.up, camera.forward];
         Ok(Self {
-            eye: camera.eye,
-            dir_00: camera.pixel(0, 0),
-            dir_x: camera.right,
-            dir_y: -camera.up,
-            forward: camera.forward,
-            clip_from_world,
             depth: [constant, factor],
             near,
+            ..Self::of_rays(camera.eye, rays, clip_from_world, viewport)
+        })
+    }
+
+    /// A view of all objects in all rows, without depths. `rays`: `dir_00`, `dir_x`, `dir_y` and
+    /// `forward`.
+    fn of_rays(
+        eye: DVec3,
+        [dir_00, dir_x, dir_y, forward]: [DVec3; 4],
+        clip_from_world: DMat4,
+        viewport: Viewport,
+    ) -> Self {
+        Self {
+            eye,
+            dir_00,
+            dir_x,
+            dir_y,
+            forward,
+            clip_from_world,
+            depth: [0.0; 2],
+            near: 0.0,
             order: DepthOrder::Normal,
+            viewport,
             parallel: false,
             mask: u32::MAX,
             layer: 0,
             jitter: DVec2::ZERO,
             last: None,
             rows: None,
-            viewport: Viewport {
-                x: 0.0,
-                y: 0.0,
-                width: f64::from(size.0),
-                height: f64::from(size.1),
-            },
-        })
+        }
     }
 
     /// The same view of the objects whose mask shares a bit with `mask`. A new view shows all.
@@ -156,10 +183,11 @@ impl View {
     /// from `last`; without it, only objects move.
     #[must_use]
     pub fn with_last(self, last: &Self) -> Self {
-        let last = Some(LastView {
-            rows: last.pixel_rows(),
-        });
-        Self { last, ..self }
+        let rows = last.pixel_rows();
+        Self {
+            last: Some(LastView { rows }),
+            ..self
+        }
     }
 
     /// The same view with depths shifted by `bias`, in units of the depth buffer: positive is
@@ -252,10 +280,7 @@ impl View {
             ));
         }
         let direction = |x: f64, y: f64| {
-            let ndc = DVec2::new(
-                2.0 * (x - viewport.x) / viewport.width - 1.0,
-                2.0 * (y - viewport.y) / viewport.height - 1.0,
-            );
+            let ndc = viewport.clip(x, y);
             // The pixel's clip point at w = 1 minus the eye's, which is (0, 0, factor, 0).
             let point = inverse * DVec4::new(ndc.x, ndc.y, constant, 1.0);
             point.truncate()
@@ -274,23 +299,12 @@ impl View {
                 "the near plane is not in front of the eye; give a projection for this depth order",
             ));
         }
+        let rays = [dir_00, dir_x, dir_y, forward];
         Ok(Self {
-            eye,
-            dir_00,
-            dir_x,
-            dir_y,
-            forward,
-            clip_from_world,
             depth: [constant, factor],
             near,
             order,
-            viewport,
-            parallel: false,
-            mask: u32::MAX,
-            layer: 0,
-            jitter: DVec2::ZERO,
-            last: None,
-            rows: None,
+            ..Self::of_rays(eye, rays, clip_from_world, viewport)
         })
     }
 
@@ -301,7 +315,7 @@ impl View {
     /// The errors of [`CameraFrame::new`].
     pub fn of_scene(scene: &Scene, size: (u32, u32)) -> Result<Self> {
         let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
-        Self::from_camera(&scene.camera, size, depth_range(scene, &camera))
+        Self::from_camera(&scene.camera, size, camera.depth_range(scene))
     }
 
     /// The view of parallel rays that begin in the near plane, where `t` is 0.
@@ -312,9 +326,7 @@ impl View {
             DepthOrder::Reversed => (1.0, -1.0),
         };
         let point = |x: f64, y: f64| {
-            let ndc_x = 2.0 * (x - viewport.x) / viewport.width - 1.0;
-            let ndc_y = 2.0 * (y - viewport.y) / viewport.height - 1.0;
-            let p = inverse * DVec4::new(ndc_x, ndc_y, near_value, 1.0);
+            let p = inverse * viewport.clip(x, y).extend(near_value).extend(1.0);
             p.truncate() / p.w
         };
         let eye = point(0.5, 0.5);
@@ -331,23 +343,12 @@ impl View {
                 "the parallel projection is oblique, mirrors, or is none; give one at right angles to the view, for this depth order",
             ));
         }
+        let rays = [forward, dir_x, dir_y, forward];
         Ok(Self {
-            eye,
-            dir_00: forward,
-            dir_x,
-            dir_y,
-            forward,
-            clip_from_world,
             depth: [near_value, sense * slope],
-            near: 0.0,
             order,
-            viewport,
             parallel: true,
-            mask: u32::MAX,
-            layer: 0,
-            jitter: DVec2::ZERO,
-            last: None,
-            rows: None,
+            ..Self::of_rays(eye, rays, clip_from_world, viewport)
         })
     }
 
@@ -429,40 +430,6 @@ impl View {
     pub(crate) fn pixel_size(&self) -> f64 {
         self.dir_x.length()
     }
-}
-
-/// The depth range that contains every box before the eye; near is never closer than a
-/// ten-thousandth of far.
-fn depth_range(scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
-    let mut low = f64::INFINITY;
-    let mut high: f64 = 0.0;
-    for object in &scene.objects {
-        // Corners of hulls extend a little beyond the box, corners of convex hulls by some texels
-        // more.
-        let growth = Growth::of(object);
-        let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
-        let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
-        let middle_z = 0.5 * (1.0 + growth.high - growth.low);
-        let range = |p: &Placement| {
-            let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, middle_z));
-            let depth = (middle - camera.eye).dot(camera.forward);
-            let reach = (p.rotation.conjugate() * camera.forward * p.scale)
-                .abs()
-                .dot(half);
-            [depth - reach, depth + reach]
-        };
-        let farthest = [radius * SQRT_2, middle_z.abs() + half.z];
-        let of = |cluster: &Cluster| cluster.around(camera.eye, farthest).along(camera.forward);
-        // What is behind the eye must not cost precision.
-        let nearest = |[near, far]: [f64; 2]| if far > 0.0 { near } else { f64::INFINITY };
-        low = low.min(object.least_of_copies(|c| nearest(of(c)), |p| nearest(range(p))));
-        high = high.max(-object.least_of_copies(|c| -of(c)[1], |p| -range(p)[1]));
-    }
-    if high <= 0.0 {
-        return [1.0, 2.0];
-    }
-    let far = high * 1.001;
-    [(low * 0.999).max(far * 1e-4), far]
 }
 
 fn wrong(message: impl Into<String>) -> Error {

@@ -1,8 +1,9 @@
 //! Converts pixels to ray directions; the GPU's block and the reference share this code.
 
-use super::Camera;
+use super::{Camera, Cluster, Growth, Placement, Scene};
 use crate::error::{Error, ErrorKind, Result, content};
 use glam::DVec3;
+use std::f64::consts::SQRT_2;
 
 /// The rays of a camera for pictures of one size.
 ///
@@ -97,6 +98,40 @@ impl CameraFrame {
     #[must_use]
     pub fn pixel(&self, i: u32, j: u32) -> DVec3 {
         self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
+    }
+
+    /// The depth range that contains every box before the eye; near is never closer than a
+    /// ten-thousandth of far.
+    pub(crate) fn depth_range(&self, scene: &Scene) -> [f64; 2] {
+        let mut low = f64::INFINITY;
+        let mut high: f64 = 0.0;
+        for object in &scene.objects {
+            // Corners of hulls extend a little beyond the box, corners of convex hulls by some texels
+            // more.
+            let growth = Growth::of(object);
+            let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
+            let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
+            let middle_z = 0.5 * (1.0 + growth.high - growth.low);
+            let range = |p: &Placement| {
+                let middle = p.position + p.rotation * (p.scale * DVec3::new(0.0, 0.0, middle_z));
+                let depth = (middle - self.eye).dot(self.forward);
+                let reach = (p.rotation.conjugate() * self.forward * p.scale)
+                    .abs()
+                    .dot(half);
+                [depth - reach, depth + reach]
+            };
+            let farthest = [radius * SQRT_2, middle_z.abs() + half.z];
+            let of = |cluster: &Cluster| cluster.around(self.eye, farthest).along(self.forward);
+            // What is behind the eye must not cost precision.
+            let nearest = |[near, far]: [f64; 2]| if far > 0.0 { near } else { f64::INFINITY };
+            low = low.min(object.least_of_copies(|c| nearest(of(c)), |p| nearest(range(p))));
+            high = high.max(-object.least_of_copies(|c| -of(c)[1], |p| -range(p)[1]));
+        }
+        if high <= 0.0 {
+            return [1.0, 2.0];
+        }
+        let far = high * 1.001;
+        [(low * 0.999).max(far * 1e-4), far]
     }
 }
 

@@ -9,7 +9,7 @@ use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Offset};
 use crate::search::Search;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
-use crate::surface::{Contour, ContourSource, OuterCylinders};
+use crate::surface::{Contour, ContourSource, Cylinders};
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
@@ -85,7 +85,7 @@ impl SolidCache {
 pub(crate) struct Solid {
     profile: Arc<Profile>,
     source: OnceLock<Result<ContourSource>>,
-    outer: OnceLock<OuterCylinders>,
+    outer: OnceLock<Cylinders>,
     contours: Mutex<Kept<[u64; 3], OffsetContour>>,
     surfaces: Mutex<Kept<SurfaceKey, OffsetSurface>>,
 }
@@ -105,8 +105,8 @@ impl Solid {
     }
 
     /// Cylinders that contain the solid without its offset.
-    pub fn outer(&self) -> &OuterCylinders {
-        let make = || OuterCylinders::of_outline(&self.profile.outline);
+    pub fn outer(&self) -> &Cylinders {
+        let make = || Cylinders::around_outline(&self.profile.outline);
         self.outer.get_or_init(make)
     }
 

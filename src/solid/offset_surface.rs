@@ -6,7 +6,7 @@ use crate::search::{Reads, Search, SearchTable};
 use crate::solid::cache::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::tables;
-use crate::surface::{FitOptions, InnerCylinders, OuterCylinders, QuadricPatch, fit_patches};
+use crate::surface::{Cylinders, FitOptions, QuadricPatch, fit_patches};
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -57,8 +57,8 @@ pub(crate) struct OffsetSurface {
     tables: OnceLock<SearchTable>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
-    inner: OnceLock<InnerCylinders>,
-    outer: OnceLock<OuterCylinders>,
+    inner: OnceLock<Cylinders>,
+    outer: OnceLock<Cylinders>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -158,15 +158,15 @@ impl OffsetSurface {
     }
 
     /// Cylinders inside its solid, which hide everything behind them; only for patches.
-    pub fn inner(&self) -> Option<&InnerCylinders> {
+    pub fn inner(&self) -> Option<&Cylinders> {
         let patches = self.quadrics()?;
-        Some(self.inner.get_or_init(|| InnerCylinders::new(patches)))
+        Some(self.inner.get_or_init(|| Cylinders::inner(patches)))
     }
 
     /// Cylinders around its solid; only for patches.
-    pub fn outer(&self) -> Option<&OuterCylinders> {
+    pub fn outer(&self) -> Option<&Cylinders> {
         let patches = self.quadrics()?;
-        Some(self.outer.get_or_init(|| OuterCylinders::new(patches)))
+        Some(self.outer.get_or_init(|| Cylinders::outer(patches)))
     }
 
     /// True if it is made of patches.

@@ -2,7 +2,7 @@
 
 use super::Offset;
 use super::chain::{Chain, Segments};
-use super::offset::{Corner, Layer, Trimmer};
+use super::offset::{Corner, Layer, trim};
 use super::tree::Tree;
 use crate::error::{Error, ErrorKind, Result};
 use crate::profile::{Outline, Segment};
@@ -139,10 +139,10 @@ impl ContourSource {
     /// Parts of the outline moved by `w`.
     fn moved(&self, offset: &Offset) -> Segments {
         let mut parts = Segments::default();
-        let mut trimmer = Trimmer::default();
         let size = (self.segments.iter()).fold(1.0f64, |size, s| size.max(s.a.x).max(s.b.x));
         let mut layer = |alpha, beta, low, high| {
             let layer = Layer {
+                tree: &self.tree,
                 alpha,
                 beta,
                 low,
@@ -150,7 +150,7 @@ impl ContourSource {
                 size,
             };
             if high > low {
-                trimmer.layer(layer, &self.segments, &self.corners, &self.tree, &mut parts);
+                trim(&layer, &self.segments, &self.corners, &mut parts);
             }
         };
         let (e, b) = (offset.extend, offset.bevel);

@@ -1,6 +1,7 @@
 //! Cylinders about a solid's axis: some inside the solid, some around it.
 
-use super::{QuadricPatch, SOLID_ROWS, extents, solid_radii};
+use super::QuadricPatch;
+use super::rows::extents;
 use crate::profile::{Outline, Segment};
 
 /// One cylinder, object units.
@@ -11,64 +12,42 @@ pub(crate) struct CylinderPiece {
     pub high: f64,
 }
 
-/// Cylinders about an axis, from the lowest to the highest. Copies that are larger on the screen
-/// use more of them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Cylinders([Vec<CylinderPiece>; 3]);
-
-impl Cylinders {
-    /// Cylinders for rows with these radii: see [`cylinders`].
-    pub fn new(radii: &[f64], outer: bool) -> Self {
-        Self(cylinders(radii, [3, 8, 16], outer))
-    }
-
-    /// The cylinders for a copy that covers `rows` rows of pixels; few cylinders below `few` rows.
-    pub fn of(&self, rows: u32, few: u32) -> &[CylinderPiece] {
-        &self.0[usize::from(rows >= few) + usize::from(rows >= MANY_ROWS)]
-    }
+/// Cylinders about a solid's axis, from the lowest to the highest: within the solid, hiding
+/// everything behind them, or around it, containing everything that can show. Copies that are larger
+/// on the screen use more of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Cylinders {
+    pieces: [Vec<CylinderPiece>; 3],
+    /// Copies with fewer rows of pixels use few.
+    few: u32,
 }
 
-/// Least rows of pixels of a copy for which many cylinders pay.
+/// Copies with at least so many rows of pixels use many cylinders.
 const MANY_ROWS: u32 = 64;
 
-/// Cylinders within a solid, which hide everything behind them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct InnerCylinders(Cylinders);
+/// Rows of equal height in which cylinders are searched.
+const ROWS: usize = 64;
 
-/// Cylinders around a solid, which contain everything that can show.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct OuterCylinders(Cylinders);
-
-/// Copies with fewer rows of pixels use few inner cylinders.
-const FEW_ROWS: u32 = 12;
-
-impl InnerCylinders {
-    /// Inner cylinders of the solid that the patches enclose.
-    pub fn new(patches: &[QuadricPatch]) -> Self {
-        Self(Cylinders::new(&solid_radii(patches), false))
+impl Cylinders {
+    /// Cylinders within the solid that the patches enclose.
+    pub fn inner(patches: &[QuadricPatch]) -> Self {
+        Self {
+            pieces: cylinders(&solid_radii(patches), COUNTS, false),
+            few: 12,
+        }
     }
 
-    /// The cylinders for a copy that covers this many rows of pixels.
-    pub fn of(&self, rows: u32) -> &[CylinderPiece] {
-        self.0.of(rows, FEW_ROWS)
-    }
-}
-
-/// Copies with fewer rows of pixels use few outer cylinders.
-const FEW_OUTER_ROWS: u32 = 24;
-
-impl OuterCylinders {
-    /// Outer cylinders of the solid that the patches enclose.
-    pub fn new(patches: &[QuadricPatch]) -> Self {
+    /// Cylinders around the solid that the patches enclose.
+    pub fn outer(patches: &[QuadricPatch]) -> Self {
         let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
-        let radii: Vec<f64> = extents(patches, SOLID_ROWS).iter().map(most).collect();
-        Self::of_radii(&radii)
+        let radii: Vec<f64> = extents(patches, ROWS).iter().map(most).collect();
+        Self::around(&radii)
     }
 
-    /// Outer cylinders of the solid that an outline encloses, within the height of its box.
-    pub fn of_outline(outline: &Outline) -> Self {
-        let rows = SOLID_ROWS as f64;
-        let mut radii = [0.0f64; SOLID_ROWS];
+    /// Cylinders around the solid that an outline encloses, within the height of its box.
+    pub fn around_outline(outline: &Outline) -> Self {
+        let rows = ROWS as f64;
+        let mut radii = [0.0f64; ROWS];
         for Segment { a, b } in outline.surface_segments() {
             let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
             let first = (low.y * rows).floor().max(0.0) as usize;
@@ -88,18 +67,48 @@ impl OuterCylinders {
                 *radius = radius.max(radius_at(row)).max(radius_at(row + 1));
             }
         }
-        Self::of_radii(&radii)
+        Self::around(&radii)
     }
 
-    /// Outer cylinders of a solid with these largest radii in rows of equal height.
-    pub fn of_radii(radii: &[f64]) -> Self {
-        Self(Cylinders::new(radii, true))
+    /// Cylinders around a solid with these largest radii in rows of equal height.
+    pub fn around(radii: &[f64]) -> Self {
+        Self {
+            pieces: cylinders(radii, COUNTS, true),
+            few: 24,
+        }
     }
 
     /// The cylinders for a copy that covers this many rows of pixels.
     pub fn of(&self, rows: u32) -> &[CylinderPiece] {
-        self.0.of(rows, FEW_OUTER_ROWS)
+        &self.pieces[usize::from(rows >= self.few) + usize::from(rows >= MANY_ROWS)]
     }
+}
+
+/// Most cylinders of copies with few, more and many rows of pixels.
+const COUNTS: [usize; 3] = [3, 8, 16];
+
+/// The radius within which everything is solid, for each row of equal height over `0 <= z <= 1`.
+/// Object units. Rounded down; 0 if there is no such radius.
+fn solid_radii(patches: &[QuadricPatch]) -> [f64; ROWS] {
+    // A row's middle on the axis is in the solid if an odd number of patches is beside it.
+    let mut solid = [false; ROWS];
+    for patch in patches.iter().filter(|p| !p.is_plane()) {
+        let [first, end] = patch
+            .z
+            .map(|z| ((z * ROWS as f64 - 0.5).ceil().max(0.0) as usize).min(ROWS));
+        for row in &mut solid[first.min(end)..end] {
+            *row = !*row;
+        }
+    }
+    let extents = extents(patches, ROWS);
+    std::array::from_fn(|row| {
+        let least = f64::from(extents[row][0]).max(0.0).sqrt();
+        if solid[row] && least.is_finite() {
+            (least * (1.0 - 1e-3) - 1e-4).max(0.0)
+        } else {
+            0.0
+        }
+    })
 }
 
 /// For each count, at most that many runs of rows, each with its least (`outer`: largest) radius.
@@ -179,7 +188,10 @@ fn runs(
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::surface::{ContourSource, FitOptions, Offset, fit_patches};
+    use glam::DVec2;
 
     #[test]
     fn runs_keep_to_their_side_of_the_radii_and_cover_most() {
@@ -192,26 +204,71 @@ mod tests {
                 }
             })
             .collect();
-        let [found] = cylinders(&radii, [8], false);
-        assert!(found.len() > 1 && found.len() <= 8);
-        let mut covered = 0.0;
-        for piece in &found {
-            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
-            assert!(rows.iter().all(|r| *r >= piece.radius));
-            covered += piece.radius * rows.len() as f64;
+        for (outer, sense) in [(false, -1.0), (true, 1.0)] {
+            let [found] = cylinders(&radii, [8], outer);
+            assert!(found.len() > 1 && found.len() <= 8);
+            let mut covered = 0.0;
+            for piece in &found {
+                let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
+                assert!(!rows.iter().any(|r| sense * (r - piece.radius) > 0.0));
+                covered += piece.radius * rows.len() as f64;
+            }
+            covered /= radii.iter().sum::<f64>();
+            assert!(covered > 0.9 && covered < 1.1, "{covered}");
+            let touch = |w: &[CylinderPiece]| w[0].high == w[1].low;
+            let apart = |w: &[CylinderPiece]| w[0].high <= w[1].low;
+            assert!(found.windows(2).all(|w| touch(w) || !outer && apart(w)));
+            let ends = [found[0].low, found[found.len() - 1].high];
+            assert!(!outer || ends == [0.0, 1.0]);
         }
-        assert!(covered > 0.9 * radii.iter().sum::<f64>());
-        assert!(found.windows(2).all(|w| w[0].high <= w[1].low));
         assert!(cylinders(&[0.0; 64], [8], false)[0].is_empty());
-        let [found] = cylinders(&radii, [8], true);
-        assert!(found.len() <= 8 && found[0].low == 0.0 && found[found.len() - 1].high == 1.0);
-        let mut covered = 0.0;
-        for piece in &found {
-            let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
-            assert!(rows.iter().all(|r| *r <= piece.radius));
-            covered += piece.radius * rows.len() as f64;
+    }
+
+    fn patches(points: &[[f64; 2]]) -> Vec<QuadricPatch> {
+        let points = points.iter().map(|&p| DVec2::from(p)).collect();
+        let outline = Outline {
+            loops: vec![points],
+        };
+        let contour = ContourSource::new(&outline).unwrap();
+        let contour = contour.contour(&Offset::default()).unwrap();
+        fit_patches(&contour, &FitOptions::default())
+    }
+
+    #[test]
+    fn all_within_is_solid_and_little_else_is() {
+        // A cup on a foot: its bowl is hollow, its foot undercut.
+        let cup = [
+            [0.0, 0.1],
+            [0.2, 0.1],
+            [0.3, 0.0],
+            [0.4, 0.0],
+            [0.1, 0.5],
+            [0.4, 1.0],
+            [0.3, 1.0],
+            [0.0, 0.6],
+        ];
+        let patches = patches(&cup);
+        let radii = solid_radii(&patches);
+        // Parity of the number of patches beyond a point.
+        let is_solid = |r: f64, z: f64| {
+            let beyond = patches
+                .iter()
+                .filter(|p| !p.is_plane() && p.z[0] <= z && z < p.z[1] && p.square_at(z) > r * r);
+            beyond.count() % 2 == 1
+        };
+        for (row, &radius) in radii.iter().enumerate() {
+            for k in 0..=100 {
+                let z = (row as f64 + f64::from(k) / 100.0) / 64.0;
+                for part in [0.0, 0.5, 1.0] {
+                    let r = radius * part;
+                    let inside = is_solid(r, z);
+                    assert!(radius == 0.0 || inside, "row {row}, {r} {z}");
+                }
+            }
         }
-        assert!(covered < 1.1 * radii.iter().sum::<f64>());
-        assert!(found.windows(2).all(|w| w[0].high == w[1].low));
+        // The radius is 0 below and above the axis' part of the solid, and in the rows of its ends.
+        assert!(radii[..7].iter().chain(&radii[38..]).all(|r| *r == 0.0));
+        // The narrowest point is the joint of cup and foot.
+        assert!((radii[31] - 0.1).abs() < 0.01 && radii[10] > 0.25);
     }
 }

@@ -28,17 +28,15 @@ mod frusta;
 pub mod hull;
 mod offset;
 pub mod rows;
-mod solid_radii;
 mod tree;
 
 pub use chain::Chain;
 pub use contour::{Contour, ContourSource, MOST_SEGMENTS};
-pub(crate) use cylinders::{CylinderPiece, InnerCylinders, OuterCylinders};
+pub(crate) use cylinders::{CylinderPiece, Cylinders};
 pub use fit::{FitOptions, fit_patches};
 pub use hull::{Frustum, ProxyHull, ProxyHullOptions};
 pub use rows::{GpuPatch, ROWS, Tables};
 pub(crate) use rows::{extents, touched};
-pub(crate) use solid_radii::{SOLID_ROWS, solid_radii};
 
 use glam::DVec2;
 

@@ -35,7 +35,9 @@ use std::f64::consts::PI;
 
 /// `w = alpha + beta z` for `low <= z <= high`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layer {
+pub(super) struct Layer<'a> {
+    /// The surface.
+    pub tree: &'a Tree,
     pub alpha: f64,
     pub beta: f64,
     pub low: f64,
@@ -44,7 +46,7 @@ pub(super) struct Layer {
     pub size: f64,
 }
 
-impl Layer {
+impl Layer<'_> {
     /// The offset `w` at a height.
     fn offset(&self, z: f64) -> f64 {
         self.alpha + self.beta * z
@@ -54,10 +56,10 @@ impl Layer {
     /// than the offset there. A curve there meets no visible part of another, because both have the
     /// same offset where they meet. Without this test the curves of a fine pattern under a wide
     /// offset would all meet each other.
-    fn hides(&self, tree: &Tree, middle: DVec2, reach: f64) -> bool {
+    fn hides(&self, middle: DVec2, reach: f64) -> bool {
         // A distance changes by at most the way, the offset by at most `beta` times it.
         let omega = self.offset(middle.y).abs() - (1.0 + self.beta.abs()) * reach;
-        tree.any_nearer(middle, omega - NEARER * self.size)
+        self.tree.any_nearer(middle, omega - NEARER * self.size)
     }
 
     /// The point, moved exactly onto a border of layer or half-plane if it is within `SHORT` of it.
@@ -105,27 +107,32 @@ struct Candidate {
     feature: u32,
 }
 
-/// Working memory, used by one layer after the other.
-#[derive(Debug, Default)]
-pub(super) struct Trimmer {
+/// The curves of a layer.
+struct Trimmer<'a> {
+    layer: &'a Layer<'a>,
     candidates: Vec<Candidate>,
-    /// `(candidate, parameter, point)` of each cut.
-    cuts: Vec<(u32, f64, DVec2)>,
-    order: Vec<u32>,
-    active: Vec<u32>,
 }
 
-impl Trimmer {
-    /// Appends the parts of the contour within a layer.
-    pub fn layer(
-        &mut self,
-        layer: Layer,
-        segments: &[Segment],
-        corners: &[[Option<Corner>; 2]],
-        tree: &Tree,
-        parts: &mut Segments,
-    ) {
-        self.candidates.clear();
+/// Appends the parts of the contour within a layer.
+pub(super) fn trim(
+    layer: &Layer,
+    segments: &[Segment],
+    corners: &[[Option<Corner>; 2]],
+    parts: &mut Segments,
+) {
+    let mut trimmer = Trimmer {
+        layer,
+        candidates: Vec::new(),
+    };
+    trimmer.load(segments, corners);
+    let mut cuts = trimmer.cuts();
+    cuts.sort_unstable_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
+    trimmer.keep(&cuts, parts);
+}
+
+impl Trimmer<'_> {
+    /// Finds the curves that can carry the contour.
+    fn load(&mut self, segments: &[Segment], corners: &[[Option<Corner>; 2]]) {
         let (mut feature, mut end) = (1, None);
         for (s, [before, after]) in segments.iter().zip(corners) {
             // Neighbours in the list that do not join, such as two loops, share no feature.
@@ -134,21 +141,17 @@ impl Trimmer {
             // The corner before a segment that is not the corner after its predecessor: a curve
             // begins on the axis.
             if let Some(corner) = before {
-                self.conic(&layer, corner, feature - 1, tree);
+                self.conic(corner, feature - 1);
             }
-            self.line(&layer, s, feature, tree);
+            self.line(s, feature);
             if let Some(corner) = after {
-                self.conic(&layer, corner, feature + 1, tree);
+                self.conic(corner, feature + 1);
             }
         }
-        self.cuts.clear();
-        self.sweep(&layer);
-        self.cuts
-            .sort_unstable_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
-        self.keep(&layer, tree, parts);
     }
 
-    fn line(&mut self, layer: &Layer, s: &Segment, feature: u32, tree: &Tree) {
+    fn line(&mut self, s: &Segment, feature: u32) {
+        let layer = self.layer;
         let normal = -(s.b - s.a).perp().normalize_or_zero();
         let divisor = 1.0 - layer.beta * normal.y;
         if divisor.abs() < 1e-9 {
@@ -169,12 +172,13 @@ impl Trimmer {
             high: a.max(b) + SHORT,
             feature,
         };
-        if !layer.hides(tree, 0.5 * (a + b), 0.5 * a.distance(b) + SHORT) {
+        if !layer.hides(0.5 * (a + b), 0.5 * a.distance(b) + SHORT) {
             self.candidates.push(candidate);
         }
     }
 
-    fn conic(&mut self, layer: &Layer, corner: &Corner, feature: u32, tree: &Tree) {
+    fn conic(&mut self, corner: &Corner, feature: u32) {
+        let layer = self.layer;
         let focus = corner.point;
         let size = layer.offset(focus.y);
         let (from, to) = (corner.angle, corner.angle + corner.turn);
@@ -233,7 +237,7 @@ impl Trimmer {
             let chord = a.distance(b);
             let reach =
                 |middle: DVec2, a: DVec2, b: DVec2| middle.distance(a).max(middle.distance(b));
-            if chord < SHORT || layer.hides(tree, inside, reach(inside, a, b)) {
+            if chord < SHORT || layer.hides(inside, reach(inside, a, b)) {
                 continue;
             }
             // The part between the first and the last pieces that may show.
@@ -241,7 +245,7 @@ impl Trimmer {
             let shows = |k: &u32| {
                 let [a, middle, b] = [at(*k), 0.5 * (at(*k) + at(k + 1)), at(k + 1)]
                     .map(|x| curve.point(layer.beta, x));
-                !layer.hides(tree, middle, reach(middle, a, b))
+                !layer.hides(middle, reach(middle, a, b))
             };
             let (Some(first), Some(last)) = ((0..PIECES).find(shows), (0..PIECES).rfind(shows))
             else {
@@ -268,30 +272,25 @@ impl Trimmer {
         }
     }
 
-    /// Cuts all curves at their intersections by a plane sweep upwards.
-    fn sweep(&mut self, layer: &Layer) {
-        let Self {
-            candidates,
-            cuts,
-            order,
-            active,
-        } = self;
-        order.clear();
-        order.extend(0..candidates.len() as u32);
+    /// Cuts all curves at their intersections by a plane sweep upwards: `(candidate, parameter,
+    /// point)` of each cut.
+    fn cuts(&self) -> Vec<(u32, f64, DVec2)> {
+        let candidates = &self.candidates;
+        let mut order: Vec<u32> = (0..candidates.len() as u32).collect();
         order.sort_unstable_by(|&j, &k| {
             let z = |k: u32| candidates[k as usize].low.y;
             z(j).total_cmp(&z(k)).then(j.cmp(&k))
         });
-        active.clear();
-        for &k in order.iter() {
+        let (mut cuts, mut active) = (Vec::new(), Vec::new());
+        for k in order {
             let own = &candidates[k as usize];
-            active.retain(|&j| candidates[j as usize].high.y >= own.low.y);
-            for &j in active.iter() {
+            active.retain(|&j: &u32| candidates[j as usize].high.y >= own.low.y);
+            for &j in &active {
                 let other = &candidates[j as usize];
                 if other.low.x <= own.high.x && own.low.x <= other.high.x {
                     let (first, second) = (j.min(k), j.max(k));
                     meet(
-                        layer.beta,
+                        self.layer.beta,
                         &candidates[first as usize],
                         &candidates[second as usize],
                         |x, y, p| {
@@ -303,11 +302,12 @@ impl Trimmer {
             }
             active.push(k);
         }
+        cuts
     }
 
     /// Keeps the parts of each curve that are on the contour.
-    fn keep(&self, layer: &Layer, tree: &Tree, parts: &mut Segments) {
-        let mut cuts = &self.cuts[..];
+    fn keep(&self, mut cuts: &[(u32, f64, DVec2)], parts: &mut Segments) {
+        let layer = self.layer;
         for (k, candidate) in self.candidates.iter().enumerate() {
             let own = cuts.partition_point(|c| c.0 as usize <= k);
             let (these, rest) = cuts.split_at(own);
@@ -328,13 +328,13 @@ impl Trimmer {
                     continue;
                 }
                 let middle = curve.point(layer.beta, 0.5 * (x0 + x1));
-                let omega = layer.offset(middle.y).abs();
-                if tree.any_nearer(middle, omega - NEARER * layer.size) {
+                if layer.hides(middle, 0.0) {
                     continue;
                 }
                 parts.begin();
                 parts.point(a);
                 if let Curve::Conic { .. } = curve {
+                    let omega = layer.offset(middle.y).abs();
                     let step = (8.0 * SAGITTA / omega.max(1e-12)).sqrt();
                     let n = ((x1 - x0).abs() / step).ceil().clamp(1.0, 4096.0);
                     for i in 1..n as u32 {

@@ -19,14 +19,17 @@ pub(crate) struct Cylinder {
 /// The view as three linear maps. The first two over the third give a point's pixel, and the third
 /// is its depth.
 pub(crate) struct Projector {
-    pub(super) eye: DVec3,
-    pub(super) rows: DMat3,
+    eye: DVec3,
+    rows: DMat3,
+    /// Products of each map with itself, and of the first two with the third.
+    squares: DVec3,
+    products: DVec2,
     /// First and last pixel centre, both axes.
-    pub(super) low: DVec2,
-    pub(super) high: DVec2,
+    low: DVec2,
+    high: DVec2,
     /// First and last pixel of both axes whose centres are in the viewport: left, top, right,
     /// bottom.
-    pub(super) ends: [i32; 4],
+    ends: [i32; 4],
     /// A pixel's longer side at unit depth.
     pixel: f64,
     /// Margin of a rectangle on each side, in pixels: more than the roundings of 32 bits, and the
@@ -84,6 +87,8 @@ impl Projector {
                 last_pixel(high.y),
             ],
             eye: view.eye,
+            squares: rows.map(DVec3::length_squared).into(),
+            products: DVec2::new(rows[0].dot(rows[2]), rows[1].dot(rows[2])),
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
             low: low + 0.5,
             high: high - 0.5,
@@ -139,99 +144,106 @@ impl Projector {
         self.margin * self.pixel * (axes.middle.z + deep) / axes.least_scale
     }
 
-    /// The bounds of a cylinder. Returns none if no pixel's ray can meet it.
-    pub fn bounds(&self, axes: &ProjectedAxes, of: &Cylinder) -> Option<ScreenBounds> {
-        let [x, y, z] = axes.along;
-        let square = |i: usize, k: usize| of.radius * of.radius * (x[i] * x[k] + y[i] * y[k]);
-        let discs = [of.low, of.high].map(|h| axes.middle + z * h);
-        let deep = square(2, 2).sqrt();
+    /// The bounds of a copy's cylinder. Returns none if no pixel's ray can meet it.
+    pub fn bounds(&self, copy: &Placement, of: &Cylinder) -> Option<ScreenBounds> {
+        // Products of the maps over a disc: of each with itself, and of the first two with depth.
+        let (middle, z, squares, products);
+        if copy.scale.x == copy.scale.y && of.axis == DVec2::ZERO {
+            // A disc at right angles to its axis, however it is turned about it.
+            let axis = DMat3::from_quat(copy.rotation).z_axis;
+            let way = self.rows * axis;
+            let away = way / axis.length_squared();
+            let square = (of.radius * copy.scale.x).powi(2);
+            middle = self.rows * (copy.position - self.eye);
+            z = way * copy.scale.z;
+            squares = (self.squares - way * away) * square;
+            products = (self.products - way.truncate() * away.z) * square;
+        } else {
+            let axes = self.axes(copy, of.axis);
+            let [x, y] = [0, 1].map(|k| axes.along[k] * of.radius);
+            (middle, z) = (axes.middle, axes.along[2]);
+            squares = x * x + y * y;
+            products = x.truncate() * x.z + y.truncate() * y.z;
+        }
+        let discs = [of.low, of.high].map(|h| middle + z * h);
+        let deep = squares.z.max(0.0).sqrt();
         let near = discs[0].z.min(discs[1].z) - deep;
         let far = discs[0].z.max(discs[1].z) + deep;
         if far <= 0.0 {
             return None;
         }
-        let mut pixels = [0u16; 4];
-        for i in 0..2 {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            if near > 1e-3 * far {
-                // Lines of sight that are tangent to a disc: the roots of a quadratic.
-                for c in &discs {
-                    let a = c.z * c.z - square(2, 2);
-                    let b = c[i] * c.z - square(i, 2);
-                    let root = (b * b - a * (c[i] * c[i] - square(i, i))).max(0.0).sqrt();
-                    let inverse = 1.0 / a;
-                    low = low.min((b - root) * inverse);
-                    high = high.max((b + root) * inverse);
-                }
-            } else {
-                // A cylinder around the eye, or beside it, covers everything unless it is beyond an
-                // edge of the picture.
-                (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
-                let beyond = |edge: f64, sense: f64| {
-                    let side = |c: &DVec3| sense * (c[i] - edge * c.z);
-                    let wide =
-                        square(i, i) - 2.0 * edge * square(i, 2) + edge * edge * square(2, 2);
-                    side(&discs[0]).max(side(&discs[1])) + wide.max(0.0).sqrt() < 0.0
-                };
-                if beyond(self.low[i] - self.margin, 1.0)
-                    || beyond(self.high[i] + self.margin, -1.0)
-                {
-                    return None;
-                }
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        if near > 1e-3 * far {
+            // Lines of sight that are tangent to a disc: the roots of a quadratic.
+            for c in discs {
+                let flat = c.truncate();
+                let a = c.z * c.z - squares.z;
+                let b = flat * c.z - products;
+                let root = (b * b - a * (flat * flat - squares.truncate())).max(DVec2::ZERO);
+                let root = DVec2::new(root.x.sqrt(), root.y.sqrt());
+                let inverse = 1.0 / a;
+                low = low.min((b - root) * inverse);
+                high = high.max((b + root) * inverse);
             }
-            let first = first_pixel(low - self.margin).max(self.ends[i]);
-            let last = last_pixel(high + self.margin).min(self.ends[i + 2]);
-            if first > last {
+        } else {
+            // A cylinder around the eye, or beside it, covers everything unless it is beyond an
+            // edge of the picture.
+            let beyond = |i: usize, edge: f64, sense: f64| {
+                let side = |c: &DVec3| sense * (c[i] - edge * c.z);
+                let wide = squares[i] - 2.0 * edge * products[i] + edge * edge * squares.z;
+                side(&discs[0]).max(side(&discs[1])) + wide.max(0.0).sqrt() < 0.0
+            };
+            let ends = [self.low - self.margin, self.high + self.margin];
+            if (0..2).any(|i| beyond(i, ends[0][i], 1.0) || beyond(i, ends[1][i], -1.0)) {
                 return None;
             }
-            (pixels[i], pixels[i + 2]) = (first as u16, last as u16);
+            (low, high) = (DVec2::NEG_INFINITY, DVec2::INFINITY);
         }
         Some(ScreenBounds {
-            pixels,
+            pixels: self.pixels(low - self.margin, high + self.margin)?,
             near: (near * (1.0 - self.depth_slack)).max(0.0) as f32,
         })
     }
 
+    /// The pixels of the picture whose centres are in a rectangle, if any.
+    fn pixels(&self, low: DVec2, high: DVec2) -> Option<[u16; 4]> {
+        let [left, top, right, bottom] = self.ends;
+        let [left, top] = [first_pixel(low.x).max(left), first_pixel(low.y).max(top)];
+        let [right, bottom] = [
+            last_pixel(high.x).min(right),
+            last_pixel(high.y).min(bottom),
+        ];
+        let some = left <= right && top <= bottom;
+        some.then(|| [left, top, right, bottom].map(|pixel| pixel as u16))
+    }
+
     /// A rectangle that contains the rectangles of all copies, and a lower bound of their depths.
-    /// Returns none if no ray can meet a copy.
+    /// Returns none if no ray can meet a copy, or if no copy's rectangle contains a pixel's centre.
     pub fn cluster_bounds(&self, cluster: &Cluster, of: &Cylinder) -> Option<ScreenBounds> {
         let beside = of.axis.length() + of.radius;
         let around = cluster.around(self.eye, [beside, of.low.abs().max(of.high.abs())]);
-        let [x, y, depth] = [0, 1, 2].map(|k| self.rows.row(k));
+        let depth = self.rows.row(2);
         let [near, far] = around.along(depth);
         if far <= 0.0 {
             return None;
         }
-        let mut pixels = [0u16; 4];
-        for (i, row) in [x, y].into_iter().enumerate() {
+        let (mut low, mut high) = (DVec2::NEG_INFINITY, DVec2::INFINITY);
+        for i in 0..2 {
+            let row = self.rows.row(i);
             let [first, last] = [self.low[i] - self.margin, self.high[i] + self.margin];
-            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             if near > 1e-3 * far {
                 // The projected middle, and the largest distance of any copy from it.
                 let at = around.middle.dot(row) / around.middle.dot(depth);
                 let off = around.along(row - depth * at)[1] / near + 2.0 * self.margin;
-                (low, high) = (at - off, at + off);
+                (low[i], high[i]) = (at - off, at + off);
             } else if around.along(row - depth * first)[1] < 0.0
                 || around.along(row - depth * last)[0] > 0.0
             {
                 return None;
             }
-            if low.is_nan() || high.is_nan() {
-                return None;
-            }
-            let (low, high) = (
-                first_pixel(low).max(self.ends[i]),
-                last_pixel(high).min(self.ends[i + 2]),
-            );
-            // The cluster is between the centres of two pixels, so no copy's rectangle contains
-            // one.
-            if low > high {
-                return None;
-            }
-            (pixels[i], pixels[i + 2]) = (low as u16, high as u16);
         }
         Some(ScreenBounds {
-            pixels,
+            pixels: self.pixels(low, high)?,
             near: (near * (1.0 - 2.0 * self.depth_slack)).max(0.0) as f32,
         })
     }
@@ -261,6 +273,15 @@ mod tests {
     use crate::plan::Viewport;
     use crate::scene::Copies;
     use glam::{DMat4, DVec4};
+
+    /// Two copies at one place.
+    fn pair(position: DVec3) -> Copies {
+        let copy = Placement {
+            position,
+            ..Placement::default()
+        };
+        vec![copy; 2].into()
+    }
 
     /// A viewport may begin and end anywhere. Copies larger than it cover the pixels whose centres
     /// it holds. A cluster of such copies covers the same pixels, in front of the eye and around
@@ -309,17 +330,8 @@ mod tests {
                 assert_eq!(projector.picture(), wanted, "{viewport:?}");
                 for away in [0.0, 52.0] {
                     let position = DVec3::new(away, 0.0, 0.0);
-                    let copies: Copies = vec![
-                        Placement {
-                            position,
-                            ..Placement::default()
-                        };
-                        2
-                    ]
-                    .into();
-                    let one = projector
-                        .bounds(&projector.axes(&copies[0], shape.axis), &shape)
-                        .unwrap();
+                    let copies = pair(position);
+                    let one = projector.bounds(&copies[0], &shape).unwrap();
                     let cluster = &copies.clusters().all()[0];
                     let all = projector.cluster_bounds(cluster, &shape).unwrap();
                     assert_eq!(one.pixels.map(u32::from), wanted, "{viewport:?}, {away}");
@@ -344,16 +356,9 @@ mod tests {
         let mut seen = [0; 2];
         for n in 0..500 {
             let position = DVec3::new(0.0, 0.11 * f64::from(n) - 27.0, 0.07 * f64::from(n % 90));
-            let copies: Copies = vec![
-                Placement {
-                    position,
-                    ..Placement::default()
-                };
-                2
-            ]
-            .into();
+            let copies = pair(position);
             let all = projector.cluster_bounds(&copies.clusters().all()[0], &shape);
-            let one = projector.bounds(&projector.axes(&copies[0], shape.axis), &shape);
+            let one = projector.bounds(&copies[0], &shape);
             seen[usize::from(all.is_some())] += 1;
             let Some(ScreenBounds {
                 pixels: [x0, y0, x1, y1],

@@ -1,16 +1,13 @@
 //! Distribution of copies to records of tiles, or of single pixels of tiles.
 
-use super::Drawer;
-use super::cover::{SIDE, within};
+use super::cover::{SIDE, block, within};
 use crate::shader::generated::{
-    QUEUE_BLOCK, QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT,
+    QUAD_BITS, QUEUE_BLOCK, QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT,
 };
 
 /// A copy in a tile.
 #[derive(Clone, Copy)]
 pub(super) struct TileCopy {
-    /// Number of the tile in the band.
-    pub tile: u32,
     pub batch: u32,
     /// Number of the instance.
     pub copy: u32,
@@ -49,7 +46,8 @@ pub(crate) const LEAST_QUEUE: usize = 6;
 const SINGLE_PIXELS: u32 = 24;
 /// Parameters of the distribution of a band.
 pub(super) struct Dealer<'a> {
-    pub drawer: Drawer,
+    /// True for work groups, false for fragments.
+    pub compute: bool,
     /// The layer of each batch.
     pub layer_of: &'a [u32],
     /// True if patches may be listed for a batch's tiles.
@@ -63,26 +61,21 @@ pub(super) struct Dealer<'a> {
 }
 
 impl Dealer<'_> {
-    /// Distributes copies, nearest first, to this many tiles and returns the lists of each layer.
-    /// `corner`: position of a tile, in tiles.
-    pub fn deal(
+    /// Distributes the copies of tiles, nearest first, and returns the lists of each layer. A tile is
+    /// given by its position, in tiles.
+    pub fn deal<'a>(
         &self,
-        listed: &[TileCopy],
-        tiles: u32,
-        layers: usize,
-        corner: impl Fn(u32) -> [u32; 2],
+        tiles: impl Iterator<Item = ([u32; 2], &'a [TileCopy])>,
     ) -> Vec<BandRecords> {
-        let mut lists: Vec<BandRecords> = (0..layers).map(|_| BandRecords::default()).collect();
-        let (sorted, ends) = by_tile(listed, tiles);
+        let mut lists: Vec<BandRecords> = Vec::new();
+        lists.resize_with(self.queues.len(), BandRecords::default);
         let mut rest = Vec::new();
-        for tile in (0..tiles).filter(|t| ends[*t as usize] < ends[*t as usize + 1]) {
-            let here = ends[tile as usize] as usize..ends[tile as usize + 1] as usize;
-            let here = &sorted[here];
-            let place = corner(tile);
+        for (place, here) in tiles {
             rest.clear();
             rest.extend_from_slice(here);
-            let in_groups = self.drawer == Drawer::Groups;
-            if in_groups && let Some(n) = self.single_of(here) {
+            if self.compute
+                && let Some(n) = self.single_of(here)
+            {
                 let one = rest.remove(n);
                 let to = &mut lists[self.layer_of[one.batch as usize] as usize];
                 to.add_single(&one, place, self.lists[one.batch as usize]);
@@ -93,12 +86,11 @@ impl Dealer<'_> {
                 let copies = rest.iter().filter(|one| of(one));
                 let to = &mut lists[layer as usize];
                 let few = copies.clone().nth(LEAST_QUEUE - 1).is_none();
-                if !in_groups && (few || !self.queues[layer as usize]) {
+                if !self.compute && (few || !self.queues[layer as usize]) {
                     let inside = within(place, self.picture);
-                    let corner = place.map(|k| k * SIDE);
-                    copies.for_each(|one| to.add_quads(one, corner, inside));
+                    copies.for_each(|one| to.add_quads(one, place, inside));
                 } else {
-                    to.add(copies, place, in_groups);
+                    to.add(copies, place, self.compute);
                 }
                 rest.retain(|one| !of(one));
             }
@@ -120,26 +112,6 @@ impl Dealer<'_> {
             }),
         }
     }
-}
-
-/// Copies sorted by tile, in their given order within a tile, and the start and end of each tile's
-/// copies.
-fn by_tile(listed: &[TileCopy], tiles: u32) -> (Vec<TileCopy>, Vec<u32>) {
-    let mut ends = vec![0u32; tiles as usize + 1];
-    for one in listed {
-        ends[one.tile as usize + 1] += 1;
-    }
-    for tile in 1..ends.len() {
-        ends[tile] += ends[tile - 1];
-    }
-    let mut next = ends.clone();
-    let mut order = vec![0u32; listed.len()];
-    for (n, one) in (0u32..).zip(listed) {
-        let place = &mut next[one.tile as usize];
-        order[*place as usize] = n;
-        *place += 1;
-    }
-    (order.iter().map(|n| listed[*n as usize]).collect(), ends)
 }
 
 impl BandRecords {
@@ -195,6 +167,19 @@ impl BandRecords {
         });
     }
 
+    /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
+    fn add_quads(&mut self, one: &TileCopy, [x, y]: [u32; 2], inside: u64) {
+        let corner = (x * SIDE) | ((y * SIDE) << QUAD_BITS);
+        cut([0, 0, SIDE], one.pixels & inside, inside, &mut |[
+            x,
+            y,
+            side,
+        ]| {
+            let place = x | y << QUAD_BITS | side.ilog2() << (2 * QUAD_BITS);
+            self.quads.push([corner + place, one.copy, 0, one.near]);
+        });
+    }
+
     /// Makes a record of the waiting pixels; empty entries fill it up.
     fn gather(&mut self) {
         if self.waiting.is_empty() {
@@ -206,6 +191,28 @@ impl BandRecords {
         let words = lists.flat_map(|[place, begin, n]| [place, begin.wrapping_sub(first), n]);
         self.words.extend(words);
         self.queued.push([0, first, TILE_SPLIT, 0]);
+    }
+}
+
+/// Visits quads (x, y, side) within this one that hold these pixels and no pixel outside of the
+/// picture. Drivers search blocks of 4 x 4 pixels as one. Smaller quads are therefore used only at
+/// the picture's edges, and a whole tile only where no block would be empty.
+fn cut([x, y, side]: [u32; 3], pixels: u64, inside: u64, visit: &mut impl FnMut([u32; 3])) {
+    let bits = |[x, y, side]: [u32; 3]| block([x, y, x + side - 1, y + side - 1]);
+    let whole = bits([x, y, side]);
+    if pixels & whole == 0 {
+        return;
+    }
+    let half = side / 2;
+    let quarters =
+        [[x, y], [x + half, y], [x, y + half], [x + half, y + half]].map(|[x, y]| [x, y, half]);
+    let full = side < SIDE || quarters.iter().all(|q| pixels & bits(*q) != 0);
+    if full && whole & !inside == 0 {
+        visit([x, y, side]);
+    } else {
+        for quarter in quarters {
+            cut(quarter, pixels, inside, visit);
+        }
     }
 }
 
@@ -231,18 +238,21 @@ fn halves_of(pixels: u64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shader::generated::QUAD_BITS;
-    use std::collections::{BTreeMap, BTreeSet};
+    use std::collections::BTreeMap;
 
     const ACROSS: u32 = 5;
-    const TILES: u32 = 3 * ACROSS;
+    const TILES: usize = 3 * ACROSS as usize;
     const PICTURE: [u32; 4] = [0, 0, 8 * ACROSS - 1, 23];
 
+    /// Positions of tiles, and their copies, nearest first.
+    type Tiles = Vec<([u32; 2], Vec<TileCopy>)>;
     /// The copies that are searched in each pixel.
     type Found = BTreeMap<(u32, u32), Vec<u32>>;
 
-    /// Copies of many sizes, from whole tiles to single pixels, nearest first.
-    fn copies() -> Vec<TileCopy> {
+    /// So many copies of many sizes, from whole tiles to single pixels.
+    fn tiles(count: u32) -> Tiles {
+        let place = |tile| [tile % ACROSS, tile / ACROSS];
+        let mut all: Tiles = (0..TILES as u32).map(|t| (place(t), Vec::new())).collect();
         let mut state = 7u64;
         let mut next = move || {
             state = state
@@ -250,32 +260,37 @@ mod tests {
                 .wrapping_add(1);
             state >> 16
         };
-        (0..90)
-            .map(|copy| {
-                let few = next() & next() >> 7 & next() << 3;
-                TileCopy {
-                    tile: (next() % u64::from(TILES)) as u32,
-                    batch: 0,
-                    copy,
-                    near: 100 + copy,
-                    pixels: if copy % 3 == 0 {
-                        u64::MAX
-                    } else {
-                        1 << (copy % 60) | few
-                    },
-                }
-            })
-            .collect()
+        for copy in 0..count {
+            let few = next() & next() >> 7 & next() << 3;
+            let (_, here) = &mut all[next() as usize % TILES];
+            here.push(TileCopy {
+                batch: copy % 2,
+                copy,
+                near: 100 + copy,
+                pixels: if copy % 3 == 0 {
+                    u64::MAX
+                } else {
+                    1 << (copy % 60) | few
+                },
+            });
+        }
+        all
+    }
+
+    /// The pixels of a tile.
+    fn pixels_of([x, y]: [u32; 2], bits: u64) -> impl Iterator<Item = (u32, u32)> {
+        let bits = (0..64).filter(move |k| bits >> k & 1 == 1);
+        bits.map(move |k| (SIDE * x + k % SIDE, SIDE * y + k / SIDE))
     }
 
     /// The copies that each pixel may show.
-    fn shown() -> BTreeMap<(u32, u32), Vec<u32>> {
-        let mut all = BTreeMap::<_, Vec<u32>>::new();
-        for one in copies() {
-            for k in (0..64).filter(|k| one.pixels >> k & 1 == 1) {
-                let (x, y) = (one.tile % ACROSS, one.tile / ACROSS);
-                let pixel = (SIDE * x + k % SIDE, SIDE * y + k / SIDE);
-                all.entry(pixel).or_default().push(one.copy);
+    fn shown(tiles: &Tiles) -> Found {
+        let mut all = Found::new();
+        for (place, here) in tiles {
+            for one in here {
+                for pixel in pixels_of(*place, one.pixels) {
+                    all.entry(pixel).or_default().push(one.copy);
+                }
             }
         }
         all
@@ -297,36 +312,18 @@ mod tests {
         found
     }
 
-    fn dealt(copies: &[TileCopy], tiles: u32, lists: bool) -> BandRecords {
-        let dealer = Dealer {
-            drawer: Drawer::Groups,
-            layer_of: &[0],
-            lists: &[lists],
-            single: &[false],
-            queues: &[true],
-            picture: PICTURE,
-        };
-        let corner = |tile| [tile % ACROSS, tile / ACROSS];
-        dealer.deal(copies, tiles, 1, corner).remove(0)
-    }
+    /// Two batches in one layer, with queues.
+    const DEALER: Dealer = Dealer {
+        compute: true,
+        layer_of: &[0, 0],
+        lists: &[false; 2],
+        single: &[false; 2],
+        queues: &[true],
+        picture: PICTURE,
+    };
 
-    /// Each pixel searches the copies that it may show, in order.
-    fn check(found: &Found) {
-        assert!(
-            shown()
-                .iter()
-                .all(|(pixel, wanted)| found[pixel] == *wanted)
-        );
-    }
-
-    #[test]
-    fn gathered_pixels_list_what_they_show_and_none_is_idle() {
-        let lists = dealt(&copies(), TILES, false);
-        let (found, idle) = visited(&lists);
-        check(&found);
-        // Only the last record has idle invocations.
-        assert!(idle < 64);
-        assert_eq!(lists.listed.len() + lists.single.len(), 0);
+    fn dealt(tiles: &Tiles, dealer: &Dealer) -> Vec<BandRecords> {
+        dealer.deal(tiles.iter().map(|(place, here)| (*place, &here[..])))
     }
 
     /// The lists that work groups search, and the number of idle invocations.
@@ -359,32 +356,43 @@ mod tests {
     }
 
     #[test]
+    fn gathered_pixels_list_what_they_show_and_none_is_idle() {
+        let tiles = tiles(90);
+        let lists = &dealt(&tiles, &DEALER)[0];
+        let (found, idle) = visited(lists);
+        // Each pixel searches the copies that it may show, in order.
+        let shown = shown(&tiles);
+        assert!(shown.iter().all(|(pixel, wanted)| found[pixel] == *wanted));
+        // Only the last record has idle invocations.
+        assert!(idle < 64);
+        assert_eq!(lists.listed.len() + lists.single.len(), 0);
+    }
+
+    #[test]
     fn a_large_copy_of_each_tile_has_a_record_of_its_own() {
-        let lists = dealt(&copies(), TILES, true);
-        let (mut found, _) = visited(&lists);
-        let mut tiles = BTreeMap::new();
-        for &[corner, copy, none, near] in &lists.listed {
-            assert_eq!((none, near), (0, 100 + copy));
-            let tile = (corner & 0xffff) / SIDE + (corner >> 16) / SIDE * ACROSS;
-            assert_eq!(tiles.insert(tile, copy), None);
-            let here = copies().into_iter().filter(|one| one.tile == tile);
-            let large = here.filter(|one| one.pixels.count_ones() >= SINGLE_PIXELS);
-            let nearest = large.min_by_key(|one| one.near).unwrap();
-            assert_eq!(nearest.copy, copy);
-            for k in (0..64).filter(|k| nearest.pixels >> k & 1 == 1) {
-                let pixel = ((corner & 0xffff) + k % SIDE, (corner >> 16) + k / SIDE);
+        let tiles = tiles(90);
+        let lists = &[true; 2];
+        let lists = &dealt(&tiles, &Dealer { lists, ..DEALER })[0];
+        let (mut found, _) = visited(lists);
+        let mut records = lists.listed.iter();
+        for (place, here) in &tiles {
+            let is_large = |one: &&TileCopy| one.pixels.count_ones() >= SINGLE_PIXELS;
+            let Some(nearest) = here.iter().find(is_large) else {
+                continue;
+            };
+            let corner = (place[0] * SIDE) | ((place[1] * SIDE) << 16);
+            let wanted = [corner, nearest.copy, 0, nearest.near];
+            assert_eq!(records.next(), Some(&wanted));
+            for pixel in pixels_of(*place, nearest.pixels) {
                 let list = found.entry(pixel).or_default();
-                if let Err(place) = list.binary_search(&copy) {
-                    list.insert(place, copy);
+                if let Err(at) = list.binary_search(&nearest.copy) {
+                    list.insert(at, nearest.copy);
                 }
             }
         }
-        let large = copies()
-            .into_iter()
-            .filter(|one| one.pixels.count_ones() >= SINGLE_PIXELS);
-        let with_one: BTreeSet<u32> = large.map(|one| one.tile).collect();
-        assert!(tiles.keys().eq(&with_one) && with_one.len() > TILES as usize / 2);
-        check(&found);
+        assert!(records.next().is_none() && lists.listed.len() > TILES / 2);
+        let shown = shown(&tiles);
+        assert!(shown.iter().all(|(pixel, wanted)| found[pixel] == *wanted));
     }
 
     /// Quads of tiles with few copies, and queues of the others, hold what pixels show. Quads hold no
@@ -395,29 +403,25 @@ mod tests {
         let picture = [3, 2, 8 * ACROSS - 2, 20];
         let [left, top, right, bottom] = picture;
         let inside = |x: u32, y: u32| (left..=right).contains(&x) && (top..=bottom).contains(&y);
-        let mut all = copies();
-        for one in &mut all {
-            one.pixels &= within([one.tile % ACROSS, one.tile / ACROSS], picture);
-        }
-        let deal = |queues: bool, copies: &[TileCopy]| {
+        for (queues, count) in [(true, 40), (true, 90), (false, 90)] {
+            let mut tiles = tiles(count);
+            for (place, here) in &mut tiles {
+                let inside = within(*place, picture);
+                here.iter_mut().for_each(|one| one.pixels &= inside);
+            }
             let dealer = Dealer {
-                drawer: Drawer::Fragments,
-                layer_of: &[0],
-                lists: &[true],
-                single: &[false],
+                compute: false,
+                lists: &[true; 2],
                 queues: &[queues],
                 picture,
+                ..DEALER
             };
-            let corner = |tile| [tile % ACROSS, tile / ACROSS];
-            dealer.deal(copies, TILES, 1, corner).remove(0)
-        };
-        for (queues, count) in [(true, 40), (true, 90), (false, 90)] {
-            let lists = deal(queues, &all[..count]);
+            let lists = &dealt(&tiles, &dealer)[0];
             assert!(lists.listed.is_empty() && lists.single.is_empty());
             assert!(!lists.quads.is_empty() || count == 90);
             assert_eq!(lists.queued.is_empty(), !queues);
             assert!(lists.queued.iter().all(|record| record[2] != TILE_SPLIT));
-            let (mut found, _) = visited(&lists);
+            let (mut found, _) = visited(lists);
             for &[place, copy, none, near] in &lists.quads {
                 assert_eq!((none, near), (0, 100 + copy));
                 let (mask, side) = ((1 << QUAD_BITS) - 1, 1 << (place >> (2 * QUAD_BITS)));
@@ -428,9 +432,8 @@ mod tests {
                     list.push(copy);
                 }
             }
-            for (pixel, wanted) in shown().into_iter().filter(|((x, y), _)| inside(*x, *y)) {
-                let wanted = wanted.iter().filter(|copy| (**copy as usize) < count);
-                assert!(wanted.into_iter().all(|copy| found[&pixel].contains(copy)));
+            for ((x, y), wanted) in shown(&tiles) {
+                assert!(inside(x, y) && wanted.iter().all(|copy| found[&(x, y)].contains(copy)));
             }
         }
     }
@@ -439,34 +442,29 @@ mod tests {
     /// the two layers has a record of its own.
     #[test]
     fn layers_share_tiles() {
-        let mut all = copies();
-        for one in &mut all {
-            one.batch = one.copy % 2;
-        }
+        let tiles = tiles(90);
         let dealer = Dealer {
-            drawer: Drawer::Groups,
             layer_of: &[1, 0],
             lists: &[true, false],
-            single: &[false, false],
-            queues: &[true, true],
-            picture: PICTURE,
+            queues: &[true; 2],
+            ..DEALER
         };
-        let lists = dealer.deal(&all, TILES, 2, |tile| [tile % ACROSS, tile / ACROSS]);
+        let lists = dealt(&tiles, &dealer);
         assert!(lists[0].listed.is_empty() && !lists[1].listed.is_empty());
-        let mut found = BTreeMap::<(u32, u32), BTreeSet<u32>>::new();
+        let mut found = Found::new();
         for (layer, lists) in (0u32..).zip(&lists) {
             for (pixel, list) in visited(lists).0 {
                 assert!(list.is_sorted() && list.iter().all(|copy| 1 - copy % 2 == layer));
                 found.entry(pixel).or_default().extend(list);
             }
             for &[corner, copy, ..] in &lists.listed {
-                for k in 0..SIDE * SIDE {
-                    let pixel = ((corner & 0xffff) + k % SIDE, (corner >> 16) + k / SIDE);
-                    found.entry(pixel).or_default().insert(copy);
+                let place = [corner & 0xffff, corner >> 16].map(|at| at / SIDE);
+                for pixel in pixels_of(place, u64::MAX) {
+                    found.entry(pixel).or_default().push(copy);
                 }
             }
         }
-        for (pixel, wanted) in shown() {
+        for (pixel, wanted) in shown(&tiles) {
             assert!(wanted.iter().all(|copy| found[&pixel].contains(copy)));
         }
     }

@@ -1,14 +1,14 @@
 //! Tiles of the screen and the copies that each may show, nearest first, for all objects and copies
 //! of a frame.
 //!
-//! 1. Clusters of neighbouring copies are projected to the picture ([`bounds`]) and sorted,
-//!    nearest first ([`candidates`]).
-//! 2. Clusters are opened from the nearest to the farthest, except for wholly hidden ones
-//!    ([`strip`]). A copy of an opened cluster gets a rectangle of pixels and a nearest depth. Copies that no pixel's ray can meet are dropped. The others are sorted, nearest
+//! 1. Clusters of neighbouring copies are projected to the picture ([`bounds`]) and sorted, nearest
 //!    first.
-//! 3. In this order, copies are listed in the tiles that may show them ([`outer`]). The pixels that
-//!    a copy is sure to hide are marked there ([`cover`]). Later copies are not listed for pixels
-//!    where they are wholly behind that copy.
+//! 2. Clusters are opened in rounds, from the nearest to the farthest, except for wholly hidden
+//!    ones. A copy of an opened cluster gets a rectangle of pixels and a nearest depth. Copies that
+//!    no pixel's ray can meet are dropped. The others are sorted, nearest first.
+//! 3. In this order, copies are listed in the tiles that may show them ([`strip`], [`outer`]). The
+//!    pixels that a copy is sure to hide are marked there ([`cover`]). Later copies are not listed
+//!    for pixels where they are wholly behind that copy.
 //! 4. The listed copies are distributed to records and queues ([`deal`]).
 //!
 //! A copy is dropped only where its solid is proven absent, or where solids in front of it are
@@ -19,25 +19,23 @@
 //! rows.
 
 mod bounds;
-mod candidates;
 mod cover;
 mod deal;
 mod outer;
-mod quads;
 mod strip;
 
 pub(crate) use bounds::{Cylinder, Projector};
 pub(crate) use deal::LEAST_QUEUE;
 
 use super::view::View;
-use crate::scene::{Copies, Placement};
+use crate::scene::{Cluster, Copies, Placement};
 use crate::solid::offset_surface::OffsetSurface;
-use crate::surface::{InnerCylinders, OuterCylinders};
-use candidates::{Candidates, CopyFacts};
+use crate::surface::Cylinders;
+use bounds::ScreenBounds;
 use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
-use strip::Strip;
+use strip::{Item, Opened, Strip};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
@@ -46,10 +44,10 @@ pub(crate) struct Batch<'a> {
     pub first: u32,
     pub shape: Cylinder,
     /// Cylinders inside the solid, which hide everything behind them; none if unknown.
-    pub inner: Option<&'a InnerCylinders>,
+    pub inner: Option<&'a Cylinders>,
     /// Cylinders around the solid, and a margin in object units; none if only its bounding cylinder
     /// is known.
-    pub outer: Option<(&'a OuterCylinders, f64)>,
+    pub outer: Option<(&'a Cylinders, f64)>,
     /// The surface; none unless its patches are searched and there are no replicas.
     pub surface: Option<&'a OffsetSurface>,
     /// Half of the box's side.
@@ -65,38 +63,49 @@ pub(crate) enum Placements<'a> {
     Many(&'a Copies),
 }
 
-/// A copy that some pixel may show. Items are sorted by these values, in this order.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Item {
-    /// Bits of the nearest depth, which is not negative, so their order is the order of depths.
-    near: u32,
+impl<'a> Placements<'a> {
+    /// The number of the copy at a rank in the order of the clusters, and its placement.
+    fn at(&self, rank: u32) -> (u32, &'a Placement) {
+        match self {
+            Self::One(placement) => (0, placement),
+            Self::Many(copies) => copies.clusters().at(rank),
+        }
+    }
+
+    /// Number of copies.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Many(copies) => copies.len(),
+        }
+    }
+}
+
+/// A cluster that may be in the picture.
+struct Candidate {
+    /// A rectangle that contains the pixels of its copies, and a depth that none is nearer than.
+    bounds: ScreenBounds,
     batch: u32,
-    copy: u32,
-    pixels: [u16; 4],
-    /// Rank in the order of the batch's clusters.
-    rank: u32,
+    /// Its copies' ranks.
+    ranks: Range<u32>,
 }
 
 /// Rows of tiles in a band, and columns in a block. The records of a block are contiguous.
 const BLOCK: u32 = 8;
 
+/// Clusters of the first round; each round has as many as all before it. Few are opened in vain
+/// where a near solid hides most of the others.
+const FIRST_ROUND: usize = 64;
+
 /// The visible copies of batches in a view, tile by tile.
 pub(crate) struct Visible<'a> {
     batches: &'a [Batch<'a>],
     strips: Vec<Strip<'a>>,
-    facts: Vec<CopyFacts>,
+    /// Columns of tiles in a strip.
+    wide: u32,
     /// Number of tiles across and down.
     size: [u32; 2],
     picture: [u32; 4],
-}
-
-/// The shader stage that draws tiles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Drawer {
-    /// Fragments of tiles.
-    Fragments,
-    /// Work groups.
-    Groups,
 }
 
 /// Records of all tiles and queues of copies, in the layout of the shaders' single buffer of words
@@ -134,141 +143,190 @@ impl<'a> Visible<'a> {
     /// The visible copies of these batches in a perspective view.
     pub fn new(view: &View, projector: &'a Projector, batches: &'a [Batch<'a>]) -> Self {
         debug_assert!(!view.parallel);
-        Self::of(&Candidates::new(projector, batches), |strip, candidates| {
-            strip.fill(candidates);
-        })
+        Self::in_rounds(projector, batches, FIRST_ROUND).0
     }
 
-    /// Collects the copies that `fill` lists in the strips of the picture.
-    fn of(
-        candidates: &Candidates<'a>,
-        fill: impl Fn(&mut Strip<'a>, &Candidates<'a>) + Sync,
-    ) -> Self {
-        let projector = candidates.projector;
+    /// Opens clusters in rounds, the first of this many clusters. Returns the number of opened
+    /// clusters too.
+    fn in_rounds(
+        projector: &'a Projector,
+        batches: &'a [Batch<'a>],
+        first_round: usize,
+    ) -> (Self, usize) {
+        let mut all = Self::empty(projector, batches);
+        let item = |number: u32, rank: u32| Item::new(projector, batches, number, rank);
+        let mut clusters = Vec::new();
+        let mut single = Vec::new();
+        for (number, batch) in (0..).zip(batches) {
+            let candidate = |cluster: &Cluster| {
+                Some(Candidate {
+                    bounds: projector.cluster_bounds(cluster, &batch.shape)?,
+                    batch: number,
+                    ranks: cluster.range.clone(),
+                })
+            };
+            match batch.placements {
+                Placements::One(_) => single.extend(item(number, 0)),
+                Placements::Many(copies) => {
+                    clusters.par_extend(copies.clusters().all().par_iter().filter_map(candidate));
+                }
+            }
+        }
+        clusters.par_sort_unstable_by_key(|c| c.bounds.near.to_bits());
+        let mut opened = vec![Opened {
+            pixels: [0, 0, u16::MAX, u16::MAX],
+            items: single,
+        }];
+        let (mut first, mut count) = (0, 0);
+        loop {
+            // Copies of later clusters may be nearer than the remaining ones.
+            let next = clusters.get(first);
+            let limit = next.map_or(u32::MAX, |c| c.bounds.near.to_bits());
+            all.strips
+                .par_iter_mut()
+                .for_each(|strip| strip.fill(&opened, limit));
+            if first == clusters.len() {
+                break;
+            }
+            let end = first.saturating_add(first.max(first_round));
+            let end = end.min(clusters.len());
+            let shows = |c: &&Candidate| all.strips.iter().any(|s| s.may_show(&c.bounds));
+            let open = |c: &Candidate| Opened {
+                pixels: c.bounds.pixels,
+                items: c.ranks.clone().filter_map(|k| item(c.batch, k)).collect(),
+            };
+            let round = clusters[first..end].par_iter();
+            opened = round.filter(shows).map(open).collect();
+            count += opened.len();
+            first = end;
+        }
+        (all, count)
+    }
+
+    /// Empty strips of the picture.
+    fn empty(projector: &'a Projector, batches: &'a [Batch<'a>]) -> Self {
         let size = projector.tiles();
         // Several strips per thread, as some take longer.
-        let strip = size[0].div_ceil(4 * rayon::current_num_threads() as u32);
-        let strip = strip.next_multiple_of(BLOCK);
-        let starts: Vec<u32> = (0..size[0]).step_by(strip as usize).collect();
-        let filled = |&left: &u32| {
-            let columns = left..(left + strip).min(size[0]);
-            let mut strip = Strip::new(projector, candidates.batches, columns, size);
-            fill(&mut strip, candidates);
-            strip
+        let wide = size[0].div_ceil(4 * rayon::current_num_threads() as u32);
+        let wide = wide.next_multiple_of(BLOCK);
+        let strip = |left: u32| {
+            let columns = left..size[0].min(left + wide);
+            Strip::new(projector, batches, columns, size[1])
         };
-        let strips = starts.par_iter().map(filled).collect();
         Self {
-            batches: candidates.batches,
-            strips,
-            facts: candidates.facts(),
+            batches,
+            strips: (0..size[0]).step_by(wide as usize).map(strip).collect(),
+            wide,
             size,
             picture: projector.picture(),
         }
     }
 
-    /// True if the eye is outside of all copies of a batch.
+    /// True if the eye is outside of all copies of a batch that may show.
     pub fn is_apart(&self, batch: usize) -> bool {
-        self.facts[batch].apart
+        self.batches[batch].surface.is_some() && self.strips.iter().all(|s| s.facts[batch].apart)
     }
 
     /// True if patches are listed for a batch's tiles in this view.
     pub fn lists_patches(&self, batch: usize) -> bool {
-        let facts = &self.facts[batch];
-        self.batches[batch].permits_lists && facts.apart && facts.even
+        let even = self.strips.iter().all(|s| s.facts[batch].even);
+        self.batches[batch].permits_lists && self.is_apart(batch) && even
     }
 
     /// The copies of each batch that may show, in ascending order.
     pub fn copies(&self) -> Vec<Vec<u32>> {
-        let mut all: Vec<_> = self.strips.iter().flat_map(|s| &s.copies).collect();
+        let mut all: Vec<u32> = self
+            .strips
+            .iter()
+            .flat_map(|s| &s.copies)
+            .copied()
+            .collect();
         all.par_sort_unstable();
         all.dedup();
-        let mut copies = vec![Vec::new(); self.batches.len()];
-        for (batch, copy) in all {
-            copies[*batch as usize].push(*copy);
-        }
-        copies
+        let of = |batch: &Batch| {
+            let end = batch.first + batch.placements.len() as u32;
+            let [from, to] = [batch.first, end].map(|n| all.partition_point(|copy| *copy < n));
+            all[from..to]
+                .iter()
+                .map(|copy| copy - batch.first)
+                .collect()
+        };
+        self.batches.iter().map(of).collect()
     }
 
-    /// Distributes the visible copies to records. `layer_of`: the layer of each batch. `queues`: for
-    /// each layer, true if fragments may search queues.
-    pub fn deal(&self, drawer: Drawer, layer_of: &[u32], queues: &[bool]) -> TileWords {
-        let layers = queues.len();
-        let [across, down] = self.size;
-        let lists: Vec<bool> = (0..self.batches.len())
-            .map(|b| drawer == Drawer::Groups && self.lists_patches(b))
-            .collect();
-        let single: Vec<bool> = self
-            .batches
-            .iter()
-            .map(|b| b.placements.len() == 1)
-            .collect();
-        let of_band = |band: u32| {
-            let corner = |tile: u32| {
-                let [block, at] = [tile / (BLOCK * BLOCK), tile % (BLOCK * BLOCK)];
-                [block * BLOCK + at % BLOCK, band * BLOCK + at / BLOCK]
-            };
-            let listed = self.strips.iter().map(|s| &s.listed[band as usize][..]);
-            let dealer = Dealer {
-                drawer,
-                layer_of,
-                lists: &lists,
-                single: &single,
-                queues,
-                picture: self.picture,
-            };
-            let tiles = across.next_multiple_of(BLOCK) * BLOCK;
-            dealer.deal(&listed.collect::<Vec<_>>().concat(), tiles, layers, corner)
+    /// Distributes the visible copies to records, of work groups (`compute`) or fragments.
+    /// `layer_of`: the layer of each batch. `queues`: for each layer, true if fragments may search
+    /// queues.
+    pub fn deal(&self, compute: bool, layer_of: &[u32], queues: &[bool]) -> TileWords {
+        let lists = |b| compute && self.lists_patches(b);
+        let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
+        let single = |batch: &Batch| batch.placements.len() == 1;
+        let single: Vec<bool> = self.batches.iter().map(single).collect();
+        let dealer = Dealer {
+            compute,
+            layer_of,
+            lists: &lists,
+            single: &single,
+            queues,
+            picture: self.picture,
         };
-        let bands: Vec<Vec<BandRecords>> = (0..down.div_ceil(BLOCK))
-            .into_par_iter()
-            .map(of_band)
-            .collect();
-        join(&bands, layers)
+        let [across, down] = self.size;
+        let of_band = |top: u32| {
+            let rows = top..down.min(top + BLOCK);
+            let blocks = (0..across).step_by(BLOCK as usize);
+            let tiles = blocks.flat_map(|left| {
+                let columns = left..across.min(left + BLOCK);
+                let row = move |y| columns.clone().map(move |x| [x, y]);
+                rows.clone().flat_map(row)
+            });
+            let copies = |[x, y]: [u32; 2]| self.strips[(x / self.wide) as usize].tile(x, y);
+            dealer.deal(tiles.map(|at| (at, copies(at))))
+        };
+        let bands: Vec<u32> = (0..down).step_by(BLOCK as usize).collect();
+        let bands: Vec<_> = bands.into_par_iter().map(of_band).collect();
+        join(&bands, queues.len())
     }
 }
 
 /// Joins the records and queues of all bands to one buffer.
 fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
-    let mut records: Vec<[u32; 4]> = Vec::new();
-    let mut lists = 0;
+    let count = |of: &BandRecords| {
+        let lists = [&of.quads, &of.listed, &of.single, &of.queued];
+        lists.map(Vec::len).iter().sum::<usize>()
+    };
+    let records: usize = bands.iter().flatten().map(count).sum();
+    let queues: usize = bands.iter().flatten().map(|of| of.words.len()).sum();
+    // Queues follow all records.
+    let mut queue = 4 * records;
+    let mut words: Vec<u32> = Vec::with_capacity(queue + queues);
     let mut all = Vec::with_capacity(layers);
     for layer in 0..layers {
+        let here = || bands.iter().map(|band| &band[layer]);
         let mut put = |of: for<'b> fn(&'b BandRecords) -> &'b [[u32; 4]]| {
-            let first = records.len() as u32;
-            for band in bands {
-                records.extend(of(&band[layer]));
-            }
-            first..records.len() as u32
+            let first = (words.len() / 4) as u32;
+            here().for_each(|band| words.extend(of(band).as_flattened()));
+            first..(words.len() / 4) as u32
         };
-        let (quads, listed, single) = (put(|l| &l.quads), put(|l| &l.listed), put(|l| &l.single));
-        let first = records.len() as u32;
-        for band in bands {
-            let of = |[corner, list, count, near]: &[u32; 4]| {
-                [*corner, list + lists as u32, *count, *near]
-            };
-            records.extend(band[layer].queued.iter().map(of));
-            lists += band[layer].words.len();
+        let tiles = LayerTiles {
+            quads: put(|of| &of.quads),
+            listed: put(|of| &of.listed),
+            single: put(|of| &of.single),
+            queued: put(|of| &of.queued),
+        };
+        let mut at = 4 * tiles.queued.start as usize;
+        for band in here() {
+            for _ in &band.queued {
+                words[at + 1] += queue as u32;
+                at += 4;
+            }
+            queue += band.words.len();
         }
-        all.push(LayerTiles {
-            quads,
-            listed,
-            single,
-            queued: first..records.len() as u32,
-        });
+        all.push(tiles);
     }
-    // Queues follow all records.
-    let behind = 4 * records.len() as u32;
-    for layer in &all {
-        for record in &mut records[layer.queued.start as usize..layer.queued.end as usize] {
-            record[1] += behind;
-        }
-    }
-    let mut words = Vec::with_capacity(behind as usize + lists);
-    words.extend(records.as_flattened());
     for layer in 0..layers {
-        for band in bands {
-            words.extend(&band[layer].words);
-        }
+        bands
+            .iter()
+            .for_each(|band| words.extend(&band[layer].words));
     }
     TileWords { words, layers: all }
 }

@@ -2,7 +2,7 @@
 //! it.
 
 use super::bounds::{ProjectedAxes, first_pixel, last_pixel};
-use crate::surface::OuterCylinders;
+use crate::surface::Cylinders;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -28,7 +28,7 @@ const CORNERS: [(f64, f64); 8] = {
 /// Returns false if they are unknown. `margin`: object units by which the copy may be larger;
 /// `high`: approximate number of rows of the whole copy.
 pub(super) fn rows(
-    outer: &OuterCylinders,
+    outer: &Cylinders,
     axes: &ProjectedAxes,
     margin: f64,
     within: Range<u32>,
@@ -129,7 +129,7 @@ mod tests {
         let radii: Vec<f64> = (0..64)
             .map(|row| radius((row + 1) as f64 / 64.0).max(radius(row as f64 / 64.0)))
             .collect();
-        let outer = OuterCylinders::of_radii(&radii);
+        let outer = Cylinders::around(&radii);
         let camera = Camera::new(DVec3::new(3.0, 1.0, 2.0), DVec3::new(0.0, 0.0, 0.4));
         let view = View::from_camera(&camera, (640, 480), [0.1, 100.0]).unwrap();
         let projector = Projector::new(&view, 0.0, 0.0);
@@ -149,7 +149,7 @@ mod tests {
             };
             let axes = projector.axes(&copy, shape.axis);
             let pixels = projector
-                .bounds(&axes, &shape)
+                .bounds(&copy, &shape)
                 .unwrap()
                 .pixels
                 .map(u32::from);

@@ -1,17 +1,39 @@
-//! The copies that show in a strip of the picture, which is a range of columns of squares from top
-//! to bottom. Copies are visited from the nearest to the farthest. Clusters that nearer copies hide
-//! are skipped.
+//! The copies that show in a strip of the picture, which is a range of columns of tiles from top to
+//! bottom. Copies are visited from the nearest to the farthest.
 
-use super::bounds::Projector;
-use super::candidates::{Candidate, Candidates};
-use super::cover::Cover;
+use super::Batch;
+use super::bounds::{Projector, ScreenBounds};
+use super::cover::{Cover, within_rows};
 use super::deal::TileCopy;
 use super::outer::rows;
-use super::{BLOCK, Batch, Item};
+use crate::plan::proxy::{is_apart, is_lopsided};
 use std::ops::Range;
 
-/// Number of clusters that are opened at once; copies are sorted after each such step.
-const OPENED: usize = 16;
+/// A copy that some pixel may show.
+#[derive(Clone, Copy)]
+pub(super) struct Item {
+    bounds: ScreenBounds,
+    batch: u32,
+    /// Number of the instance.
+    copy: u32,
+    /// Rank in the order of the batch's clusters.
+    rank: u32,
+}
+
+/// The copies of a cluster, in its rectangle of pixels.
+pub(super) struct Opened {
+    pub pixels: [u16; 4],
+    pub items: Vec<Item>,
+}
+
+/// Facts that hold for all copies of a batch that may show.
+#[derive(Clone, Copy)]
+pub(super) struct CopyFacts {
+    /// True if the eye is outside of each copy's bounding cylinder.
+    pub apart: bool,
+    /// True if the ratio of each box's sides is small enough for beams of 32-bit floats.
+    pub even: bool,
+}
 
 pub(super) struct Strip<'a> {
     projector: &'a Projector,
@@ -19,95 +41,133 @@ pub(super) struct Strip<'a> {
     cover: Cover,
     /// The ends of each row of the current copy.
     rows: Vec<[f64; 2]>,
-    /// The listed copies of each band, nearest first.
-    pub listed: Vec<Vec<TileCopy>>,
-    /// Batch and number of every copy that may show.
-    pub copies: Vec<(u32, u32)>,
+    /// The squares and pixels that may show it.
+    open: Vec<([u32; 2], u64)>,
+    /// Copies that may be farther than those of the next cluster.
+    waiting: Vec<Item>,
+    /// The listed copies of each tile, nearest first.
+    tiles: Vec<Vec<TileCopy>>,
+    /// Number of every instance that may show.
+    pub copies: Vec<u32>,
+    /// One entry per batch.
+    pub facts: Vec<CopyFacts>,
+}
+
+impl Item {
+    /// The copy of this rank in a batch, if some pixel may show it.
+    pub fn new(projector: &Projector, batches: &[Batch], batch: u32, rank: u32) -> Option<Self> {
+        let of = &batches[batch as usize];
+        let (copy, placement) = of.placements.at(rank);
+        let bounds = projector.bounds(placement, &of.shape)?;
+        let copy = of.first + copy;
+        Some(Self {
+            bounds,
+            batch,
+            copy,
+            rank,
+        })
+    }
+
+    /// Order of copies: by nearest depth, then by number. Depths are not negative, so the order of
+    /// their bits is theirs.
+    fn key(&self) -> u64 {
+        u64::from(self.bounds.near.to_bits()) << 32 | u64::from(self.copy)
+    }
 }
 
 impl<'a> Strip<'a> {
-    /// An empty strip of these columns, in a picture of this size in tiles.
+    /// An empty strip of these columns, in a picture of `down` rows of tiles.
     pub fn new(
         projector: &'a Projector,
         batches: &'a [Batch<'a>],
         columns: Range<u32>,
-        [_, down]: [u32; 2],
+        down: u32,
     ) -> Self {
+        let facts = CopyFacts {
+            apart: true,
+            even: true,
+        };
         Self {
             projector,
             batches,
+            tiles: vec![Vec::new(); columns.len() * down as usize],
             cover: Cover::new(columns, down, projector.margin),
             rows: Vec::new(),
-            listed: vec![Vec::new(); down.div_ceil(BLOCK) as usize],
+            open: Vec::new(),
+            waiting: Vec::new(),
             copies: Vec::new(),
+            facts: vec![facts; batches.len()],
         }
     }
 
-    /// Lists the visible part of all candidates.
-    pub fn fill(&mut self, candidates: &Candidates) {
-        let here = |c: &&Candidate| self.cover.meets(c.pixels);
-        let here: Vec<&Candidate> = candidates.all.iter().filter(here).collect();
-        let (mut waiting, mut ready) = (Vec::new(), Vec::new());
-        for (n, opened) in (1..).zip(here.chunks(OPENED)) {
-            for candidate in opened {
-                let near = f32::from_bits(candidate.near);
-                if candidate.may_be_hidden && self.cover.hides(candidate.pixels, near) {
-                    continue;
-                }
-                let items = candidates.items(candidate).iter();
-                waiting.extend(items.filter(|item| self.cover.meets(item.pixels)));
-            }
-            // Copies of later clusters may be nearer than the remaining ones.
-            let limit = here.get(n * OPENED).map_or(u32::MAX, |next| next.near);
-            ready.extend(waiting.extract_if(.., |item: &mut Item| item.near < limit));
-            ready.sort_unstable();
-            ready.drain(..).for_each(|item| self.add(&item));
-        }
+    /// The copies that a tile may show, nearest first.
+    pub fn tile(&self, x: u32, y: u32) -> &[TileCopy] {
+        &self.tiles[self.cover.at(x, y)]
+    }
+
+    /// True unless all copies within these bounds are beside the strip or hidden by listed ones.
+    pub fn may_show(&self, bounds: &ScreenBounds) -> bool {
+        self.cover.meets(bounds.pixels) && !self.cover.hides(bounds.pixels, bounds.near)
+    }
+
+    /// Lists the visible part of waiting and opened copies nearer than `limit`, the bits of a depth.
+    /// The others wait.
+    pub fn fill(&mut self, opened: &[Opened], limit: u32) {
+        let here = opened.iter().filter(|of| self.cover.meets(of.pixels));
+        let items = here.flat_map(|of| &of.items);
+        let items = items.filter(|item| self.cover.meets(item.bounds.pixels));
+        self.waiting.extend(items);
+        let nearer = |item: &mut Item| item.bounds.near.to_bits() < limit;
+        let mut ready: Vec<Item> = self.waiting.extract_if(.., nearer).collect();
+        ready.sort_unstable_by_key(Item::key);
+        ready.iter().for_each(|item| self.add(item));
     }
 
     /// Lists the visible part of a copy and records what it hides. No earlier copy may be farther
     /// than it.
-    pub fn add(&mut self, item: &Item) {
-        let near = f32::from_bits(item.near);
-        if !self.cover.is_open(item.pixels, near) {
+    fn add(&mut self, item: &Item) {
+        let ScreenBounds { pixels, near } = item.bounds;
+        self.cover.open(pixels, near, &mut self.open);
+        if self.open.is_empty() {
             return;
         }
         let batch = &self.batches[item.batch as usize];
         let (_, placement) = batch.placements.at(item.rank);
         let axes = self.projector.axes(placement, batch.shape.axis);
-        let [_, top, _, bottom] = item.pixels.map(u32::from);
-        let known = batch
-            .outer
-            .filter(|_| item.near > 0)
-            .is_some_and(|(outer, away)| {
-                let margin = away + self.projector.margin(&axes, &batch.shape);
-                rows(
-                    outer,
-                    &axes,
-                    margin,
-                    top..bottom + 1,
-                    bottom - top,
-                    &mut self.rows,
-                )
-            });
-        let rows = known.then_some(&self.rows[..]);
-        let mut shows = false;
-        self.cover.open(item.pixels, rows, near, |[x, y], pixels| {
-            shows = true;
-            self.listed[(y / BLOCK) as usize].push(TileCopy {
-                tile: x / BLOCK * (BLOCK * BLOCK) + y % BLOCK * BLOCK + x % BLOCK,
-                batch: item.batch,
-                copy: batch.first + item.copy,
-                near: item.near,
-                pixels,
-            });
+        let [_, top, _, bottom] = pixels.map(u32::from);
+        let in_front = near > 0.0;
+        let outer = batch.outer.filter(|_| in_front);
+        let known = outer.is_some_and(|(outer, away)| {
+            let margin = away + self.projector.margin(&axes, &batch.shape);
+            let within = top..bottom + 1;
+            rows(outer, &axes, margin, within, bottom - top, &mut self.rows)
         });
+        let mut shows = false;
+        for &([x, y], mut pixels) in &self.open {
+            if known {
+                pixels &= within_rows([x, y], &self.rows, top);
+            }
+            if pixels != 0 {
+                shows = true;
+                self.tiles[self.cover.at(x, y)].push(TileCopy {
+                    batch: item.batch,
+                    copy: item.copy,
+                    near: near.to_bits(),
+                    pixels,
+                });
+            }
+        }
         if !shows {
             return;
         }
-        self.copies.push((item.batch, item.copy));
-        if let Some(inner) = batch.inner.filter(|_| item.near > 0) {
-            self.cover.add(&axes, inner, item.pixels);
+        self.copies.push(item.copy);
+        if let Some(surface) = batch.surface {
+            let facts = &mut self.facts[item.batch as usize];
+            facts.apart &= is_apart(surface, axes.eye);
+            facts.even &= !is_lopsided(batch.half_side, placement);
+        }
+        if let Some(inner) = batch.inner.filter(|_| in_front) {
+            self.cover.add(&axes, inner, pixels);
         }
     }
 }
@@ -117,7 +177,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plan::View;
-    use crate::plan::tiles::{Cylinder, Drawer, Placements, Visible};
+    use crate::plan::tiles::{Cylinder, FIRST_ROUND, Placements, Visible};
     use crate::profile::Profile;
     use crate::scene::{Camera, Copies, Offset, Placement};
     use crate::solid::cache::Solid;
@@ -125,19 +185,6 @@ mod tests {
     use crate::surface::FitOptions;
     use glam::{DQuat, DVec2, DVec3};
     use std::sync::Arc;
-    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-
-    /// Every copy of every batch, nearest first, without skipping clusters.
-    fn fill_plainly(strip: &mut Strip, candidates: &Candidates) {
-        let mut items = Vec::new();
-        for (number, batch) in (0..).zip(candidates.batches) {
-            let ranks = 0..batch.placements.len() as u32;
-            items.extend(ranks.filter_map(|rank| candidates.item(number, rank)));
-        }
-        items.retain(|item: &Item| strip.cover.meets(item.pixels));
-        items.sort_unstable();
-        items.iter().for_each(|item| strip.add(item));
-    }
 
     fn surface(points: &[[f64; 2]]) -> Arc<OffsetSurface> {
         let profile = Arc::new(Profile::polygon(points, 0.5).unwrap());
@@ -167,8 +214,8 @@ mod tests {
         (0..count).map(of).collect()
     }
 
-    /// The tiles equal those of all copies in turn, to the last word, wherever the eye is. Many
-    /// clusters are never opened.
+    /// The tiles equal those of one round, in which all clusters are opened, to the last word, wherever
+    /// the eye is. In several rounds many clusters are never opened.
     #[test]
     fn clusters_that_are_passed_over_change_nothing() {
         let column = surface(&[[0.0, 0.0], [0.4, 0.0], [0.4, 1.0], [0.0, 1.0]]);
@@ -212,22 +259,16 @@ mod tests {
             let camera = Camera::new(DVec3::from_array(eye), DVec3::from_array(target));
             let view = View::from_camera(&camera, (333, 210), [0.1, 1e3]).unwrap();
             let projector = Projector::new(&view, 0.0, 0.0);
-            let candidates = Candidates::new(&projector, &batches);
-            let closed = AtomicUsize::new(usize::MAX);
-            let found = Visible::of(&candidates, |strip, candidates| {
-                strip.fill(candidates);
-                let count = candidates.all.iter().filter(|c| !c.is_opened()).count();
-                closed.fetch_min(count, Relaxed);
-            });
-            let plain = Visible::of(&Candidates::new(&projector, &batches), fill_plainly);
+            let (found, opened) = Visible::in_rounds(&projector, &batches, FIRST_ROUND);
+            let (plain, all) = Visible::in_rounds(&projector, &batches, usize::MAX);
             assert_eq!(found.copies(), plain.copies(), "{eye:?}");
-            for drawer in [Drawer::Fragments, Drawer::Groups] {
+            for compute in [false, true] {
                 let [found, plain] =
-                    [&found, &plain].map(|v| v.deal(drawer, &[0, 1, 0], &[true, false]));
+                    [&found, &plain].map(|v| v.deal(compute, &[0, 1, 0], &[true, false]));
                 assert!(!plain.words.is_empty());
                 assert!(found == plain, "{eye:?}");
             }
-            passed_over += closed.into_inner();
+            passed_over += all - opened;
         }
         assert!(passed_over > 100, "{passed_over}");
     }
