@@ -111,10 +111,8 @@ pub(super) fn add(
     for (n, layer) in (0u32..).zip(&layers) {
         let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
         plan.compares_depths |= several || (with.compute && with.host_depths);
-        let kept = u32::from(plan.compares_depths);
         let variant = Variant {
-            depth_test: kept,
-            depth_keep: kept,
+            depths: u32::from(plan.compares_depths),
             ..layer.variant
         };
         plan.steps.push(Step {
@@ -129,8 +127,7 @@ pub(super) fn add(
         // Tiles that were drawn before keep their depths.
         for step in &mut plan.steps {
             let variant = Variant {
-                depth_test: 1,
-                depth_keep: 1,
+                depths: 1,
                 ..step.variant
             };
             step.variant = variant.of_kind(step.kind);

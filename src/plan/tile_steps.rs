@@ -133,8 +133,7 @@ impl FramePlan {
         self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = Variant {
-                depth_test: u32::from(self.compares_depths),
-                depth_keep: u32::from(self.compares_depths),
+                depths: u32::from(self.compares_depths),
                 ..layer.variant
             };
             let step = |phase, kind, variant: Variant, call| Step {

@@ -78,7 +78,7 @@ bool search_listed(uvec2 pixel, out Hit hit)
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
     PatchRow row = begin_row(tile_rays, pixel, sides_of_box());
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
-        take_patch_of_row(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
+        take_nearer(row.m, listed_vector(2u * k), listed_vector(2u * k + 1u), row.least, row.best, row.quadric);
     }
     return end_row(row, LIST_LENGTH, hit);
 }

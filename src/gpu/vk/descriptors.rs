@@ -188,8 +188,7 @@ pub(crate) unsafe fn write(
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::SETS;
-    use crate::shader::tests::{instructions, op};
-    use crate::shader::{modules, words};
+    use crate::shader::{instructions, modules, op, words};
     use std::collections::BTreeSet;
 
     /// The table of descriptors agrees with every binding that a module reads.
@@ -203,15 +202,17 @@ mod tests {
         let mut seen = BTreeSet::new();
         for module in modules() {
             let words = words(&module).unwrap();
-            let all = instructions(&words);
+            let all: Vec<_> = instructions(&words)
+                .map(|(code, one)| (code, one[1..].to_vec()))
+                .collect();
             let decorated = |id: u32, what: u32| {
-                let of = |(code, w): &&(u32, &[u32])| {
+                let of = |(code, w): &&(u32, Vec<u32>)| {
                     *code == op::DECORATE && w[0] == id && w[1] == what
                 };
                 all.iter().find(of).map(|(_, w)| w[2])
             };
             let defined = |id: u32| {
-                *all.iter()
+                all.iter()
                     .find(|(code, w)| is_type(*code) && w[0] == id)
                     .unwrap()
             };
@@ -220,7 +221,7 @@ mod tests {
                     continue;
                 };
                 let (code, pointer) = defined(w[0]);
-                assert_eq!(code, POINTER);
+                assert_eq!(*code, POINTER);
                 let mut of = defined(pointer[2]);
                 if of.0 == ARRAY {
                     of = defined(of.1[1]);
