@@ -13,9 +13,13 @@ use std::path::{Path, PathBuf};
 #[path = "src/shader/catalogue.rs"]
 mod catalogue;
 
+#[allow(dead_code)]
+#[path = "src/search/module.rs"]
+mod search;
+
 const SOURCES: &str = "shaders-glsl";
 const INCLUDES: [&str; 3] = ["include/core", "include/search", "include/stage"];
-const CATALOGUE: &str = "src/shader/catalogue.rs";
+const CATALOGUE: [&str; 2] = ["src/shader/catalogue.rs", "src/search/module.rs"];
 const KEPT: &str = "shaders-spirv";
 
 fn main() {
@@ -41,7 +45,7 @@ fn generate() -> Fallible<()> {
         target.join("library.rs"),
         modules::texts(SOURCES, &sources)?,
     )?;
-    sources.push(CATALOGUE.into());
+    sources.extend(CATALOGUE.map(PathBuf::from));
     let module = |module: catalogue::Module| modules::Module {
         name: module.name(),
         entry: module.entry.file(),

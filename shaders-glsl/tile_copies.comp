@@ -35,7 +35,6 @@ void main()
 {
     take_frame();
     take_only_object(pushed.object);
-    take_lights();
     uint first, count;
     uvec2 pixel = this_pixel(first, count);
     if (all(lessThan(pixel, frame.size.xy))) {
@@ -47,11 +46,7 @@ void main()
         if (found) {
             Instance i = instances[index];
             take_one_of_objects(i.object.x);
-            Look look = look_of(i);
-#if HOST_SHADING
-            look.instance = index;
-#endif
-            store(pixel, depth, shade(look, pixel_rays(i), pixel, hit));
+            store(pixel, depth, shade(look_of(i, index), pixel_rays(i), pixel, hit));
         }
     }
 }

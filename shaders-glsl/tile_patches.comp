@@ -5,7 +5,7 @@
 
 void main()
 {
-    begin_frame();
+    take_frame();
     take_only_object(pushed.object); // before any barrier: see take_frame()
     share_record();
     barrier();

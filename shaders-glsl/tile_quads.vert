@@ -4,9 +4,7 @@
 #include "stage/vertex.glsl"
 #include "stage/tree_varyings.glsl"
 #include "stage/quad.glsl"
-#if SEARCH == SEARCH_QUADRIC
 #include "stage/beam.glsl"
-#endif
 
 void main()
 {
@@ -16,11 +14,9 @@ void main()
     position_quad(quad);
     hand_over(i, frame.dir_00.w);
     vec2 span = EVERYWHERE;
-#if SEARCH == SEARCH_QUADRIC
     if (OUTSIDE != 0u) {
         PixelRays rays = pixel_rays(i);
         span = beam_span(beam_of(rays, quad.corner, quad.side, farthest_of(rays, i), 0.0));
     }
-#endif
     hand_over_tree(span);
 }

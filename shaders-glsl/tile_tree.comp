@@ -5,7 +5,7 @@
 
 void main()
 {
-    begin_frame();
+    take_frame();
     take_record();
     take_only_object(pushed.object);
     take_one_of_objects(tile_instance.object.x);

@@ -11,7 +11,6 @@ void main()
 {
     vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
     take_frame();
-    take_lights();
     take_only_object(instances[tile_words[tile_queue.x]].object.x);
     float depth = 2.0; // behind everything
     uint index;
@@ -24,10 +23,6 @@ void main()
     Instance i = instances[index];
     take_one_of_objects(i.object.x);
     PixelRays rays = pixel_rays(i);
-    Look look = look_of(i);
-#if HOST_SHADING
-    look.instance = index;
-#endif
-    store(shade(look, rays, pixel, hit), rays, index, pixel, hit);
+    store(shade(look_of(i, index), rays, pixel, hit), rays, index, pixel, hit);
     gl_FragDepth = depth_of(rays.base + hit.t);
 }

@@ -85,14 +85,9 @@ fn published() -> Fallible<String> {
         let read = fs::read_to_string(&path)?;
         let of = Manifest::parse(&read, true).map_err(|e| format!("{}: {e}", path.display()))?;
         let (upper, glsl) = (name.to_uppercase(), hook(name, &of));
-        let plain = |l: &list::Listed| l.hook == glsl && !l.module.beveled;
         let reads = match &of.table {
             Some(table) => format!("Table(&{})", table.rust),
-            None => format!(
-                "Map {{ tells_bevels: {}, rgba8: {} }}",
-                list::modules().iter().any(plain),
-                of.unsigned
-            ),
+            None => format!("Map {{ rgba8: {} }}", of.unsigned),
         };
         let steps = of.steps.map_or("None".to_owned(), |s| {
             let beveled = s.beveled.unwrap_or(s.default);
@@ -104,7 +99,7 @@ fn published() -> Fallible<String> {
             text,
             "/// {name}: {about}.\npub const {upper}: Solver = Solver::Other(&{upper}_SEARCH);\n\
              static {upper}_SEARCH: Search = Search {{ name: {name:?}, about: {about:?}, source: {source:?}, licence: {licence:?}, \
-             reads: Reads::{reads}, steps: {steps}, form: {form}, words: words!({glsl:?}) }};\n\
+             reads: Reads::{reads}, steps: {steps}, form: {form}, words: embedded(&|module| found({glsl:?}, module)) }};\n\
              const {upper}_TOML: &str = include_str!({full:?});",
             about = of.about,
             source = of.source,

@@ -192,10 +192,8 @@ impl Layer {
 
 /// A variant that compares depths with those of the target and writes them, or does neither.
 fn with_depths(variant: Variant, compares: bool) -> Variant {
-    let depths = u32::from(compares);
     Variant {
-        depth_test: depths,
-        depth_keep: depths,
+        depths: u32::from(compares),
         ..variant
     }
 }

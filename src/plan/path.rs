@@ -142,7 +142,7 @@ impl Conditions {
     /// True if fragments may search the queues of an object's tiles: it has the library's patches, no
     /// replicas and no shadows.
     pub fn takes_queues(of: &PlanObject) -> bool {
-        of.variant.search == Search::Quadric && of.variant.features != Features::Full
+        of.variant.search == Search::Quadric && of.variant.features() != Features::Full
     }
 
     /// True if the device lists the tiles of an object's copies.
@@ -302,8 +302,7 @@ impl Conditions {
                         lights,
                         own_tables,
                         list_length,
-                        depth_test: depths,
-                        depth_keep: depths,
+                        depths,
                         ..*form
                     };
                     let key = (variant.of_kind(kind), kind);

@@ -19,10 +19,10 @@
 //! use revmap::search::{Pass, Features, Output, SearchModule};
 //! let module = SearchModule {
 //!     pass: Pass::Fragment, features: Features::Plain, output: Output::Color,
-//!     table: false, bounded: true, beveled: false, rgba8: false,
+//!     table: false, bounded: true,
 //! };
 //! assert_eq!(module.entry(), "tree.frag");
-//! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL"), ("BEVELED", "0")]);
+//! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL")]);
 //! ```
 
 mod module;
@@ -99,9 +99,6 @@ pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
 pub enum Reads {
     /// The shape map.
     Map {
-        /// True if solids without a bevel have modules of their own. Otherwise all are compiled
-        /// with [`SearchModule::beveled`].
-        tells_bevels: bool,
         /// True if it can read the papers' texture
         /// ([`MapFormat::Rgba8`](crate::maps::MapFormat::Rgba8)).
         rgba8: bool,

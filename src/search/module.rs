@@ -44,10 +44,6 @@ pub struct SearchModule {
     pub table: bool,
     /// True if there is a bound on its steps.
     pub bounded: bool,
-    /// True if there may be a bevel.
-    pub beveled: bool,
-    /// True if the map is the papers' texture of unsigned distances, 8 bits a channel.
-    pub rgba8: bool,
 }
 
 impl SearchModule {
@@ -68,14 +64,12 @@ impl SearchModule {
         let set = [
             (self.table, "SEARCH_TABLE"),
             (self.table && self.bounded, "SEARCH_BOUNDED"),
-            (self.rgba8, "RGBA8"),
             (self.features >= Features::Textured, "TEXTURED"),
             (shaded, "REPEATED"),
             (shaded, "SHADOWED"),
         ];
         let set = set.into_iter().filter(|(is_set, _)| *is_set);
-        let beveled = if self.beveled { "1" } else { "0" };
-        let mut all = vec![("SEARCH", "SEARCH_EXTERNAL"), ("BEVELED", beveled)];
+        let mut all = vec![("SEARCH", "SEARCH_EXTERNAL")];
         all.extend(set.map(|(_, name)| (name, "1")));
         if self.output == Output::Planes {
             all.push(("OUTPUT", "OUTPUT_PLANES"));
@@ -86,19 +80,13 @@ impl SearchModule {
     /// The module's name, without the search's.
     #[must_use]
     pub fn name(&self) -> String {
-        let mut name = format!("{:?}.{:?}.{:?}", self.pass, self.features, self.output);
-        for (is, part) in [(self.beveled, ".beveled"), (self.rgba8, ".rgba8")] {
-            name += if is { part } else { "" };
-        }
-        name.to_lowercase()
+        format!("{:?}.{:?}.{:?}", self.pass, self.features, self.output).to_lowercase()
     }
 
     /// Returns true if this module can replace `wanted`: it does at least the same work.
     #[must_use]
     pub fn serves(&self, wanted: &Self) -> bool {
         self.features >= wanted.features
-            && self.beveled >= wanted.beveled
-            && (self.pass, self.output) == (wanted.pass, wanted.output)
-            && (self.table, self.rgba8) == (wanted.table, wanted.rgba8)
+            && (self.pass, self.output, self.table) == (wanted.pass, wanted.output, wanted.table)
     }
 }

@@ -1,6 +1,8 @@
 //! The catalogue of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
 //! `build.rs` compiles them, and pipelines find modules in it. The file therefore names GLSL
-//! macros and has no dependencies.
+//! macros and depends only on `src/search/module.rs`, which build scripts can read, too.
+
+use super::search::Features;
 
 /// An entry file of `shaders-glsl/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -90,27 +92,13 @@ impl Entry {
 pub enum Search {
     /// No search: vertices, lists of patches.
     None,
-    /// A search of another crate, which has its own modules. Only the vertices for a search with a
-    /// table and a bound on steps are in the catalogue.
+    /// A search of another crate, which has its own modules.
     External,
     /// The search for live parameters.
     Live,
-    /// The search for live parameters, on the papers' texture.
-    LiveRgba8,
     /// Patches of quadrics in a tree. Fragments of cells solve their patches without the tree;
     /// shadows on them use the tree.
     Quadric,
-}
-
-/// Features of a solid other than its shape; each includes the ones before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Features {
-    /// One colour, one solid in its box, no shadows.
-    Plain,
-    /// Maps of colour and bumps.
-    Textured,
-    /// Replicas and shadows.
-    Full,
 }
 
 /// The stored values of a hit.
@@ -124,8 +112,6 @@ pub enum Output {
     List,
     /// Only depth.
     Depth,
-    /// Only depth, along parallel rays.
-    DepthOrtho,
 }
 
 /// One module.
@@ -163,37 +149,13 @@ impl Module {
             .find(is_there)
     }
 
-    /// The module of vertices `entry` that pass exactly the inputs of these fragments.
-    #[must_use]
-    pub fn vertices(&self, entry: Entry) -> Self {
-        use Search as S;
-        let search = match self.search {
-            _ if matches!(entry, Entry::CellVertex | Entry::TileVertex) => S::None,
-            S::Quadric => S::Quadric,
-            S::External => S::External,
-            _ => S::Live,
-        };
-        let shaded = self.output <= Output::List;
-        Self {
-            search,
-            output: if shaded { Output::Color } else { Output::Depth },
-            ..Self::plain(entry)
-        }
-    }
-
     /// The macros for compiling the GLSL; missing ones are 0. Only `build.rs` calls this.
     #[must_use]
     #[allow(dead_code)]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
         let mut all = match self.search {
-            Search::None => vec![],
-            Search::External => vec![
-                ("SEARCH", "SEARCH_EXTERNAL"),
-                ("SEARCH_TABLE", "1"),
-                ("SEARCH_BOUNDED", "1"),
-            ],
+            Search::None | Search::External => vec![],
             Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
-            Search::LiveRgba8 => vec![("SEARCH", "SEARCH_LIVE"), ("RGBA8", "1")],
             Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
         if self.features >= Features::Textured {
@@ -210,7 +172,6 @@ impl Module {
             Output::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
             Output::List => all.push(("OUTPUT", "OUTPUT_LIST")),
             Output::Depth => all.push(("OUTPUT", "OUTPUT_DEPTH")),
-            Output::DepthOrtho => all.extend([("OUTPUT", "OUTPUT_DEPTH"), ("ORTHO", "1")]),
         }
         all
     }
@@ -226,29 +187,10 @@ impl Module {
         };
         if self.search != Search::None {
             add(&mut name, &self.search);
-        }
-        if !self.entry.makes_lists() {
             add(&mut name, &self.features);
             add(&mut name, &self.output);
         }
         name
-    }
-}
-
-/// Searches that the fragment and compute stages have.
-const SEARCHES: [Search; 3] = [Search::Live, Search::LiveRgba8, Search::Quadric];
-
-/// True if a search has a module with these features and this output. More general modules draw
-/// rare cases that are not plain.
-fn has(search: Search, features: Features, output: Output) -> bool {
-    let main = matches!(search, Search::Live | Search::Quadric);
-    match (output, features) {
-        (Output::Color, Features::Plain) => true,
-        (Output::Color, Features::Textured) | (Output::Planes, Features::Plain) => main,
-        (Output::Planes, Features::Textured) | (Output::List, Features::Plain) => false,
-        (Output::List, _) => main,
-        (Output::Color | Output::Planes, Features::Full) => true,
-        (Output::Depth | Output::DepthOrtho, features) => main && features != Features::Textured,
     }
 }
 
@@ -262,7 +204,6 @@ pub fn shading_modules(compute: bool) -> Vec<Module> {
     all.retain(|m| {
         m.entry.shades()
             && in_pass(m.entry) != compute
-            && m.search != Search::LiveRgba8
             && m.features >= Features::Textured
             && matches!(m.output, Output::Color | Output::List)
     });
@@ -282,69 +223,50 @@ pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
 /// Every module, in order.
 #[must_use]
 pub fn modules() -> Vec<Module> {
-    use Output as O;
-    let lists = [
+    use Features::{Full as F, Plain as P, Textured as T};
+    use Output::{Color, Depth, List, Planes};
+    let plain = [
         Entry::TileLists,
         Entry::CrowdCopies,
         Entry::CrowdTiles,
         Entry::CrowdOrder,
+        Entry::BoxVertex,
+        Entry::CellVertex,
+        Entry::QuadVertex,
+        Entry::TileVertex,
     ];
-    let mut all = lists.map(Module::plain).to_vec();
-    for output in [O::Color, O::Depth] {
-        let mut vertex = |entry, search| {
+    let mut all = plain.map(Module::plain).to_vec();
+    // Features that no row has are drawn by the next module with more. Shadows and replicas walk the
+    // tree; queues of both are left to quads.
+    let both: &[Search] = &[Search::Live, Search::Quadric];
+    let patches: &[Search] = &[Search::Quadric];
+    let rows: &[(Entry, &[Search], Output, &[Features])] = &[
+        (Entry::Tree, both, Color, &[P, T, F]),
+        (Entry::Tree, both, Planes, &[P, F]),
+        (Entry::Tree, both, List, &[T, F]),
+        (Entry::Tree, both, Depth, &[P, F]),
+        (Entry::TileTree, both, Color, &[P, T, F]),
+        (Entry::TileTree, both, Planes, &[P, F]),
+        (Entry::TileCopies, both, Color, &[P, T, F]),
+        (Entry::TileCopies, both, Planes, &[P, F]),
+        (Entry::TilePatches, patches, Color, &[P, T]),
+        (Entry::TilePatches, patches, Planes, &[P, F]),
+        (Entry::Cells, patches, Color, &[P, T]),
+        (Entry::Cells, patches, Planes, &[P, F]),
+        (Entry::Cells, patches, List, &[T]),
+        (Entry::Cells, patches, Depth, &[P]),
+        (Entry::Tiles, patches, Color, &[P, T]),
+        (Entry::Tiles, patches, Planes, &[P, T]),
+        (Entry::Tiles, patches, List, &[T]),
+    ];
+    for &(entry, searches, output, of) in rows {
+        for (&search, &features) in searches.iter().flat_map(|s| of.iter().map(move |f| (s, f))) {
             all.push(Module {
+                entry,
                 search,
+                features,
                 output,
-                ..Module::plain(entry)
             });
-        };
-        vertex(Entry::CellVertex, Search::None);
-        for search in [Search::Live, Search::Quadric] {
-            vertex(Entry::BoxVertex, search);
-            if output == O::Color {
-                vertex(Entry::QuadVertex, search);
-            }
-        }
-        if output == O::Color {
-            vertex(Entry::BoxVertex, Search::External);
-            vertex(Entry::QuadVertex, Search::External);
-            vertex(Entry::TileVertex, Search::None);
-        }
-    }
-    for output in [O::Color, O::Planes, O::List, O::Depth, O::DepthOrtho] {
-        let shaded = output <= O::List;
-        let compute = output <= O::Planes;
-        for features in [Features::Plain, Features::Textured, Features::Full] {
-            let mut add = |entry, search| {
-                all.push(Module {
-                    entry,
-                    search,
-                    features,
-                    output,
-                });
-            };
-            // Shadows and replicas walk the tree.
-            let on_patches = output == O::Planes || features != Features::Full;
-            for search in SEARCHES.into_iter().filter(|s| has(*s, features, output)) {
-                add(Entry::Tree, search);
-                if compute {
-                    add(Entry::TileTree, search);
-                    add(Entry::TileCopies, search);
-                }
-                if compute && on_patches && search == Search::Quadric {
-                    add(Entry::TilePatches, search);
-                }
-            }
-            // Queues of replicas, and under shadows, are left to quads.
-            let textured = features == Features::Textured;
-            let plain = features == Features::Plain && output != O::List;
-            if shaded && (plain || textured) {
-                add(Entry::Tiles, Search::Quadric);
-            }
-            let shown = (shaded && on_patches) || features == Features::Plain;
-            if has(Search::Quadric, features, output) && shown {
-                add(Entry::Cells, Search::Quadric);
-            }
         }
     }
     all

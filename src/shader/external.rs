@@ -2,45 +2,32 @@
 
 use super::catalogue::{self, Module};
 use crate::error::{Error, ErrorKind, Result};
-use crate::maps::MapFormat;
-use crate::search::{Features, Output, Pass, Reads, Search, SearchModule};
+use crate::search::{Output, Pass, Reads, Search, SearchModule};
 use crate::settings::SearchSettings;
 
-/// A search and its form.
+/// A search and its bound on steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct External {
     /// The search.
     pub search: &'static Search,
-    beveled: bool,
-    rgba8: bool,
     /// The bound on steps if that bound is the default; else 0, and the bound is data. A
     /// compiled-in default keeps comparisons fair: a search is not slowed by an unused option.
     known_steps: u32,
 }
 
 impl External {
-    /// The form for an object. `beveled`: the object has a bevel. `met`: rays of shadows may meet a
-    /// bevel. `casts`: there are shadows, whose rays take the steps of the objects that they meet.
+    /// The form for an object. `beveled`: the object has a bevel. `casts`: there are shadows, whose
+    /// rays take the steps of the objects that they meet.
     pub fn new(
         search: &'static Search,
         settings: &SearchSettings,
         beveled: bool,
-        met: bool,
         casts: bool,
     ) -> Self {
-        let (form, rgba8) = match search.reads {
-            Reads::Map { tells_bevels, .. } => (
-                !tells_bevels || beveled || met,
-                settings.map_format == MapFormat::Rgba8,
-            ),
-            Reads::Table(_) => (false, false),
-        };
         let own = default_steps(search, beveled);
         let is_own = settings.max_steps.is_none_or(|steps| steps == own);
         Self {
             search,
-            beveled: form,
-            rgba8,
             known_steps: if is_own && !casts { own } else { 0 },
         }
     }
@@ -50,35 +37,12 @@ impl External {
         matches!(self.search.reads, Reads::Table(_))
     }
 
-    /// The forms that replace this one when a bevel is added or removed.
-    pub fn others(self) -> Vec<Self> {
-        let distinct = matches!(
-            self.search.reads,
-            Reads::Map {
-                tells_bevels: true,
-                ..
-            }
-        );
-        if !distinct {
-            return Vec::new();
-        }
-        let beveled = !self.beveled;
-        let known = [0, default_steps(self.search, beveled)];
-        let other = |known_steps| Self {
-            beveled,
+    /// The forms for objects with or without a bevel.
+    pub fn forms(self, beveled: bool) -> [Self; 2] {
+        [0, default_steps(self.search, beveled)].map(|known_steps| Self {
             known_steps,
             ..self
-        };
-        known.map(other).to_vec()
-    }
-
-    /// The search whose vertices pass the inputs of this search's fragments.
-    pub const fn vertices(self) -> catalogue::Search {
-        match (&self.search.reads, &self.search.steps) {
-            (Reads::Map { .. }, _) => catalogue::Search::Live,
-            (Reads::Table(_), None) => catalogue::Search::Quadric,
-            (Reads::Table(_), Some(_)) => catalogue::Search::External,
-        }
+        })
     }
 
     /// `(SEARCH_FORM, KNOWN_STEPS)`.
@@ -97,22 +61,14 @@ impl External {
         let output = match module.output {
             catalogue::Output::Color => Output::Color,
             catalogue::Output::Planes => Output::Planes,
-            catalogue::Output::List | catalogue::Output::Depth | catalogue::Output::DepthOrtho => {
-                return None;
-            }
+            catalogue::Output::List | catalogue::Output::Depth => return None,
         };
         Some(SearchModule {
             pass,
-            features: match module.features {
-                catalogue::Features::Plain => Features::Plain,
-                catalogue::Features::Textured => Features::Textured,
-                catalogue::Features::Full => Features::Full,
-            },
+            features: module.features,
             output,
             table: self.reads_table(),
             bounded: self.search.steps.is_some(),
-            beveled: self.beveled,
-            rgba8: self.rgba8,
         })
     }
 

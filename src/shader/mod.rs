@@ -6,14 +6,17 @@ mod catalogue;
 mod external;
 mod module;
 mod outputs;
+mod spirv;
 mod variant;
 mod view_index;
 
+use crate::search;
+
+pub(crate) use crate::search::Features;
 pub use blocks::{
     CasterNode, CrowdBlock, CrowdObject, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE,
     ObjectBlock, Pushed,
 };
-pub(crate) use catalogue::Features;
 #[cfg(test)]
 pub(crate) use catalogue::modules;
 #[cfg(feature = "shaderc")]
@@ -21,8 +24,9 @@ pub use catalogue::shading_macros;
 pub use catalogue::{Module, Search, shading_modules};
 #[cfg(feature = "other-shaders")]
 pub use module::catalogued;
-pub use module::{depth_less, words};
-pub use outputs::{instructions, with_locations, with_outputs_for};
+pub use module::words;
+pub use outputs::{with_locations, with_outputs_for};
+pub use spirv::{depth_less, instructions, op};
 pub(crate) use variant::is_beveled;
 pub use variant::{HostLook, Kind, ShadowCasters, Variant};
 pub use view_index::with_view_index;
@@ -35,4 +39,4 @@ pub mod generated {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

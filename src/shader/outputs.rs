@@ -1,38 +1,13 @@
 //! Outputs of fragments at the locations of a host's attachments. Modules that draw a list of planes
 //! write all of them; one edit of the words moves each variable to its attachment, and makes those
 //! without an attachment private, so that the driver removes what only they need. Outputs of vertices
-//! that a host's shading does not read become private, too.
+//! that the fragments of their pipeline do not read become private, too.
 
+use super::spirv::{BOUND, HEADER, instructions, op};
 use std::collections::HashMap;
 
-/// Words before the first instruction.
-pub const HEADER: usize = 5;
-/// Word of the header that is larger than every id.
-pub const BOUND: usize = 3;
 /// More than the locations of any module.
 const MOST_LOCATIONS: u32 = 64;
-
-/// Opcodes, decorations and storage classes of the SPIR-V specification.
-mod op {
-    pub const TYPE_POINTER: u32 = 32;
-    pub const VARIABLE: u32 = 59;
-    pub const DECORATE: u32 = 71;
-    pub const LOCATION: u32 = 30;
-    pub const INPUT: u32 = 1;
-    pub const OUTPUT: u32 = 3;
-    pub const PRIVATE: u32 = 6;
-}
-
-/// The instructions of a module: opcode, all words.
-pub fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
-    let mut at = HEADER;
-    std::iter::from_fn(move || {
-        let count = (*words.get(at)? >> 16) as usize;
-        let one = words.get(at..at + count.max(1))?;
-        at += count.max(1);
-        Some((one[0] & 0xffff, one))
-    })
-}
 
 /// The variables of a storage class that have a location: ids, locations.
 fn located(words: &[u32], class: u32) -> HashMap<u32, u32> {
@@ -47,8 +22,8 @@ fn located(words: &[u32], class: u32) -> HashMap<u32, u32> {
         .collect()
 }
 
-/// The words of a vertex module that passes only what a fragment module reads. A host's function of
-/// shading need not read all that the vertices of the library pass.
+/// The words of a vertex module that passes only what a fragment module reads. Vertices write the
+/// inputs of all fragments.
 #[must_use]
 pub fn with_outputs_for(vertex: &[u32], fragment: &[u32]) -> Vec<u32> {
     let read = located(fragment, op::INPUT);
@@ -105,8 +80,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::settings::Plane;
-    use crate::shader::tests::instructions;
-    use crate::shader::{modules, words};
+    use crate::shader::catalogue::{Entry, Module, Output, modules};
+    use crate::shader::words;
+    use std::collections::BTreeSet;
 
     /// Locations of variables of one storage class, in order.
     fn locations(words: &[u32], class: u32) -> Vec<u32> {
@@ -133,41 +109,41 @@ mod tests {
             let moved = with_locations(&words, &to);
             assert_eq!(locations(&moved, op::OUTPUT), [0, 1]);
             assert_eq!(locations(&moved, op::PRIVATE), [] as [u32; 0]);
-            let all = instructions(&moved);
-            let is_private = |w: &&[u32]| w[2] == op::PRIVATE;
-            let variables = all.iter().filter(|(c, _)| *c == op::VARIABLE);
-            let private: Vec<u32> = variables
-                .map(|(_, w)| *w)
-                .filter(is_private)
-                .map(|w| w[1])
+            let private: Vec<u32> = instructions(&moved)
+                .filter(|(code, one)| *code == op::VARIABLE && one[3] == op::PRIVATE)
+                .map(|(_, one)| one[2])
                 .collect();
             assert!(private.len() >= Plane::COUNT - 2);
-            let chained =
-                |(c, w): &(u32, &[u32])| ACCESS_CHAINS.contains(c) && private.contains(&w[2]);
-            assert!(!all.iter().any(chained), "{}", module.name());
+            let mut chains = instructions(&moved).filter(|(c, _)| ACCESS_CHAINS.contains(c));
+            let chained = chains.any(|(_, one)| private.contains(&one[3]));
+            assert!(!chained, "{}", module.name());
             found += 1;
         }
         assert_eq!(found, 6);
     }
 
-    /// Vertices pass to depths only what depths read, and to colours what they read.
+    /// Vertices write all that fragments read; validation layers report outputs that none reads.
     #[test]
     fn vertices_pass_what_fragments_read() {
-        let named = |name: &str| {
-            let module = modules().into_iter().find(|m| m.name() == name);
-            words(&module.unwrap()).unwrap()
-        };
-        let vertex = named("proxy_boxes.vert.quadric.plain.color");
-        let passed = locations(&vertex, op::OUTPUT);
-        for (fragment, fewer) in [
-            ("tree.frag.quadric.plain.color", false),
-            ("tree.frag.quadric.plain.depth", true),
-        ] {
-            let fragment = named(fragment);
+        let mut counts = BTreeSet::new();
+        for module in modules() {
+            let entries: &[Entry] = match module.entry {
+                Entry::Tree if module.output == Output::Depth => &[Entry::BoxVertex],
+                Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
+                Entry::Tiles => &[Entry::TileVertex],
+                Entry::Cells => &[Entry::CellVertex],
+                _ => &[],
+            };
+            let fragment = words(&module).unwrap();
             let read = locations(&fragment, op::INPUT);
-            let fit = with_outputs_for(&vertex, &fragment);
-            assert_eq!(locations(&fit, op::OUTPUT), read);
-            assert_eq!(read.len() < passed.len(), fewer);
+            for &entry in entries {
+                let vertex = words(&Module::plain(entry)).unwrap();
+                let fit = with_outputs_for(&vertex, &fragment);
+                assert_eq!(locations(&fit, op::OUTPUT), read, "{}", module.name());
+                counts.insert(read.len());
+            }
         }
+        // Depths read less than colours, and those of tiles least.
+        assert!(counts.len() > 3, "{counts:?}");
     }
 }

@@ -6,11 +6,12 @@
 //! [`Conditions::reachable`](crate::plan::Conditions::reachable) lists all variants that can follow
 //! from it.
 
-use super::catalogue::{Entry, Features, Module, Output, Search};
+use super::catalogue::{Entry, Module, Output, Search};
 use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow};
+use crate::search::Features;
 use crate::settings::{Planes, SearchSettings, Solver};
 use std::ffi::CStr;
 
@@ -85,10 +86,7 @@ impl Kind {
     /// True if its invocations walk the tree of patches, or search a map.
     #[must_use]
     pub const fn walks(self) -> bool {
-        matches!(
-            self,
-            Self::Boxes | Self::Quads | Self::Tiles | Self::TileTree | Self::TileCopies
-        )
+        self.entry().searches()
     }
 }
 
@@ -121,8 +119,6 @@ pub struct HostLook {
 pub struct Variant {
     /// The search that finds hits.
     pub search: Search,
-    /// Features of a solid other than its shape.
-    pub features: Features,
     /// The stored values of a hit.
     pub output: Output,
     /// 1 if the box holds several replicas.
@@ -137,10 +133,8 @@ pub struct Variant {
     pub projection: u32,
     /// The search of another crate, for [`Search::External`].
     pub external: Option<External>,
-    /// Compute stage: 0 if nothing was drawn before.
-    pub depth_test: u32,
-    /// Compute stage: 0 if nothing will be drawn after.
-    pub depth_keep: u32,
+    /// Compute stage: 0 if the target has no other depths, so none is compared or kept.
+    pub depths: u32,
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
     /// one loop.
     pub lights: u32,
@@ -157,15 +151,18 @@ pub struct Variant {
     pub one_object: u32,
     /// 1 if there is one instance of it. Compute stage.
     pub one_instance: u32,
-    /// Search for live parameters: 1 if there may be a bevel.
+    /// Searches on the map: 1 if there may be a bevel.
     pub beveled: u32,
+    /// Searches on the map: 1 if that is the papers' texture of unsigned distances.
+    pub rgba8: u32,
+    /// Only depth: 1 if rays are parallel.
+    pub ortho: u32,
 }
 
 impl Variant {
     /// The variant that makes lists of patches.
     pub const LISTS: Self = Self {
         search: Search::None,
-        features: Features::Plain,
         output: Output::Color,
         cells: 0,
         shadow: g::SHADOW_OFF,
@@ -173,8 +170,7 @@ impl Variant {
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
         external: None,
-        depth_test: 1,
-        depth_keep: 1,
+        depths: 1,
         lights: 3,
         list_length: 0,
         outside: 0,
@@ -182,6 +178,8 @@ impl Variant {
         one_object: 0,
         one_instance: 0,
         beveled: 0,
+        rgba8: 0,
+        ortho: 0,
     };
 
     /// The variant that draws `object` by the search `solver`, which is the search of the settings
@@ -215,23 +213,36 @@ impl Variant {
             _ => form,
         };
         let textured = color_map != 0 || bump != g::BUMP_OFF;
-        let features = if cells != 0 || shadow != g::SHADOW_OFF {
-            Features::Full
-        } else if textured {
-            Features::Textured
-        } else {
-            Features::Plain
+        let (output, ortho) = match planes {
+            Planes::Color => (Output::Color, false),
+            Planes::All => (Output::Planes, false),
+            Planes::List(_) => (Output::List, false),
+            Planes::Depth { parallel } => (Output::Depth, parallel),
         };
-        let output = match planes {
-            Planes::Color | Planes::Depth { .. } => Output::Color,
-            Planes::All => Output::Planes,
-            Planes::List(_) => Output::List,
-        };
-        let shaded = Self {
-            search: search(settings, solver),
-            features,
+        let is_beveled = is_beveled(object);
+        // The replacement for another search has only the general form.
+        let replaces = solver == Solver::Live && settings.solver != Solver::Live;
+        let may_bevel = replaces || is_beveled || (casts && casters.beveled);
+        let of_map = |is: bool| u32::from(solver.reads_map() && is);
+        let variant = Self {
+            search: match solver {
+                Solver::Live => Search::Live,
+                Solver::Quadric | Solver::Exact => Search::Quadric,
+                Solver::Other(_) => Search::External,
+            },
             output,
             cells,
+            external: (solver.external())
+                .map(|search| External::new(search, settings, is_beveled, casts)),
+            beveled: of_map(may_bevel),
+            rgba8: of_map(settings.map_format == MapFormat::Rgba8),
+            ortho: u32::from(ortho),
+            ..Self::LISTS
+        };
+        if output == Output::Depth {
+            return variant;
+        }
+        Self {
             shadow,
             color_map,
             bump,
@@ -245,12 +256,6 @@ impl Variant {
                 Projection::Spherical => g::PROJECTION_SPHERICAL,
                 Projection::Arc => g::PROJECTION_ARC,
             },
-            external: solver.external().map(|search| {
-                let met = casts && casters.beveled;
-                External::new(search, settings, is_beveled(object), met, casts)
-            }),
-            depth_test: 1,
-            depth_keep: 1,
             lights: if casts {
                 3
             } else if host.shading {
@@ -258,39 +263,37 @@ impl Variant {
             } else {
                 lighting.lights.len().clamp(1, 3) as u32
             },
-            list_length: 0,
-            outside: 0,
-            own_tables: 0,
-            one_object: 0,
-            one_instance: 0,
-            // A replacement for another search has only the general form.
-            beveled: u32::from(
-                solver == Solver::Live
-                    && (settings.solver != Solver::Live
-                        || is_beveled(object)
-                        || (casts && casters.beveled)),
-            ),
-        };
-        match planes {
-            Planes::Depth { parallel } => shaded.depth_only(parallel),
-            _ => shaded,
+            ..variant
         }
     }
 
     /// This variant and the variants that replace it when a bevel is added or removed.
     #[must_use]
     pub fn forms(self) -> Vec<Self> {
-        let live = matches!(self.search, Search::Live | Search::LiveRgba8);
-        let twin = live.then_some(Self {
-            beveled: 1 - self.beveled,
+        let beveled = 1 - self.beveled;
+        let twin = |external| Self {
+            beveled,
+            external,
             ..self
-        });
-        let external = self.external.map(External::others).unwrap_or_default();
-        let external = external.into_iter().map(|external| Self {
-            external: Some(external),
-            ..self
-        });
-        std::iter::once(self).chain(twin).chain(external).collect()
+        };
+        let mut all = vec![self];
+        match self.external {
+            _ if self.reads_tables() => {}
+            None => all.push(twin(None)),
+            Some(one) => all.extend(one.forms(beveled != 0).map(|one| twin(Some(one)))),
+        }
+        all
+    }
+
+    /// Features of the solid other than its shape.
+    pub const fn features(&self) -> Features {
+        if self.cells != 0 || self.shadow != g::SHADOW_OFF {
+            Features::Full
+        } else if self.color_map != 0 || self.bump != g::BUMP_OFF {
+            Features::Textured
+        } else {
+            Features::Plain
+        }
     }
 
     /// True if its search walks tables.
@@ -301,7 +304,7 @@ impl Variant {
     /// True if colours are stored, not only depths.
     #[must_use]
     pub const fn is_shaded(&self) -> bool {
-        matches!(self.output, Output::Color | Output::Planes | Output::List)
+        !matches!(self.output, Output::Depth)
     }
 
     /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have
@@ -339,36 +342,13 @@ impl Variant {
                 Kind::TileTree => self.list_length.min(1),
                 _ => 0,
             },
-            depth_test: if compute { self.depth_test } else { 1 },
-            depth_keep: if compute { self.depth_keep } else { 1 },
+            depths: if compute { self.depths } else { 1 },
             ..self
         }
     }
 
-    /// The variant that stores only depth, as for a shadow map. `ortho`: along parallel rays. Only
-    /// for boxes and hulls.
-    #[must_use]
-    fn depth_only(self, ortho: bool) -> Self {
-        Self {
-            features: if self.cells == 0 {
-                Features::Plain
-            } else {
-                Features::Full
-            },
-            output: if ortho {
-                Output::DepthOrtho
-            } else {
-                Output::Depth
-            },
-            cells: self.cells,
-            external: self.external,
-            beveled: self.beveled,
-            search: self.search,
-            ..Self::LISTS
-        }
-    }
-
-    /// The module of its vertices; none in the compute stage.
+    /// The module of its vertices, before [`with_outputs_for`](super::with_outputs_for) its
+    /// fragments; none in the compute stage.
     #[must_use]
     pub fn vertices(&self, kind: Kind) -> Option<Module> {
         let entry = match kind {
@@ -378,9 +358,7 @@ impl Variant {
             Kind::Tiles => Entry::TileVertex,
             _ => return None,
         };
-        let module = self.module(kind);
-        let search = self.external.map_or(module.search, External::vertices);
-        Some(Module { search, ..module }.vertices(entry))
+        Some(Module::plain(entry))
     }
 
     /// The module of its fragments, or of its compute invocations.
@@ -393,14 +371,14 @@ impl Variant {
         Module {
             entry,
             search: self.search,
-            features: self.features,
+            features: self.features(),
             output: self.output,
         }
     }
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 16] {
+    pub fn constants(&self) -> [(u32, u32); 17] {
         let (form, known_steps) = self.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, self.cells),
@@ -409,8 +387,7 @@ impl Variant {
             (g::BUMP_ID, self.bump),
             (g::PROJECTION_ID, self.projection),
             (g::SEARCH_FORM_ID, form),
-            (g::DEPTH_TEST_ID, self.depth_test),
-            (g::DEPTH_KEEP_ID, self.depth_keep),
+            (g::DEPTHS_ID, self.depths),
             (g::LIGHTS_ID, self.lights),
             (g::LIST_LENGTH_ID, self.list_length),
             (g::KNOWN_STEPS_ID, known_steps),
@@ -418,18 +395,10 @@ impl Variant {
             (g::OWN_TABLES_ID, self.own_tables),
             (g::ONE_OBJECT_ID, self.one_object),
             (g::ONE_INSTANCE_ID, self.one_instance),
-            (g::MAY_BEVEL_ID, self.beveled),
+            (g::BEVELED_ID, self.beveled),
+            (g::RGBA8_ID, self.rgba8),
+            (g::ORTHO_ID, self.ortho),
         ]
-    }
-}
-
-/// The code of a search.
-fn search(settings: &SearchSettings, solver: Solver) -> Search {
-    match solver {
-        Solver::Live if settings.map_format == MapFormat::Rgba8 => Search::LiveRgba8,
-        Solver::Live => Search::Live,
-        Solver::Quadric | Solver::Exact => Search::Quadric,
-        Solver::Other(_) => Search::External,
     }
 }
 

@@ -15,7 +15,7 @@ mod compile;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::DrawStage;
 use crate::shader::generated::SOURCES_HASH;
-use crate::shader::{Module, instructions, shading_modules};
+use crate::shader::{Module, instructions, op, shading_modules};
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use std::collections::BTreeSet;
@@ -172,16 +172,13 @@ impl fmt::Debug for Shading {
 
 /// `(set, binding)` of a module's descriptors.
 fn bindings(words: &[u32]) -> Vec<(u32, u32)> {
-    const DECORATE: u32 = 71;
-    const BINDING: u32 = 33;
-    const DESCRIPTOR_SET: u32 = 34;
     let of = |what: u32| {
-        let all = instructions(words).filter(|(code, _)| *code == DECORATE);
-        let all = all.filter(move |(_, one)| one[2] == what);
-        all.map(|(_, one)| (one[1], one[3]))
+        let all = instructions(words).filter(|(code, _)| *code == op::DECORATE);
+        all.filter(move |(_, one)| one[2] == what)
+            .map(|(_, one)| (one[1], one[3]))
     };
-    let set = |id: u32| of(DESCRIPTOR_SET).find(|(known, _)| *known == id);
-    of(BINDING)
+    let set = |id: u32| of(op::DESCRIPTOR_SET).find(|(known, _)| *known == id);
+    of(op::BINDING)
         .filter_map(|(id, binding)| Some((set(id)?.1, binding)))
         .collect()
 }

@@ -250,7 +250,6 @@ impl Folder {
             licence: own.licence.clone().leak(),
             reads: match own.reads.is_map() {
                 true => Reads::Map {
-                    tells_bevels: true,
                     rgba8: own.unsigned,
                 },
                 false => Reads::Table(table),

@@ -21,58 +21,30 @@ impl Listed {
     }
 }
 
-/// Every module. For each search, special modules come before the general ones that can replace
-/// them.
-///
-/// Colour without textures, replicas and shadows has modules of its own, since most comparisons
-/// measure it. The RBM baseline has them in each of its forms. The full modules draw everything
-/// else.
+/// Every module. For each search, the plain module comes before the general ones that can replace
+/// it: most comparisons measure colour without textures, replicas and shadows.
 pub fn modules() -> Vec<Listed> {
     let mut all = Vec::new();
     for pass in [Pass::Fragment, Pass::Tile, Pass::Copies] {
-        let map = SearchModule {
-            pass,
-            features: Features::Plain,
-            output: Output::Color,
-            table: false,
-            bounded: true,
-            beveled: true,
-            rgba8: false,
-        };
-        for rgba8 in [false, true] {
-            let plain = SearchModule { rgba8, ..map };
-            let unbeveled = SearchModule {
-                beveled: false,
-                ..plain
-            };
-            all.push(listed("circle/search.glsl", unbeveled));
-            for hook in ["circle/search.glsl", "linear/search.glsl"] {
-                all.push(listed(hook, plain));
-                all.extend(full(plain).map(|full| listed(hook, full)));
+        for (hook, table, bounded) in [
+            ("circle/search.glsl", false, true),
+            ("linear/search.glsl", false, true),
+            ("cone/search.glsl", true, false),
+            ("relaxed/search.glsl", true, true),
+        ] {
+            let general = [Output::Color, Output::Planes].map(|output| (Features::Full, output));
+            let plain = [(Features::Plain, Output::Color)];
+            for (features, output) in plain.into_iter().chain(general) {
+                let module = SearchModule {
+                    pass,
+                    features,
+                    output,
+                    table,
+                    bounded,
+                };
+                all.push(Listed { hook, module });
             }
-        }
-        for (hook, bounded) in [("cone/search.glsl", false), ("relaxed/search.glsl", true)] {
-            let plain = SearchModule {
-                table: true,
-                bounded,
-                beveled: false,
-                ..map
-            };
-            all.push(listed(hook, plain));
-            all.extend(full(plain).map(|full| listed(hook, full)));
         }
     }
     all
-}
-
-fn listed(hook: &'static str, module: SearchModule) -> Listed {
-    Listed { hook, module }
-}
-
-fn full(plain: SearchModule) -> [SearchModule; 2] {
-    [Output::Color, Output::Planes].map(|output| SearchModule {
-        features: Features::Full,
-        output,
-        ..plain
-    })
 }

@@ -163,13 +163,9 @@ pub struct Table {
 impl Parameter {
     /// A value from its text.
     pub fn value(&self, name: &str, text: &str) -> Result<Number, String> {
-        let value = match self.default {
-            Number::Int(_) => text.parse().map(Number::Int).ok(),
-            Number::Float(_) => text.parse().map(Number::Float).ok(),
-        };
-        let kind = match self.default {
-            Number::Int(_) => "a whole number",
-            Number::Float(_) => "a number",
+        let (kind, value) = match self.default {
+            Number::Int(_) => ("a whole number", text.parse().map(Number::Int).ok()),
+            Number::Float(_) => ("a number", text.parse().map(Number::Float).ok()),
         };
         let [low, high] = self.range;
         value.filter(|v| self.allows(*v)).ok_or_else(|| {
@@ -178,6 +174,21 @@ impl Parameter {
                 self.about
             )
         })
+    }
+
+    fn check(&self, name: &str) -> Result<(), String> {
+        let kind = std::mem::discriminant(&self.default);
+        let fault = if !is_word(name, "_") {
+            "is no name; give small letters, digits and underscores".to_owned()
+        } else if (self.range.iter()).any(|n| std::mem::discriminant(n) != kind) {
+            "default and range are of two kinds; write all with a point, or all without".to_owned()
+        } else if !self.allows(self.default) {
+            let (default, [low, high]) = (self.default, self.range);
+            format!("the default {default} is outside the range {low} to {high}")
+        } else {
+            return Ok(());
+        };
+        Err(format!("parameters.{name}: {fault}"))
     }
 
     fn allows(&self, value: Number) -> bool {
@@ -201,90 +212,73 @@ impl Manifest {
         Ok(manifest)
     }
 
+    /// The first fault of the values.
     fn check(&self, own: bool) -> Result<(), String> {
-        let is_word = |text: &str, also: &str| {
-            let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || also.contains(c);
-            text.starts_with(|c: char| c.is_ascii_lowercase()) && text.chars().all(plain)
-        };
-        if !is_word(&self.name, "-") || self.name.len() > 32 {
-            return Err(format!(
-                "name: {:?} is no name; give at most 32 small letters, digits and hyphens",
-                self.name
-            ));
-        }
-        for (key, text) in [("about", &self.about), ("source", &self.source)] {
-            if text.trim().is_empty() {
-                return Err(format!("{key}: is empty; the report shows it"));
-            }
-        }
-        match (&self.steps, self.reads.is_map()) {
-            (None, true) => {
-                return Err(
-                    "steps: is missing; a search on a map has a bound, as in [steps] default = 64"
-                        .to_owned(),
-                );
-            }
-            (Some(s), _) if s.default == 0 || s.default > s.most || s.most > most() => {
-                return Err(format!(
-                    "steps: default is {} and most {}; give 1 or more by default, most at least as many and at most {}",
-                    s.default,
-                    s.most,
+        let is_named = is_word(&self.name, "-") && self.name.len() <= 32;
+        let is_empty = |text: &str| text.trim().is_empty();
+        let (reads, is_map) = (self.reads.name(), self.reads.is_map());
+        let bound = self.steps.map_or([1, 1], |s| [s.default, s.most]);
+        let [default, largest] = bound;
+        let table = self.table.as_ref();
+        let faults = [
+            (
+                !is_named,
+                format!(
+                    "name: {:?} is no name; give at most 32 small letters, digits and hyphens",
+                    self.name
+                ),
+            ),
+            (
+                is_empty(&self.about),
+                "about: is empty; the report shows it".into(),
+            ),
+            (
+                is_empty(&self.source),
+                "source: is empty; the report shows it".into(),
+            ),
+            (
+                is_map && self.steps.is_none(),
+                "steps: is missing; a search on a map has a bound, as in [steps] default = 64".into(),
+            ),
+            (
+                default == 0 || default > largest || largest > most(),
+                format!(
+                    "steps: default is {default} and most {largest}; give 1 or more by default, most at least as many and at most {}",
                     most()
-                ));
-            }
-            _ => {}
-        }
-        match (&self.table, self.reads) {
-            (None, Data::Table) => {
-                return Err(
-                    "table: is missing; name a program, as in [table] program = [\"python3\", \"table.py\"]"
-                        .to_owned(),
-                );
-            }
-            (Some(_), reads) if reads != Data::Table => {
-                return Err(format!(
-                    "table: reads is {:?}, which needs no program; write reads = \"table\"",
-                    reads.name()
-                ));
-            }
-            (Some(t), _) if !own && !t.rust.is_empty() => {
-                return Err(
-                    "table.rust: is for searches of revmap's own crates; name a program".to_owned(),
-                );
-            }
-            (Some(t), _) if t.rust.is_empty() && t.program.is_empty() => {
-                return Err("table.program: is empty; name a program".to_owned());
-            }
-            _ => {}
-        }
-        if self.unsigned && !self.reads.is_map() {
-            return Err("unsigned: is for searches on a map".to_owned());
-        }
-        for (name, parameter) in &self.parameters {
-            let place = format!("parameters.{name}");
-            if !is_word(name, "_") {
-                return Err(format!(
-                    "{place}: is no name; give small letters, digits and underscores"
-                ));
-            }
-            let kind = std::mem::discriminant(&parameter.default);
-            if parameter
-                .range
-                .iter()
-                .any(|n| std::mem::discriminant(n) != kind)
-            {
-                return Err(format!(
-                    "{place}: default and range are of two kinds; write all with a point, or all without"
-                ));
-            }
-            if !parameter.allows(parameter.default) {
-                let [low, high] = parameter.range;
-                return Err(format!(
-                    "{place}: the default {} is outside the range {low} to {high}",
-                    parameter.default
-                ));
-            }
-        }
-        Ok(())
+                ),
+            ),
+            (
+                table.is_none() && self.reads == Data::Table,
+                "table: is missing; name a program, as in [table] program = [\"python3\", \"table.py\"]".into(),
+            ),
+            (
+                table.is_some() && self.reads != Data::Table,
+                format!(
+                    "table: reads is {reads:?}, which needs no program; write reads = \"table\""
+                ),
+            ),
+            (
+                !own && table.is_some_and(|t| !t.rust.is_empty()),
+                "table.rust: is for searches of revmap's own crates; name a program".into(),
+            ),
+            (
+                table.is_some_and(|t| t.rust.is_empty() && t.program.is_empty()),
+                "table.program: is empty; name a program".into(),
+            ),
+            (
+                self.unsigned && !is_map,
+                "unsigned: is for searches on a map".into(),
+            ),
+        ];
+        let fault = faults.into_iter().find(|(is, _)| *is);
+        fault.map_or(Ok(()), |(_, message)| Err(message))?;
+        let mut parameters = self.parameters.iter();
+        parameters.try_for_each(|(name, parameter)| parameter.check(name))
     }
+}
+
+/// True if a text has small letters, digits and characters of `also`, and begins with a letter.
+fn is_word(text: &str, also: &str) -> bool {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || also.contains(c);
+    text.starts_with(|c: char| c.is_ascii_lowercase()) && text.chars().all(plain)
 }

@@ -1,6 +1,6 @@
 //! The searches of this crate, which `build.rs` reads from the folders of `published/`.
 
-use crate::modules::words;
+use crate::modules::{embedded, found};
 use revmap::search::{Reads, Search, Steps};
 use revmap::settings::Solver;
 

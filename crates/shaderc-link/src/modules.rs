@@ -42,8 +42,8 @@ pub struct Modules<'a> {
 }
 
 impl Modules<'_> {
-    /// Writes the packed modules into `modules.bin` of the output folder, one after another, and
-    /// returns Rust code: their sizes, and hashes of `sources` and of the compiler.
+    /// Writes the packed modules into the output folder, and returns Rust code for a file there: the
+    /// modules, and hashes of `sources` and of the compiler.
     pub fn embed(&self, sources: &[PathBuf]) -> Fallible<String> {
         println!("cargo::rerun-if-env-changed=REVMAP_KEEP_SPIRV");
         println!("cargo::rerun-if-changed={}", self.kept);
@@ -64,20 +64,18 @@ impl Modules<'_> {
             let hashes = format!("{hash:#018x}\n{compiler:#018x}\n");
             fs::write(Path::new(self.kept).join("sources.fnv"), hashes)?;
         }
-        let for_tests = self.all.iter().map(|module| module.for_tests);
-        let packed: Vec<_> = self
-            .packed()?
-            .into_iter()
-            .zip(for_tests)
-            .filter_map(|(bytes, for_tests)| (!for_tests).then_some(bytes))
-            .collect();
-        let sizes: Vec<usize> = packed.iter().map(Vec::len).collect();
         let out = PathBuf::from(std::env::var("OUT_DIR")?);
-        fs::write(out.join("modules.bin"), packed.concat())?;
+        let mut list = String::new();
+        let packed = self.all.iter().zip(self.packed()?);
+        for (module, bytes) in packed.filter(|(module, _)| !module.for_tests) {
+            let file = format!("{}.{ENDING}", module.name);
+            fs::write(out.join(&file), bytes)?;
+            write!(list, "include_bytes!({file:?}), ")?;
+        }
         let mut text = String::new();
         writeln!(
             text,
-            "/// Packed bytes of each module, in the order of the list.\npub(super) static MODULE_BYTES: &[usize] = &{sizes:?};\n\n\
+            "/// Each module, packed, in the order of the list.\npub(crate) static MODULES: &[&[u8]] = &[{list}];\n\n\
              /// FNV-1a of the names and texts of all sources.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
              /// FNV-1a of what the compiler makes of a fixed probe: tells compilers apart; 0 where none was used.\n\
              pub const COMPILER_HASH: u64 = {compiler:#018x};\n"

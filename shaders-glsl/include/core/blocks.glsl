@@ -34,7 +34,9 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
 // inactive; only at the very start of a compute shader do they read once for all lanes. Entry files therefore first
 // copy the members one by one. Unused copies cost nothing. Fragments receive their most frequent inputs as flat
 // varyings.
-Frame frame; // lights are not copied
+Frame frame; // its lights are not copied, but for the first two
+Light first_light;
+Light second_light;
 
 // An instance relative to the eye. The CPU computes it in double precision for each view, so that no rounding error
 // grows with the distance from the origin or the eye.
@@ -98,6 +100,10 @@ void take_frame()
     frame.ambient = frame_block.ambient;
     frame.size = frame_block.size;
     frame.pixels = frame_block.pixels;
+    first_light.towards = frame_block.lights[0].towards;
+    first_light.color = frame_block.lights[0].color;
+    second_light.towards = frame_block.lights[1].towards;
+    second_light.color = frame_block.lights[1].color;
 }
 
 // Copy the members of an object that all levels share, and those that differ, from either buffer.

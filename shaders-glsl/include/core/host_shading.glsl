@@ -2,7 +2,7 @@
 // shades, with HOST_SHADING and TEXTURED.
 #ifndef HOST_SHADING_GLSL
 #define HOST_SHADING_GLSL
-#if HOST_SHADING
+#ifdef HOST_SHADING
 
 // A point of a solid in a pixel. Positions and directions have the world's axes and units.
 struct Surface {

@@ -11,23 +11,9 @@ struct Look {
     vec3 ambient;
     Light light_0; // turned space; black if there is no light
     Light light_1;
-#if SHADOWED
     vec3 position; // position of the instance, from the eye, world axes
-#endif
-#if HOST_SHADING
     uint instance; // number of the instance among all
-#endif
 };
-
-// The first two lights. Entry files copy them like the blocks.
-Light first_light;
-Light second_light;
-
-void take_lights()
-{
-    first_light = frame_block.lights[0];
-    second_light = frame_block.lights[1];
-}
 
 Light turned_to(vec4 rotation, Light light)
 {
@@ -35,7 +21,8 @@ Light turned_to(vec4 rotation, Light light)
     return light;
 }
 
-Look look_of(Instance i)
+// `number`: that of the instance among all.
+Look look_of(Instance i, uint number)
 {
     Look look;
     look.rotation = i.rotation;
@@ -44,9 +31,8 @@ Look look_of(Instance i)
     look.ambient = frame.ambient.rgb;
     look.light_0 = turned_to(i.rotation, first_light);
     look.light_1 = turned_to(i.rotation, second_light);
-#if SHADOWED
     look.position = i.position_sx.xyz;
-#endif
+    look.instance = number;
     return look;
 }
 

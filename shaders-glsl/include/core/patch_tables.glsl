@@ -23,11 +23,7 @@ const uint RUN_BITS = 12u;
 
 bool takes_own_tables()
 {
-#if SHADOWED
     return OWN_TABLES != 0u && !casts;
-#else
-    return OWN_TABLES != 0u;
-#endif
 }
 
 // The functions below need place_own_tables() of blocks.glsl.

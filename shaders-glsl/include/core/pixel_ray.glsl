@@ -33,13 +33,13 @@ PixelRays pixel_rays(Instance i)
 // Returns the ray's origin in the plane at depth `base`. `pixel`: distance from the centre of pixel (0, 0).
 vec3 ray_origin(PixelRays rays, vec2 pixel)
 {
-    float spread = ORTHO != 0 ? 1.0 : rays.base;
+    float spread = ORTHO != 0u ? 1.0 : rays.base;
     return rays.origin + spread * (pixel.x * rays.dir_x + pixel.y * rays.dir_y);
 }
 
 vec3 ray_direction(PixelRays rays, vec2 pixel)
 {
-    if (ORTHO != 0) {
+    if (ORTHO != 0u) {
         return rays.dir_00;
     }
     return rays.dir_00 + pixel.x * rays.dir_x + pixel.y * rays.dir_y;
@@ -48,13 +48,13 @@ vec3 ray_direction(PixelRays rays, vec2 pixel)
 // Returns the width of a pixel at depth `t`, in units of depth.
 float pixel_width(float t)
 {
-    return ORTHO != 0 ? frame.dir_00.w : frame.dir_00.w * t;
+    return ORTHO != 0u ? frame.dir_00.w : frame.dir_00.w * t;
 }
 
 // Returns the depth buffer value of depth `t`, 0 to 1.
 float depth_of(float t)
 {
-    return clamp(frame.dir_x.w + (ORTHO != 0 ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);
+    return clamp(frame.dir_x.w + (ORTHO != 0u ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);
 }
 
 #endif

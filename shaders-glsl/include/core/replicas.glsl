@@ -5,7 +5,7 @@
 #define REPLICAS_GLSL
 #include "core/trace.glsl"
 
-#if REPEATED
+#ifdef REPEATED
 // Returns -1 along axes in which a cell is reflected, else 1.
 vec3 cell_sense(vec3 cell)
 {
@@ -94,7 +94,7 @@ bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
     hit.exhausted = false;
     hit.sense = vec3(1.0);
     hit.at_border = false;
-#if REPEATED
+#ifdef REPEATED
     return trace_replicas(eye, v, base, span, hit);
 #else
     return trace_solid(eye, v, base, span, false, hit);

@@ -22,7 +22,7 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
-#if TEXTURED
+#ifdef TEXTURED
 // Returns the changes of the surface point a pixel to the right and a pixel down, profile units. A replica's are in its
 // own space.
 void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
@@ -50,19 +50,6 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
     return facing > 0.0 ? reflected : vec3(0.0);
 }
 
-// Returns a light's contribution, with shadows. `n` and `view`: turned space; `point`: relative to the instance.
-vec3 lit_by(Look look, Light light, vec3 n, vec3 turned, vec3 view, vec3 albedo, vec3 point, uvec2 pixel)
-{
-    vec3 color = blinn_phong(look, light, n, view, albedo);
-#if SHADOWED
-    if (SHADOW != SHADOW_OFF && color != vec3(0.0)) {
-        Disc disc = disc_of(rotate(look.rotation, light.towards.xyz), light.towards.w, pixel);
-        color *= light_reaching(look.position, point, rotate(look.rotation, turned), disc);
-    }
-#endif
-    return color;
-}
-
 Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
 {
     Shaded s;
@@ -79,14 +66,14 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     s.albedo = look.albedo_strength.rgb;
     s.uv = vec2(0.0);
     vec3 shaded = turned;
-#if TEXTURED || OUTPUT == OUTPUT_PLANES
+#if defined(TEXTURED) || OUTPUT == OUTPUT_PLANES
     // Normal in the replica's own space, which is reflected and scaled to its cell.
     vec3 count = vec3(object.cells.xyz);
     vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
 #endif
-#if TEXTURED
+#ifdef TEXTURED
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
         vec3 right, down;
         footprints(rays, v, hit, right, down);
@@ -104,20 +91,19 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     float facing = dot(turned, view) < 0.0 ? -1.0 : 1.0;
     vec3 lit = facing * shaded;
     s.shading_normal = rotate(look.rotation, lit);
-#if HOST_SHADING
+#ifdef HOST_SHADING
     s.color = host_shade(surface_of(look, rays, pixel, hit, s, c));
     return s;
 #else
     vec3 color = s.albedo * look.ambient;
-    vec3 point = vec3(0.0); // relative to the instance's position, world axes
-#if SHADOWED
+#ifdef SHADOWED
     // A shadow ray starts off the surface, so that it cannot hit the surface itself. The offset is a few roundings for
     // exact patches and 1.5 texels for a map. Offsets are object space lengths, which a scale does not change equally
     // along all axes.
     float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * object.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
     vec3 from_axis = ray_origin(rays, pixel) + vec3(object.axis.xy, 0.0) + hit.t * v;
-    point = rotate(look.rotation, from_axis * scale + facing * lift * turned);
+    vec3 point = rotate(look.rotation, from_axis * scale + facing * lift * turned); // relative to the instance, world axes
 #endif
     // The first two lights are unrolled: a loop costs software drivers a sixth of a frame or more, even with no
     // iterations. Shadow code is so long that all lights share one loop.
@@ -130,7 +116,14 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
             Light light = turned_to(look.rotation, frame_block.lights[n]);
-            color += lit_by(look, light, lit, facing * turned, view, s.albedo, point, uvec2(pixel + 0.5));
+            vec3 reflected = blinn_phong(look, light, lit, view, s.albedo);
+#ifdef SHADOWED
+            if (SHADOW != SHADOW_OFF && reflected != vec3(0.0)) {
+                Disc disc = disc_of(rotate(look.rotation, light.towards.xyz), light.towards.w, uvec2(pixel + 0.5));
+                reflected *= light_reaching(look.position, point, rotate(look.rotation, facing * turned), disc);
+            }
+#endif
+            color += reflected;
         }
     }
     s.color = vec4(color, 1.0);

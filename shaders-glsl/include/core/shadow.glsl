@@ -1,7 +1,7 @@
 // Visible fraction of a light at a point, from rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#if SHADOWED
+#ifdef SHADOWED
 #include "core/pixel_ray.glsl"
 #include "core/replicas.glsl"
 

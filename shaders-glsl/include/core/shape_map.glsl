@@ -5,29 +5,28 @@
 #include "core/blocks.glsl"
 
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
-#if SHADOWED
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
 int shadow_map; // index of the map of the traced object, if `casts`
-bool casts = false; // true while the traced object is a possible shadow caster
+// True while the traced object is a possible shadow caster.
+#ifdef SHADOWED
+bool casts = false;
+#else
+const bool casts = false;
 #endif
 
 vec4 gather_map(vec2 at)
 {
-#if SHADOWED
     if (casts) {
         return textureGather(shadow_maps[shadow_map], at);
     }
-#endif
     return textureGather(shape_map, at);
 }
 
 vec4 filter_map(vec2 at)
 {
-#if SHADOWED
     if (casts) {
         return textureLod(shadow_maps[shadow_map], at, 0.0);
     }
-#endif
     return textureLod(shape_map, at, 0.0);
 }
 
@@ -72,7 +71,7 @@ vec2 papers_coordinates(vec2 rz)
 
 float map_distance(vec2 rz)
 {
-    if (RGBA8 != 0) {
+    if (RGBA8 != 0u) {
         return filter_map(papers_coordinates(rz)).b * object.map.w;
     }
     return cell_distance(shape_cell(rz));
@@ -107,7 +106,7 @@ vec2 creased_gradient(vec2 rz, vec2 along)
 // Returns the gradient of the map, not normalised.
 vec2 map_gradient(vec2 rz, vec2 along)
 {
-    if (RGBA8 != 0) {
+    if (RGBA8 != 0u) {
         return filter_map(papers_coordinates(rz)).rg * 2.0 - 1.0;
     }
     return creased_gradient(rz, along);

@@ -13,11 +13,7 @@
 #endif
 
 // True if rays begin outside the solid and the box does not cut it. Rays towards lights may begin anywhere.
-#if SHADOWED
 #define FROM_OUTSIDE (OUTSIDE != 0u && !casts)
-#else
-#define FROM_OUTSIDE (OUTSIDE != 0u)
-#endif
 
 // Returns true if a point is in the solid; reads only m.o and m.c.
 #if SEARCH == SEARCH_QUADRIC
@@ -83,10 +79,10 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
         return true;
     }
     // A ray within the solid hits the back of its boundary. Unsigned distances cannot distinguish inside from outside.
-    float side = within && (inside || m.from_eye) && RGBA8 == 0 ? -1.0 : 1.0;
+    float side = within && (inside || m.from_eye) && RGBA8 == 0u ? -1.0 : 1.0;
     vec4 quadric;
     uint end = search_any(m, side, f, span - m.t_start, s, hit.steps, quadric);
-#if REPEATED && SEARCH == SEARCH_QUADRIC
+#if defined(REPEATED) && SEARCH == SEARCH_QUADRIC
     // A floor or ceiling at a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
     end = REPLICAS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;

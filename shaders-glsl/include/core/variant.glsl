@@ -17,7 +17,11 @@
 #define OUTPUT_DEPTH 2  // no shading at all
 #define OUTPUT_LIST 3   // planes by a host's list
 
-// Macros that build.rs does not define are 0.
+// Other macros are defined or not:
+// - TEXTURED: colours or bumps may come from maps;
+// - REPEATED: the box may hold several replicas;
+// - SHADOWED: solids may cast shadows;
+// - HOST_SHADING: a function of the host shades; lights and shadows of the library are left out.
 #ifndef SEARCH
 #define SEARCH SEARCH_NONE
 #endif
@@ -27,52 +31,43 @@
 #ifndef SEARCH_BOUNDED
 #define SEARCH_BOUNDED 0 // 1: the steps of a search on a table are limited too
 #endif
-#ifndef RGBA8
-#define RGBA8 0 // 1: the papers' texture of unsigned distance; else one channel of signed distance
-#endif
-#ifndef TEXTURED
-#define TEXTURED 0 // 1: colours or bumps may come from maps
-#endif
-#ifndef REPEATED
-#define REPEATED 0 // 1: the box may hold several replicas
-#endif
-#ifndef SHADOWED
-#define SHADOWED 0 // 1: solids may cast shadows
-#endif
 #ifndef OUTPUT
 #define OUTPUT OUTPUT_COLOR
 #endif
-#ifndef ORTHO
-#define ORTHO 0 // 1: rays are parallel
-#endif
-#ifndef HOST_SHADING
-#define HOST_SHADING 0 // 1: a function of the host shades; lights and shadows of the library are left out
-#endif
 
 // Smaller variations are specialisation constants.
-#if REPEATED
+#ifdef REPEATED
 layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
 #else
 const uint REPLICAS = 0u;
 #endif
-#if SHADOWED
+#ifdef SHADOWED
 layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #else
 const uint SHADOW = 0u;
 #endif
-#if TEXTURED
+#ifdef TEXTURED
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
 layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
 #endif
-#if TEXTURED || OUTPUT == OUTPUT_PLANES
+#if defined(TEXTURED) || OUTPUT == OUTPUT_PLANES
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
+#endif
+#if OUTPUT == OUTPUT_DEPTH
+layout(constant_id = 23) const uint ORTHO = 0u; // 1: rays are parallel
+#else
+const uint ORTHO = 0u;
+#endif
+#if READS_MAP
+layout(constant_id = 24) const uint RGBA8 = 0u; // 1: the papers' map of unsigned distance; else one channel, signed
+#else
+const uint RGBA8 = 0u;
 #endif
 #if SEARCH == SEARCH_EXTERNAL
 layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches that share their modules
 layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the object's block
 #endif
-layout(constant_id = 6) const uint DEPTH_TEST = 1u; // 0: nothing was drawn before, so no depth is compared
-layout(constant_id = 7) const uint DEPTH_KEEP = 1u; // 0: nothing is drawn later that reads depths
+layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: the target has no other depths: none is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
 // 1: the box does not cut the solid, and the eye is outside it. Cells and listed patches always have the eye outside;
 // for them only the first condition counts.
@@ -87,10 +82,7 @@ layout(constant_id = 19) const uint VIEWS = 1u; // views of the pass; more than 
 layout(constant_id = 20) const uint VIEW_INDEX = 0u; // replaced by gl_ViewIndex in src/shader/view_index.rs
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
-layout(constant_id = 16) const uint MAY_BEVEL = 0u; // 1: there may be a bevel
-#ifndef BEVELED
-#define BEVELED (MAY_BEVEL != 0u) // unless the module defines it
-#endif
+layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 1 if it walks the tree; 0: no list
 
 const uint PROJECTION_PLANAR = 1u;

@@ -13,11 +13,13 @@ bool trace_cell(vec2 pixel, out Hit hit)
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * PATCHES_PER_CELL; ++k) {
         uint at = cell_record + 2u * k;
-        take_patch_of_row(row, uintBitsToFloat(patch_tables[at + 1u]), uintBitsToFloat(patch_tables[at + 2u]));
+        vec4 quadric = uintBitsToFloat(patch_tables[at + 1u]);
+        vec4 guard = uintBitsToFloat(patch_tables[at + 2u]);
+        take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric);
     }
     if (FETCHED_CELLS == 0u) {
         [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
-            take_patch_of_row(row, cell_quadric[k], cell_guard[k]);
+            take_nearer(row.m, cell_quadric[k], cell_guard[k], row.least, row.best, row.quadric);
         }
     }
     return end_row(row, PATCHES_PER_CELL, hit);

@@ -1,10 +1,8 @@
 // Search for live parameters. It reads only the map, so nothing is rebuilt when e, b or c change.
 //
-// Safe steps (proof in docs/searches.md): after x units of s the ray is at most sigma x + kappa x^2 / 2 away from the
-// sample in the half-plane. w is concave along the ray and stays below its tangent. There is no hit while the sum of
-// both is less than F. If the secant of the last two samples puts the surface farther away, the step is extended
-// towards it by at most a texel; it can miss no more than a chord of a texel. A minimum step near the surface brackets
-// the surface, and the secant through the bracket gives the hit. A ray that only comes close is never a hit.
+// docs/searches.md has the bound of a safe step and its proof. If the secant of the last two samples puts the surface
+// farther away, the step is extended towards it by at most a texel. A minimum step near the surface brackets the
+// surface, and the secant through the bracket gives the hit. A ray that only comes close is never a hit.
 #ifndef SEARCH_LIVE_GLSL
 #define SEARCH_LIVE_GLSL
 #include "core/surface.glsl"

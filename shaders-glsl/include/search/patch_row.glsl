@@ -27,11 +27,6 @@ PatchRow begin_row(PixelRays rays, vec2 pixel)
     return row;
 }
 
-void take_patch_of_row(inout PatchRow row, vec4 quadric, vec4 guard)
-{
-    take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric);
-}
-
 // Returns true if one of `count` patches was hit.
 bool end_row(PatchRow row, uint count, out Hit hit)
 {

@@ -27,12 +27,6 @@ layout(set = 2, binding = 6, std430) BIN_WORDS buffer BinWords {
     uint bin_words[];
 };
 
-// Returns the first word of the head of bin `k`.
-uint bin_head(uint k)
-{
-    return pushed.heads + 4u * k;
-}
-
 // Returns the first word of the records of bin `k`.
 uint bin_records(uint k)
 {

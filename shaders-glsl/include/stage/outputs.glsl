@@ -32,7 +32,7 @@ float biased_depth(PixelRays rays, vec2 pixel, Hit hit)
     // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
     vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
     float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
-    float slope = abs(ORTHO != 0 ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
+    float slope = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
     float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
     return clamp(depth_of(t) + frame.forward.w * bias, 0.0, 1.0);
 }

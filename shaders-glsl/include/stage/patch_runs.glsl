@@ -37,7 +37,7 @@ uvec2 lengths_of(PatchRuns runs)
 // Adds a record to bin `n`. Heads are zero at first; the first record completes the indirect dispatch.
 void append(uint n, uvec4 record)
 {
-    uint head = bin_head(n);
+    uint head = pushed.heads + 4u * n;
     uint index = atomicAdd(bin_words[head], 1u);
     if (index == 0u) {
         bin_words[head + 1u] = 1u;

@@ -16,7 +16,7 @@ layout(set = 2, binding = 5, rgba32f) uniform writeonly image2D albedo_v;
 // Returns the depth limit: a hit must be nearer.
 float drawn_depth(uvec2 pixel)
 {
-    return DEPTH_TEST != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
+    return DEPTHS != 0u ? uintBitsToFloat(pixel_words[depth_word(pixel)]) : 1.0;
 }
 
 // Adds the look-ups of a pixel, with or without a hit.
@@ -38,7 +38,7 @@ uint pack_srgb(vec4 linear)
 
 void store(uvec2 pixel, float depth, Shaded s)
 {
-    if (DEPTH_KEEP != 0u) {
+    if (DEPTHS != 0u) {
         pixel_words[depth_word(pixel)] = floatBitsToUint(depth);
     }
 #if OUTPUT == OUTPUT_PLANES

@@ -8,13 +8,6 @@ Instance tile_instance;
 Look tile_look;
 PixelRays tile_rays;
 
-// Loads frame and lights. Tile shaders call this first.
-void begin_frame()
-{
-    take_frame();
-    take_lights();
-}
-
 uint record_word(uint n)
 {
     uint at = 4u * gl_WorkGroupID.x + n + (LIST_LENGTH != 0u ? bin_records(pushed.bin) : 4u * pushed.first);
@@ -36,10 +29,7 @@ uvec2 tile_corner()
 // Computes look and rays from the instance and its object.
 void begin_tile()
 {
-    tile_look = look_of(tile_instance);
-#if HOST_SHADING
-    tile_look.instance = ONE_INSTANCE != 0u ? pushed.instance : tile_record.y;
-#endif
+    tile_look = look_of(tile_instance, ONE_INSTANCE != 0u ? pushed.instance : tile_record.y);
     tile_rays = pixel_rays(tile_instance);
 }
 
@@ -48,7 +38,7 @@ void store_tile(uvec2 pixel, bool found, Hit hit)
     float depth = depth_of(tile_rays.base + hit.t);
     if (all(lessThan(pixel, frame.size.xy))) {
         count_steps(pixel, hit);
-        if (found && (DEPTH_TEST == 0u || depth < drawn_depth(pixel))) {
+        if (found && (DEPTHS == 0u || depth < drawn_depth(pixel))) {
             store(pixel, depth, shade(tile_look, tile_rays, pixel, hit));
         }
     }

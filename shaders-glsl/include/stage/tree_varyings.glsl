@@ -4,55 +4,27 @@
 #include "stage/varyings.glsl"
 
 layout(location = 11) flat VARYING vec4 tree_bounds;
-layout(location = 12) flat VARYING vec4 tree_axis; // OUTPUT_DEPTH: z is the instance's index
-#if READS_MAP
+layout(location = 12) flat VARYING vec2 tree_axis;
 layout(location = 13) flat VARYING vec4 tree_map;
-#endif
-#if TAKES_STEPS
 layout(location = 14) flat VARYING vec4 tree_offset;
-#endif
-#if READS_TABLES
 layout(location = 15) flat VARYING uvec4 tree_patches;
-#endif
-#if READS_TABLES && !TAKES_STEPS
-layout(location = 13) flat VARYING vec2 tree_span; // range of t outside which no ray has a hit
-#endif
+layout(location = 16) flat VARYING vec2 tree_span; // range of t outside which no ray has a hit
 
 #ifdef VERTEX_GLSL
 void hand_over_tree(vec2 span)
 {
-#if READS_TABLES && !TAKES_STEPS
-    tree_span = span;
-#endif
     tree_bounds = object.bounds;
-    tree_axis = OUTPUT == OUTPUT_DEPTH ? vec4(object.axis.xy, float(instance_number), 0.0) : object.axis;
-#if READS_MAP
+    tree_axis = object.axis.xy;
     tree_map = object.map;
-#endif
-#if TAKES_STEPS
     tree_offset = object.offset;
-#endif
-#if READS_TABLES
     tree_patches = object.patches;
-#endif
+    tree_span = span;
 }
 #else
-vec2 span_of_rays()
-{
-#if READS_TABLES && !TAKES_STEPS
-    return tree_span;
-#else
-    return EVERYWHERE;
-#endif
-}
-
 void take_over_tree()
 {
-#if OUTPUT == OUTPUT_DEPTH && REPEATED
-    take_object(instances[uint(tree_axis.z)].object.x);
-#endif
     object.bounds = tree_bounds;
-    object.axis = tree_axis;
+    object.axis.xy = tree_axis;
 #if READS_MAP
     object.map = tree_map;
 #endif
@@ -63,6 +35,11 @@ void take_over_tree()
     object.patches = tree_patches;
     place_own_tables();
 #endif
+}
+
+vec2 span_of_rays()
+{
+    return SEARCH == SEARCH_QUADRIC ? tree_span : EVERYWHERE;
 }
 #endif
 

@@ -1,5 +1,5 @@
-// Flat varyings of every proxy and tile, constant over an instance. Vertex shaders define VARYING as `out`. They are
-// compiled so that they write no varying that no fragment reads.
+// Flat varyings of every proxy and tile, constant over an instance. Vertex shaders define VARYING as `out`. A pipeline
+// leaves out those that its fragments do not read (src/shader/outputs.rs).
 #ifndef VARYINGS_GLSL
 #define VARYINGS_GLSL
 #include "core/look.glsl"
@@ -13,7 +13,6 @@ layout(location = 1) flat VARYING vec4 ray_origin_base;
 layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block; for cells the sense of depth
 layout(location = 3) flat VARYING vec4 ray_dir_x;  // w of this and the next: as in the frame's block
 layout(location = 4) flat VARYING vec4 ray_dir_y;
-#if OUTPUT != OUTPUT_DEPTH
 layout(location = 0) flat VARYING vec4 look_rotation;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;
@@ -21,16 +20,13 @@ layout(location = 7) flat VARYING vec4 look_ambient; // w: the instance's index
 layout(location = 8) flat VARYING vec4 look_light_0; // xyz: direction to the light; w: red of its colour
 layout(location = 9) flat VARYING vec4 look_light_1; // like look_light_0
 layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both lights
-#endif
 
 #ifndef VERTEX_GLSL
 // Loads the frame and the object. Fragments call this first.
 void take_over()
 {
     take_frame();
-#if OUTPUT != OUTPUT_DEPTH
     take_object(instances[uint(look_ambient.w)].object.x);
-#endif
     frame.dir_00.w = ray_dir_00.w;
     frame.dir_x.w = ray_dir_x.w;
     frame.dir_y.w = ray_dir_y.w;
@@ -41,7 +37,6 @@ PixelRays varying_rays()
     return PixelRays(ray_origin_base.xyz, ray_origin_base.w, ray_dir_00.xyz, ray_dir_x.xyz, ray_dir_y.xyz);
 }
 
-#if OUTPUT != OUTPUT_DEPTH
 Look varying_look()
 {
     Look look;
@@ -53,15 +48,10 @@ Look varying_look()
     look.light_0.color.rgb = vec3(look_light_0.w, look_colors.xy);
     look.light_1.towards.xyz = look_light_1.xyz;
     look.light_1.color.rgb = vec3(look_light_1.w, look_colors.zw);
-#if SHADOWED
-    look.position = instances[uint(look_ambient.w)].position_sx.xyz;
-#endif
-#if HOST_SHADING
     look.instance = uint(look_ambient.w);
-#endif
+    look.position = instances[look.instance].position_sx.xyz;
     return look;
 }
-#endif
 #endif
 
 #endif

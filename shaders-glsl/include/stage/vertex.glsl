@@ -7,11 +7,10 @@
 // Index of this vertex's instance among all.
 uint instance_number;
 
-// Loads frame, lights and object and returns instance `number`. Vertex shaders call this first.
+// Loads frame and object and returns instance `number`. Vertex shaders call this first.
 Instance begin(uint number)
 {
     take_frame();
-    take_lights();
     instance_number = number;
     Instance i = instances[number];
     take_object(i.object.x);
@@ -30,8 +29,7 @@ void hand_over(Instance i, float scale)
     ray_dir_00 = vec4(rays.dir_00, scale);
     ray_dir_x = vec4(rays.dir_x, frame.dir_x.w);
     ray_dir_y = vec4(rays.dir_y, frame.dir_y.w);
-#if OUTPUT != OUTPUT_DEPTH
-    Look look = look_of(i);
+    Look look = look_of(i, instance_number);
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
@@ -39,7 +37,6 @@ void hand_over(Instance i, float scale)
     look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
     look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);
-#endif
 }
 
 #endif

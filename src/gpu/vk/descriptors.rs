@@ -172,55 +172,55 @@ pub(crate) unsafe fn write(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::{Kind, SETS};
-    use crate::shader::tests::{instructions, op};
-    use crate::shader::{modules, words};
+    use super::SETS;
+    use crate::shader::{instructions, modules, op, words};
     use std::collections::BTreeSet;
 
     /// The table of descriptors agrees with every binding that a module reads.
     #[test]
     fn descriptors_are_those_of_the_shaders() {
-        // Opcodes, decorations and a storage class of the SPIR-V specification.
-        const IMAGE: u32 = 25;
-        const SAMPLED: u32 = 27;
-        const ARRAY: u32 = 28;
-        const POINTER: u32 = 32;
         const VARIABLE: u32 = 59;
-        const UNIFORM: u32 = 2;
-        let [binding_is, set_is] = [33, 34];
+        const POINTER: u32 = 32;
+        const SAMPLED: u32 = 27;
+        const IMAGE: u32 = 25;
+        const ARRAY: u32 = 28;
         let mut seen = BTreeSet::new();
         for module in modules() {
             let words = words(&module).unwrap();
-            let all = instructions(&words);
-            let decorated = |id: u32, by: u32| {
-                let mut found = all.iter().filter(|(code, _)| *code == op::DECORATE);
-                found.find(|(_, w)| w[..2] == [id, by]).map(|(_, w)| w[2])
+            let all: Vec<_> = instructions(&words)
+                .map(|(code, one)| (code, one[1..].to_vec()))
+                .collect();
+            let decorated = |id: u32, what: u32| {
+                let of = |(code, w): &&(u32, Vec<u32>)| {
+                    *code == op::DECORATE && w[0] == id && w[1] == what
+                };
+                all.iter().find(of).map(|(_, w)| w[2])
             };
             let defined = |id: u32| {
-                let mut types = all.iter().filter(|(code, _)| (19..=39).contains(code));
-                *types.find(|(_, w)| w[0] == id).unwrap()
+                all.iter()
+                    .find(|(code, w)| is_type(*code) && w[0] == id)
+                    .unwrap()
             };
             for (_, w) in all.iter().filter(|(code, _)| *code == VARIABLE) {
-                let (Some(set), Some(binding)) =
-                    (decorated(w[1], set_is), decorated(w[1], binding_is))
-                else {
+                let (Some(set), Some(binding)) = (decorated(w[1], 34), decorated(w[1], 33)) else {
                     continue;
                 };
                 let (code, pointer) = defined(w[0]);
-                assert_eq!(code, POINTER);
+                assert_eq!(*code, POINTER);
                 let mut of = defined(pointer[2]);
                 if of.0 == ARRAY {
                     of = defined(of.1[1]);
                 }
-                let wanted: &[Kind] = match (w[2], of.0) {
-                    (_, SAMPLED) => &[Kind::COMBINED_IMAGE_SAMPLER],
-                    (_, IMAGE) => &[Kind::STORAGE_IMAGE],
-                    (UNIFORM, _) => &[Kind::UNIFORM_BUFFER, Kind::UNIFORM_BUFFER_DYNAMIC],
-                    _ => &[Kind::STORAGE_BUFFER],
+                use ash::vk::DescriptorType as T;
+                let wanted: &[T] = match (w[2], of.0) {
+                    (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
+                    (_, IMAGE) => &[T::STORAGE_IMAGE],
+                    (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
+                    _ => &[T::STORAGE_BUFFER],
                 };
-                let known = SETS[set as usize][binding as usize].kind;
+                let known = SETS[set as usize][binding as usize];
                 assert!(
-                    wanted.contains(&known),
+                    wanted.contains(&known.kind),
                     "{}: {set}, {binding}",
                     module.name()
                 );
@@ -229,5 +229,10 @@ mod tests {
         }
         let all: usize = SETS.iter().map(|set| set.len()).sum();
         assert_eq!(seen.len(), all, "bindings that no shader reads");
+    }
+
+    /// True if an opcode defines a type.
+    fn is_type(code: u32) -> bool {
+        (19..=39).contains(&code)
     }
 }

@@ -5,7 +5,7 @@
 
 void main()
 {
-    begin_frame();
+    take_frame();
     take_record();
     take_object(ONE_OBJECT != 0u ? pushed.object : tile_instance.object.x);
     begin_tile();

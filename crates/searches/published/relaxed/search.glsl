@@ -68,13 +68,8 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
 // Relaxed cones are for rays from outside. Rays towards lights take the others, which pass nothing.
 uint search(Meridian m, float side, inout float s, inout uint steps, out vec4 quadric)
 {
-#if SHADOWED
-    bool relaxed = side > 0.0 && !casts;
-#else
-    bool relaxed = side > 0.0;
-#endif
     uint end;
-    if (relaxed) {
+    if (side > 0.0 && !casts) {
         end = search_relaxed(m, s, steps, quadric);
     } else {
         end = search_cone(m, side, s, steps, quadric);

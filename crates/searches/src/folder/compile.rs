@@ -31,8 +31,6 @@ pub fn compile(solver: Solver) -> Result<()> {
                 output: Output::Color,
                 table: !folder.manifest.reads.is_map(),
                 bounded: folder.manifest.steps.is_some(),
-                beveled: false,
-                rgba8: false,
             },
         )?;
     }

@@ -27,18 +27,11 @@ static TABLES: Mutex<Vec<(u64, SearchTable)>> = Mutex::new(Vec::new());
 pub fn table(folder: &Folder, contour: &Contour, rows: u32) -> Result<SearchTable> {
     let input = input(folder, contour, rows);
     let key = Fnv::of([&folder.hash.to_le_bytes()[..], input.as_bytes()]);
-    let kept = || {
-        Some(
-            TABLES
-                .lock()
-                .ok()?
-                .iter()
-                .find(|(k, _)| *k == key)?
-                .1
-                .clone(),
-        )
-    };
-    if let Some(table) = kept() {
+    let kept = TABLES.lock().ok().and_then(|all| {
+        let found = all.iter().find(|(known, _)| *known == key);
+        found.map(|(_, table)| table.clone())
+    });
+    if let Some(table) = kept {
         return Ok(table);
     }
     let words = folder.manifest.table.as_ref().map(|t| t.program.as_slice());

@@ -73,14 +73,7 @@ impl Pipelines {
     }
 
     /// The fragments of a pass: for its depth order, and with its attachments.
-    fn fragments(
-        &self,
-        variant: &Variant,
-        module: &Module,
-        pass: &PassFormats,
-        host: Option<&BoundShading>,
-    ) -> Result<ShaderModule<'_>> {
-        let mut words = self.words(variant, module, host)?;
+    fn fragments(&self, mut words: Vec<u32>, pass: &PassFormats) -> Result<ShaderModule<'_>> {
         if pass.depth == DepthOrder::Reversed {
             words = depth_less(&words);
         }
@@ -132,15 +125,13 @@ impl Pipelines {
         specialization: &vk::SpecializationInfo<'_>,
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
-        let mut vertices = self.words(variant, vertex, None)?;
-        if let Some(host) = host {
-            vertices = with_outputs_for(&vertices, host.shading.words(fragment)?);
-        }
+        let fragments = self.words(variant, fragment, host)?;
+        let mut vertices = with_outputs_for(&self.words(variant, vertex, None)?, &fragments);
         if pass.views > 1 {
             vertices = with_view_index(&vertices);
         }
         let vertex = self.shader(&vertices)?;
-        let fragment = self.fragments(variant, fragment, pass, host)?;
+        let fragment = self.fragments(fragments, pass)?;
         let stages = [
             vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
             fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::mem::offset_of;
 use std::sync::{Arc, Mutex};
 
-/// Sizes and hashes of the shaders, from `build.rs`.
+/// The packed shaders and hashes, from `build.rs`.
 #[allow(clippy::unreadable_literal, dead_code)]
 pub(in super::super) mod generated {
     include!(concat!(env!("OUT_DIR"), "/mesh.rs"));
@@ -21,10 +21,7 @@ pub(in super::super) mod generated {
 
 /// The words of shader `n` of `build.rs`.
 pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
-    let packed = include_bytes!(concat!(env!("OUT_DIR"), "/modules.bin"));
-    let start = generated::MODULE_BYTES.iter().take(n).sum();
-    let bytes = *generated::MODULE_BYTES.get(n)?;
-    unpacked(packed.get(start..)?.get(..bytes)?)
+    unpacked(generated::MODULES.get(n)?)
 }
 
 /// What a pipeline is made for.

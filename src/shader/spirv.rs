@@ -1,0 +1,61 @@
+//! The instructions of SPIR-V modules, and the edit for reversed depth.
+
+/// Words before the first instruction.
+pub const HEADER: usize = 5;
+/// Word of the header that is larger than every id.
+pub const BOUND: usize = 3;
+
+/// Opcodes, decorations, builtins, capabilities, modes and storage classes of the specification.
+pub mod op {
+    pub const ENTRY_POINT: u32 = 15;
+    pub const EXECUTION_MODE: u32 = 16;
+    pub const CAPABILITY: u32 = 17;
+    pub const TYPE_POINTER: u32 = 32;
+    pub const SPEC_CONSTANT: u32 = 50;
+    pub const VARIABLE: u32 = 59;
+    pub const LOAD: u32 = 61;
+    pub const DECORATE: u32 = 71;
+    pub const LABEL: u32 = 248;
+
+    pub const SPEC_ID: u32 = 1;
+    pub const BUILTIN: u32 = 11;
+    pub const LOCATION: u32 = 30;
+    pub const BINDING: u32 = 33;
+    pub const DESCRIPTOR_SET: u32 = 34;
+
+    pub const VIEW_INDEX: u32 = 4440;
+    pub const MULTIVIEW: u32 = 4439;
+    pub const DEPTH_GREATER: u32 = 14;
+    pub const DEPTH_LESS: u32 = 15;
+
+    pub const INPUT: u32 = 1;
+    pub const OUTPUT: u32 = 3;
+    pub const PRIVATE: u32 = 6;
+}
+
+/// The instructions of a module: opcode, all words.
+pub fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
+    let mut at = HEADER;
+    std::iter::from_fn(move || {
+        let count = (*words.get(at)? >> 16) as usize;
+        let one = words.get(at..at + count.max(1))?;
+        at += count.max(1);
+        Some((one[0] & 0xffff, one))
+    })
+}
+
+/// A module's words for reversed depth. Fragments that declare a depth no nearer than their
+/// triangle then declare it for depth that decreases away from the eye.
+#[must_use]
+pub fn depth_less(words: &[u32]) -> Vec<u32> {
+    let mut out = words[..HEADER].to_vec();
+    for (code, one) in instructions(words) {
+        match *one {
+            [first, entry, op::DEPTH_GREATER] if code == op::EXECUTION_MODE => {
+                out.extend([first, entry, op::DEPTH_LESS]);
+            }
+            _ => out.extend(one),
+        }
+    }
+    out
+}
