@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn the_mean_of_black_and_white_is_half_the_light() {
-        let white = |k: u32| (k + k / 8) % 2 == 0;
+        let white = |k: u32| (k + k / 8).is_multiple_of(2);
         let board = (0..64).map(|k| if white(k) { [255; 4] } else { [0, 0, 0, 255] });
         let map = ColorMap::from_texels(8, 8, board.collect()).unwrap();
         assert_eq!(map.levels.len(), 4);
