@@ -221,12 +221,13 @@ impl Chart {
                 continue;
             }
             let label = match self.series {
+                SeriesBy::Scene => None,
+                SeriesBy::Source if self.most_exact => None,
                 SeriesBy::Source => {
                     Some(format!("{} {}", s.method.name(), row.map_rows.unwrap_or(0)))
                 }
                 SeriesBy::Method => label(context, s),
                 SeriesBy::Way => label(context, s).filter(|_| s.method.is_mesh()),
-                SeriesBy::Scene => None,
             };
             let wide = |name: &str, cell: &Cell| match cell {
                 Cell::Known(_) => false,
