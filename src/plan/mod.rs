@@ -232,7 +232,12 @@ impl FramePlan {
                 outside: u32::from(outside),
                 ..variants[n]
             };
-            let layer = Layer::of(&mut layers, objects, n as u32, (variant.of_kind(kind), kind));
+            let layer = Layer::of(
+                &mut layers,
+                objects,
+                n as u32,
+                (variant.of_kind(kind), kind),
+            );
             layers[layer].draws.extend(draws);
         }
         for layer in layers {
