@@ -92,6 +92,6 @@ mod tests {
             assert_eq!(instructions(&edited).filter(is_builtin).count(), 1);
             found += 1;
         }
-        assert_eq!(found, 5);
+        assert_eq!(found, 4);
     }
 }
