@@ -63,18 +63,18 @@ pub(super) struct Dealer<'a> {
 impl Dealer<'_> {
     /// Distributes the copies of tiles, nearest first, and returns the lists of each layer. A tile is
     /// given by its position, in tiles.
-    pub fn deal<'a>(
+    pub fn deal<Copies: Iterator<Item = TileCopy>>(
         &self,
-        tiles: impl Iterator<Item = ([u32; 2], &'a [TileCopy])>,
+        tiles: impl Iterator<Item = ([u32; 2], Copies)>,
     ) -> Vec<BandRecords> {
         let mut lists: Vec<BandRecords> = Vec::new();
         lists.resize_with(self.queues.len(), BandRecords::default);
         let mut rest = Vec::new();
         for (place, here) in tiles {
             rest.clear();
-            rest.extend_from_slice(here);
+            rest.extend(here);
             if self.compute
-                && let Some(n) = self.single_of(here)
+                && let Some(n) = self.single_of(&rest)
             {
                 let one = rest.remove(n);
                 let to = &mut lists[self.layer_of[one.batch as usize] as usize];
@@ -323,7 +323,11 @@ mod tests {
     };
 
     fn dealt(tiles: &Tiles, dealer: &Dealer) -> Vec<BandRecords> {
-        dealer.deal(tiles.iter().map(|(place, here)| (*place, &here[..])))
+        dealer.deal(
+            tiles
+                .iter()
+                .map(|(place, here)| (*place, here.iter().copied())),
+        )
     }
 
     /// The lists that work groups search, and the number of idle invocations.
