@@ -27,8 +27,9 @@ pub use memory::{Buffer, Image, ImageKind};
 pub use open::{Device, HostDevice, Requirements};
 pub use renderer::Renderer;
 pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
-pub use renderer::prepare::{FrameStatistics, PreparedFrame};
+pub use renderer::prepare::PreparedFrame;
 pub use renderer::prewarm::Prewarm;
+pub use renderer::slot::FrameStatistics;
 pub use resources::textures::HostImage;
 pub use vk::call::{allocation_error, vulkan_error};
 pub use vk::output::{

@@ -87,43 +87,7 @@ pub(super) fn add(
         records.push(crowd_object(of, [first, first + count], layer, with));
         first += count;
     }
-    let call_of = |layer: u32| {
-        let command = places.head + g::CROWD_HEAD + g::LAYER_HEAD * layer;
-        if with.compute {
-            let of = &objects[layers[layer as usize].objects[0] as usize];
-            Call::Indirect(
-                command,
-                Pushed {
-                    records: places.records + 3 * PIXELS * layer * across * down,
-                    heads: command + LAYER_RECORDS,
-                    object: of.number,
-                    instance: of.first_instance,
-                    ..Pushed::default()
-                },
-            )
-        } else {
-            Call::IndirectTiles(command)
-        }
-    };
-    let first_phase = plan.steps.last().map_or(2, |step| step.phase.max(1) + 1);
-    for (n, layer) in (0u32..).zip(&layers) {
-        let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
-        plan.compares_depths |= several || (with.compute && with.host_depths);
-        let variant = with_depths(layer.variant, plan.compares_depths);
-        plan.steps.push(Step {
-            phase: if with.compute { first_phase + n } else { 0 },
-            variant: variant.of_kind(kind),
-            kind,
-            object: layer.objects[0],
-            call: call_of(n),
-        });
-    }
-    if with.compute && plan.compares_depths {
-        // Tiles that were drawn before keep their depths.
-        for step in &mut plan.steps {
-            step.variant = with_depths(step.variant, true).of_kind(step.kind);
-        }
-    }
+    add_draws(plan, objects, &layers, &places, with);
     plan.crowds = Some(Crowds {
         steps: list_steps(copies, lists, &places, layers[0].objects[0]),
         block: block(
@@ -142,8 +106,58 @@ pub(super) fn add(
     });
 }
 
+/// Adds the steps that draw the crowds of each layer.
+fn add_draws(
+    plan: &mut FramePlan,
+    objects: &[PlanObject],
+    layers: &[Layer],
+    places: &Places,
+    with: &Conditions,
+) {
+    let [.., kind] = with.crowd_kinds();
+    let call_of = |layer: u32| {
+        let command = places.head + g::CROWD_HEAD + g::LAYER_HEAD * layer;
+        if with.compute {
+            let of = &objects[layers[layer as usize].objects[0] as usize];
+            Call::Indirect(
+                command,
+                Pushed {
+                    records: places.records + 3 * PIXELS * layer * places.tiles,
+                    heads: command + LAYER_RECORDS,
+                    object: of.number,
+                    instance: of.first_instance,
+                    ..Pushed::default()
+                },
+            )
+        } else {
+            Call::IndirectTiles(command)
+        }
+    };
+    let first_phase = plan.steps.last().map_or(2, |step| step.phase.max(1) + 1);
+    for (n, layer) in (0u32..).zip(layers) {
+        let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
+        plan.compares_depths |= several || (with.compute && with.host_depths);
+        let variant = with_depths(layer.variant, plan.compares_depths);
+        plan.steps.push(Step {
+            phase: if with.compute { first_phase + n } else { 0 },
+            variant: variant.of_kind(kind),
+            kind,
+            object: layer.objects[0],
+            call: call_of(n),
+        });
+    }
+    if with.compute && plan.compares_depths {
+        // Tiles that were drawn before keep their depths.
+        for step in &mut plan.steps {
+            step.variant = with_depths(step.variant, true).of_kind(step.kind);
+        }
+    }
+}
+
 /// First words of the lists.
 struct Places {
+    /// Tiles of the picture.
+    tiles: u32,
     entries_most: u32,
     // Bins.
     head: u32,
@@ -176,6 +190,7 @@ impl Places {
         // Records have four words each, from the first word on.
         let mut words = places((plan.words.len() as u32).next_multiple_of(4));
         Self {
+            tiles,
             entries_most,
             head: bins(g::CROWD_HEAD + g::LAYER_HEAD * layers),
             cover: bins(g::GROUP_PIXELS * tiles),

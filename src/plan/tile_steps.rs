@@ -60,23 +60,7 @@ impl FramePlan {
         };
         let queues: Vec<bool> = layers.iter().map(queues).collect();
         let mut dealt = visible.deal(with.compute, &layer_of, &queues);
-        let layers_of_lists = layers.iter().zip(&mut dealt.layers);
-        for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
-            let patches = |&n: &u32| objects[n as usize].listed_patches();
-            let patches = layer.objects.iter().map(patches).sum();
-            let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
-            if !with.gains_by_lists(tiles_of_all, patches) {
-                tiles.unlist();
-            }
-        }
-        let sum = |of: fn(u32) -> u32| -> u64 {
-            let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
-            dealt.layers.iter().map(counted).sum()
-        };
-        let tiles_of_all = view.tiles_of_all_rows(sum(|tiles| tiles));
-        if sum(bin_words) > with.room() || !with.pays_to_list(tiles_of_all) {
-            dealt.layers.iter_mut().for_each(LayerTiles::unlist);
-        }
+        leave_out_lists(view, objects, &layers, &mut dealt.layers, with);
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {
                 self.paths[n] = DrawPath::Nothing;
@@ -186,6 +170,33 @@ impl FramePlan {
         }
         later.sort_by_key(|step| step.phase);
         self.steps.extend(later);
+    }
+}
+
+/// Leaves out lists of patches where they take longer than the tree, or need too much room.
+fn leave_out_lists(
+    view: &View,
+    objects: &[PlanObject],
+    layers: &[Layer],
+    tiles: &mut [LayerTiles],
+    with: &Conditions,
+) {
+    let layers_of_lists = layers.iter().zip(&mut *tiles);
+    for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
+        let patches = |&n: &u32| objects[n as usize].listed_patches();
+        let patches = layer.objects.iter().map(patches).sum();
+        let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
+        if !with.gains_by_lists(tiles_of_all, patches) {
+            tiles.unlist();
+        }
+    }
+    let sum = |of: fn(u32) -> u32| -> u64 {
+        let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
+        tiles.iter().map(counted).sum()
+    };
+    let tiles_of_all = view.tiles_of_all_rows(sum(|count| count));
+    if sum(bin_words) > with.room() || !with.pays_to_list(tiles_of_all) {
+        tiles.iter_mut().for_each(LayerTiles::unlist);
     }
 }
 

@@ -10,7 +10,7 @@ use super::catalogue::{Entry, Module, Output, Search};
 use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
-use crate::scene::{BumpForm, Lighting, Object, Shadow};
+use crate::scene::{BumpForm, Lighting, Object, Shadow, Texturing};
 use crate::search::Features;
 use crate::settings::{Planes, SearchSettings, Solver};
 use std::ffi::CStr;
@@ -159,6 +159,19 @@ pub struct Variant {
     pub ortho: u32,
 }
 
+/// The form of an object's bumps, `BUMP_*`.
+fn bump_of(texturing: &Texturing, host: HostLook) -> u32 {
+    let form = match texturing.bump_form {
+        BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
+        BumpForm::Papers => g::BUMP_PAPERS,
+    };
+    match (host.relief, host.heights) {
+        (false, _) if texturing.displacement_map.is_none() => g::BUMP_OFF,
+        (_, true) => form | g::BUMP_HEIGHTS,
+        _ => form,
+    }
+}
+
 impl Variant {
     /// The variant that makes lists of patches.
     pub const LISTS: Self = Self {
@@ -203,15 +216,7 @@ impl Variant {
             Shadow::Soft => g::SHADOW_SOFT,
         };
         let color_map = u32::from(host.colors || texturing.color_map.is_some());
-        let form = match texturing.bump_form {
-            BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
-            BumpForm::Papers => g::BUMP_PAPERS,
-        };
-        let bump = match (host.relief, host.heights) {
-            (false, _) if texturing.displacement_map.is_none() => g::BUMP_OFF,
-            (_, true) => form | g::BUMP_HEIGHTS,
-            _ => form,
-        };
+        let bump = bump_of(texturing, host);
         let textured = color_map != 0 || bump != g::BUMP_OFF;
         let (output, ortho) = match planes {
             Planes::Color => (Output::Color, false),

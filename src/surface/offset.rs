@@ -52,6 +52,42 @@ impl Layer<'_> {
         self.alpha + self.beta * z
     }
 
+    /// Possible ends of pieces of a corner's conic, in the order of the corner's turn: the borders of
+    /// layer and half-plane, sign changes of the divisor, and steps of at most [`SWEEP`].
+    fn conic_ends(&self, corner: &Corner) -> Vec<f64> {
+        let (focus, turn) = (corner.point, corner.turn);
+        let (from, to) = (corner.angle, corner.angle + turn);
+        let mut ends = vec![from, to];
+        let mut cut = |x: f64| ends.extend(within(x, from, to));
+        for z in [self.low, self.high] {
+            let sine = (z - focus.y) / self.offset(z);
+            if sine.abs() <= 1.0 {
+                cut(sine.asin());
+                cut(PI - sine.asin());
+            }
+        }
+        let axis = Curve::Conic {
+            focus,
+            size: self.offset(focus.y),
+            from,
+            to,
+        };
+        for x in axis.meets_line(self.beta, DVec2::X, 0.0) {
+            cut(x);
+        }
+        // The far end of a thin ellipse, beyond which an arc is longer than its chord.
+        cut(PI.copysign(self.beta) / 2.0);
+        if self.beta.abs() >= 1.0 {
+            let x = (1.0 / self.beta).asin();
+            cut(x);
+            cut(PI - x);
+        }
+        let sweeps = (turn.abs() / SWEEP).ceil();
+        ends.extend((1..sweeps as u32).map(|k| from + turn * f64::from(k) / sweeps));
+        ends.sort_unstable_by(|p, q| ((p - q) * turn.signum()).total_cmp(&0.0));
+        ends
+    }
+
     /// True if each point within `reach` of `middle` is hidden: some part of the surface is nearer
     /// than the offset there. A curve there meets no visible part of another, because both have the
     /// same offset where they meet. Without this test the curves of a fine pattern under a wide
@@ -180,39 +216,8 @@ impl Trimmer<'_> {
     fn conic(&mut self, corner: &Corner, feature: u32) {
         let layer = self.layer;
         let focus = corner.point;
-        let size = layer.offset(focus.y);
-        let (from, to) = (corner.angle, corner.angle + corner.turn);
-        // Possible ends: the borders of layer and half-plane, and sign changes of the divisor.
-        let mut ends = vec![from, to];
-        let mut cut = |x: f64| ends.extend(within(x, from, to));
-        for z in [layer.low, layer.high] {
-            let sine = (z - focus.y) / layer.offset(z);
-            if sine.abs() <= 1.0 {
-                cut(sine.asin());
-                cut(PI - sine.asin());
-            }
-        }
-        let axis = Curve::Conic {
-            focus,
-            size,
-            from,
-            to,
-        };
-        for x in axis.meets_line(layer.beta, DVec2::X, 0.0) {
-            cut(x);
-        }
-        // The far end of a thin ellipse, beyond which an arc is longer than its chord.
-        cut(PI.copysign(layer.beta) / 2.0);
-        if layer.beta.abs() >= 1.0 {
-            let x = (1.0 / layer.beta).asin();
-            cut(x);
-            cut(PI - x);
-        }
-        let turn = to - from;
-        let sweeps = (turn.abs() / SWEEP).ceil();
-        ends.extend((1..sweeps as u32).map(|k| from + turn * f64::from(k) / sweeps));
-        ends.sort_unstable_by(|p, q| ((p - q) * turn.signum()).total_cmp(&0.0));
-        for pair in ends.windows(2) {
+        let (size, turn) = (layer.offset(focus.y), corner.turn);
+        for pair in layer.conic_ends(corner).windows(2) {
             let middle = 0.5 * (pair[0] + pair[1]);
             let divisor = 1.0 - layer.beta * middle.sin();
             // Convex corners have their conic outside, reflex ones inside.

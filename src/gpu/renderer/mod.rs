@@ -10,7 +10,7 @@ mod output_check;
 pub(super) mod prepare;
 pub(super) mod prewarm;
 mod record;
-mod slot;
+pub(super) mod slot;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::Content;

@@ -3,9 +3,10 @@
 //! objects anew.
 
 use super::Renderer;
-use super::slot::{BoundPlan, BoundStep, SlotBuffer, Written};
+use super::slot::{BoundPlan, BoundStep, FrameSlot, FrameStatistics, SlotBuffer, Written};
 use crate::error::{Error, ErrorKind, Result, lock};
-use crate::gpu::content::view_plan::ViewPlan;
+use crate::gpu::content::entry::Entry;
+use crate::gpu::content::view_plan::{PlannedObject, ViewPlan};
 use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
 use crate::plan::View;
 use crate::settings::Planes;
@@ -26,24 +27,6 @@ pub struct PreparedFrame {
     pub(super) serial: u64,
     reads_depths: bool,
     statistics: FrameStatistics,
-}
-
-/// The commands and bytes of a prepared frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrameStatistics {
-    /// Objects of which a part may show.
-    pub objects: u32,
-    /// Draws, those of one indirect command counted one by one.
-    pub draws: u32,
-    /// Dispatches.
-    pub dispatches: u32,
-    /// Groups of draws, or dispatches, that are left out because their pipeline is not compiled
-    /// ([`Renderer::hide_until_compiled`]).
-    pub hidden: u32,
-    /// Tiles of fragments, and work groups of dispatches whose number the host knows.
-    pub tiles: u32,
-    /// Bytes of the slot's buffers.
-    pub slot_bytes: u64,
 }
 
 impl PreparedFrame {
@@ -235,15 +218,7 @@ impl Renderer {
             };
             let placements = entry.drawn().placements();
             let levels = object.levelled.as_ref();
-            let coarser = levels.map(|l| (l.first_block..).zip(l.coarser.iter().map(Some)));
-            let all = iter::once((number, object.surface.as_ref()));
-            let window = object.window(parts).start;
-            for (at, surface) in all.chain(coarser.into_iter().flatten()) {
-                if let Some(block) = entry.block(surface.map(Arc::as_ref), window) {
-                    let at = at as usize * OBJECT_STRIDE as usize;
-                    to.write(SlotBuffer::Objects, at, &block)?;
-                }
-            }
+            write_blocks(to, entry, object, object.window(parts).start)?;
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
                 // Other objects move the blocks of levels.
@@ -267,11 +242,8 @@ impl Renderer {
             }
         }
         if let Some(crowds) = &plan.frame.crowds {
-            let entries = now
-                .crowds
-                .iter()
-                .filter_map(|n| self.content.objects.at(*n));
-            let entries: Vec<_> = entries.collect();
+            let objects = &self.content.objects;
+            let entries: Vec<_> = (now.crowds.iter()).filter_map(|n| objects.at(*n)).collect();
             let placed = before.is_some_and(|before| {
                 let known = entries.iter().all(|entry| entry.version <= before.version);
                 known && before.crowds == now.crowds
@@ -285,4 +257,24 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// Writes the block of an object, and those of the coarser levels of its copies. `window`: first
+/// vector of their tables.
+fn write_blocks(
+    to: &mut FrameSlot,
+    entry: &Entry,
+    object: &PlannedObject,
+    window: u32,
+) -> Result<()> {
+    let levels = object.levelled.as_ref();
+    let coarser = levels.map(|l| (l.first_block..).zip(l.coarser.iter().map(Some)));
+    let all = iter::once((object.number, object.surface.as_ref()));
+    for (at, surface) in all.chain(coarser.into_iter().flatten()) {
+        if let Some(block) = entry.block(surface.map(Arc::as_ref), window) {
+            let at = at as usize * OBJECT_STRIDE as usize;
+            to.write(SlotBuffer::Objects, at, &block)?;
+        }
+    }
+    Ok(())
 }

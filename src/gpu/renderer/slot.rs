@@ -1,7 +1,6 @@
 //! The resources that only one prepared frame reads: blocks, instances, tiles, draws, and the sets
 //! that bind them. The slot also keeps alive all else that its commands read.
 
-use super::prepare::FrameStatistics;
 use crate::error::Result;
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
@@ -107,6 +106,24 @@ pub(crate) struct BoundStep {
     /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
     /// solid.
     pub offsets: [u32; 2],
+}
+
+/// The commands and bytes of a prepared frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStatistics {
+    /// Objects of which a part may show.
+    pub objects: u32,
+    /// Draws, those of one indirect command counted one by one.
+    pub draws: u32,
+    /// Dispatches.
+    pub dispatches: u32,
+    /// Groups of draws, or dispatches, that are left out because their pipeline is not compiled
+    /// ([`Renderer::hide_until_compiled`]).
+    pub hidden: u32,
+    /// Tiles of fragments, and work groups of dispatches whose number the host knows.
+    pub tiles: u32,
+    /// Bytes of the slot's buffers.
+    pub slot_bytes: u64,
 }
 
 impl FrameSlot {

@@ -1,7 +1,6 @@
 //! The projection of one copy, or of a cluster of copies: the rectangle of pixels and the nearest
 //! depth.
 
-use super::cover::SIDE;
 use crate::plan::View;
 use crate::scene::{Cluster, Placement};
 use glam::{DMat3, DVec2, DVec3};
@@ -59,6 +58,8 @@ pub(crate) struct ScreenBounds {
     pub near: f32,
 }
 
+/// Pixels along the side of a tile.
+pub(super) const SIDE: u32 = 8;
 /// Margin of a rectangle of pixels whose rays go through their centres.
 const MARGIN: f64 = 1.0 / 16.0;
 /// Relative margin of depths, towards the safe side.

@@ -2,13 +2,10 @@
 //! per pixel and one depth per row. One depth per row is enough because, on a field, the copies in
 //! a row of pixels have similar depths.
 
-use super::bounds::{ProjectedAxes, SLACK, first_pixel, last_pixel};
+use super::bounds::{ProjectedAxes, SIDE, SLACK, first_pixel, last_pixel};
 use crate::surface::{CylinderPiece, Cylinders};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
-
-/// Pixels along a square's side.
-pub(super) const SIDE: u32 = 8;
 
 /// A range of columns of squares.
 pub(super) struct Cover {

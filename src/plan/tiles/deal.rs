@@ -1,6 +1,7 @@
 //! Distribution of copies to records of tiles, or of single pixels of tiles.
 
-use super::cover::{SIDE, block, within};
+use super::bounds::SIDE;
+use super::cover::{block, within};
 use crate::shader::generated::{
     QUAD_BITS, QUEUE_BLOCK, QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT,
 };

@@ -116,6 +116,14 @@ impl Pipelines {
         first(made, "vkCreateComputePipelines")
     }
 
+    fn assembly(&self, kind: Kind) -> vk::PipelineInputAssemblyStateCreateInfo<'static> {
+        let topology = match kind == Kind::Quads && self.constants.large_points {
+            true => vk::PrimitiveTopology::POINT_LIST,
+            false => vk::PrimitiveTopology::TRIANGLE_LIST,
+        };
+        vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology)
+    }
+
     fn graphics(
         &self,
         (variant, kind): (&Variant, Kind),
@@ -138,33 +146,16 @@ impl Pipelines {
         ];
         // Proxies, quads and tiles have no vertex input: shaders make their corners from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
-        let topology = match kind == Kind::Quads && self.constants.large_points {
-            true => vk::PrimitiveTopology::POINT_LIST,
-            false => vk::PrimitiveTopology::TRIANGLE_LIST,
-        };
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
+        let assembly = self.assembly(kind);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default()
-            .cull_mode(match kind {
-                // Quads have no back.
-                Kind::Quads | Kind::Tiles => vk::CullModeFlags::NONE,
-                _ => vk::CullModeFlags::BACK,
-            })
-            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-            .line_width(1.0);
+        let raster = rasterization(kind);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(pass.samples))
             .sample_shading_enable(pass.sample_rays)
             .min_sample_shading(1.0);
-        let depth = vk::PipelineDepthStencilStateCreateInfo::default()
-            .depth_test_enable(true)
-            .depth_write_enable(pass.depth_test.write)
-            .depth_compare_op(pass.depth_test.compare.unwrap_or(match pass.depth {
-                DepthOrder::Normal => vk::CompareOp::LESS,
-                DepthOrder::Reversed => vk::CompareOp::GREATER,
-            }));
+        let depth = depth_state(pass);
         let written = vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA);
         let blends = vec![written; pass.planes.attachments()];
@@ -213,6 +204,27 @@ impl Pipelines {
         let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
+}
+
+fn rasterization(kind: Kind) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+    vk::PipelineRasterizationStateCreateInfo::default()
+        .cull_mode(match kind {
+            // Quads have no back.
+            Kind::Quads | Kind::Tiles => vk::CullModeFlags::NONE,
+            _ => vk::CullModeFlags::BACK,
+        })
+        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+        .line_width(1.0)
+}
+
+fn depth_state(pass: &PassFormats) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+    vk::PipelineDepthStencilStateCreateInfo::default()
+        .depth_test_enable(true)
+        .depth_write_enable(pass.depth_test.write)
+        .depth_compare_op(pass.depth_test.compare.unwrap_or(match pass.depth {
+            DepthOrder::Normal => vk::CompareOp::LESS,
+            DepthOrder::Reversed => vk::CompareOp::GREATER,
+        }))
 }
 
 fn first(
