@@ -118,7 +118,7 @@ pub struct FrameStatistics {
     /// Dispatches.
     pub dispatches: u32,
     /// Groups of draws, or dispatches, that are left out because their pipeline is not compiled
-    /// ([`Renderer::hide_until_compiled`]).
+    /// (`Renderer::hide_until_compiled`).
     pub hidden: u32,
     /// Tiles of fragments, and work groups of dispatches whose number the host knows.
     pub tiles: u32,
