@@ -225,7 +225,12 @@ impl FramePlan {
                         draw(corners(run.end - run.start), first)
                     };
                     self.parts[n].frusta = true;
-                    (Kind::Cells, true, frusta.iter().map(of_run).collect())
+                    self.parts[n].tables = !of.is_whole();
+                    (
+                        Kind::Cells,
+                        of.is_whole(),
+                        frusta.iter().map(of_run).collect(),
+                    )
                 }
             };
             let variant = Variant {

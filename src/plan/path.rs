@@ -125,8 +125,7 @@ pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// True if an object may be drawn by cells. The view, or a box that cuts it, may still rule that
-    /// out.
+    /// True if an object may be drawn by cells. The view may still rule that out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
         let few = of.copies().len() <= MOST_PROXIES;
         self.shows_patches(of) && !self.compute && self.passes_cells && few
@@ -238,8 +237,10 @@ impl Conditions {
     /// [`variants`](super::variants) for the object.
     pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
         let mut kinds: Vec<(Kind, &[u32])> = Vec::new();
+        let may_cut = proxy::may_be_cut(of.object);
+        let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
         if self.takes_cells(of) {
-            kinds.push((Kind::Cells, &[0]));
+            kinds.push((Kind::Cells, outside));
         }
         if self.is_crowd(of) {
             kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
@@ -249,8 +250,6 @@ impl Conditions {
                 kinds.push((Kind::Tiles, &[0, 1]));
             }
         } else if self.takes_tiles(of) {
-            let may_cut = proxy::may_be_cut(of.object);
-            let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
             if self.may_permit_lists(of) {
                 kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
             }

@@ -2,7 +2,7 @@
 
 use super::{Camera, Cluster, Growth, Placement, Scene};
 use crate::error::{Error, ErrorKind, Result, content};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
 
 /// The rays of a camera for pictures of one size.
@@ -109,7 +109,10 @@ impl CameraFrame {
             // Corners of hulls extend a little beyond the box, corners of convex hulls by some texels
             // more.
             let growth = Growth::of(object);
-            let radius = 1.04 * (object.profile.radius + growth.side) + 0.02;
+            let side = object.profile.radius + growth.side;
+            // The hull of a solid that its box cuts holds all of the solid.
+            let whole = object.widest() + DVec2::from(object.axis_offset()).abs().max_element();
+            let radius = 1.04 * whole.clamp(side, 2.0 * side) + 0.02;
             let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
             let middle_z = 0.5 * (1.0 + growth.high - growth.low);
             let range = |p: &Placement| {

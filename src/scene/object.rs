@@ -125,6 +125,17 @@ impl Object {
         self.axis.map(|o| (2.0 * o - 1.0) * self.profile.radius)
     }
 
+    /// Upper limit on the distance of the surface from its axis, before the box cuts it.
+    pub(crate) fn widest(&self) -> f64 {
+        let Offset {
+            extend,
+            bevel,
+            chamfer,
+        } = self.offset;
+        let outline = self.profile.outline.bounds().map_or(0.0, |b| b.r_max);
+        outline + (extend + bevel * chamfer).max(0.0)
+    }
+
     /// The placements of all copies: the instances, or the one placement.
     #[must_use]
     pub fn placements(&self) -> &[Placement] {

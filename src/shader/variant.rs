@@ -141,8 +141,8 @@ pub struct Variant {
     /// Patches that each pixel of a listed tile tests; 1 for tiles that walk the tree. 0: tiles
     /// come from no list.
     pub list_length: u32,
-    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Listed patches always
-    /// have the eye outside, so for them it is 1 if the box cuts nothing.
+    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
+    /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
     pub outside: u32,
     /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
     pub own_tables: u32,
@@ -317,6 +317,7 @@ impl Variant {
     #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
         let walks = kind.walks();
+        let on_patches = matches!(kind, Kind::Cells | Kind::TilePatches);
         let of = |reads: bool, value: u32| if reads { value } else { 0 };
         let of_copy = matches!(kind, Kind::TilePatches | Kind::TileTree);
         let compute = of_copy || kind == Kind::TileCopies;
@@ -337,7 +338,7 @@ impl Variant {
         let tested = self.search == Search::Quadric && self.cells == 0;
         let one_object = of(self.shadow == g::SHADOW_OFF, self.one_object);
         Self {
-            outside: of(kind == Kind::TilePatches || (walks && tested), self.outside),
+            outside: of(on_patches || (walks && tested), self.outside),
             own_tables: of(tables, self.own_tables),
             // Lavapipe 22 crashes in shadows if it treats the solid as constants.
             one_object,

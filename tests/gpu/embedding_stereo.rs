@@ -7,7 +7,7 @@ use ash::vk;
 use glam::{DQuat, DVec3};
 use revmap::error::ErrorKind;
 use revmap::gpu::{Device, Output, PassFormats, Renderer, View};
-use revmap::scene::{Object, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Object, Placement, Scene, Shadow};
 use revmap::settings::{Planes, SearchSettings};
 
 /// Bytes of colours and depths of all views.
@@ -48,11 +48,13 @@ fn drawn(host: &Host, renderer: &mut Renderer, views: &[View]) -> Picture {
     (into.color(0), into.depths())
 }
 
-/// Cells, quads of replicas and of copies.
+/// Cells, boxes, clipped cells and quads of copies.
 fn scene(shadow: Shadow) -> Scene {
     let mut scene = three();
     scene.shadow = shadow;
     scene.objects[1].repeat = [2, 1, 1];
+    scene.objects[2].clip = Clip::Box;
+    scene.objects[2].offset.extend = 0.1;
     let mut copies = Object::new("copies", crate::common::shapes::jewel().into());
     copies.instances = (0..300)
         .map(|n| Placement {

@@ -104,7 +104,7 @@ fn every_shape_from_all_sides() {
 }
 
 /// A slider: the offset changes from frame to frame. It grows the hull, and may grow the solid past
-/// its box, which then cuts it: the tree draws it.
+/// its box, which then cuts it.
 #[test]
 fn offsets_in_motion() {
     let both = [(-0.02, 0.0, 1.0), (0.03, 0.0, 1.0), (0.01, 0.2, 0.4)];
@@ -114,19 +114,18 @@ fn offsets_in_motion() {
                 let mut scene = scene_of(profile.clone(), eye(20.0, 2.3));
                 scene.objects[0].offset = offset(extend, bevel, chamfer);
                 // The bevel moves a cone's foot out, past a box that cuts.
-                let cut = (name, bevel) == ("cone", 0.12);
-                if cut {
+                if (name, bevel) == ("cone", 0.12) {
                     scene.objects[0].clip = Clip::Box;
                 }
                 let name = format!("{name} with {extend} {bevel} {chamfer}");
-                search.assert_same(&name, &scene, if cut { WALKED } else { WRAPPED });
+                search.assert_same(&name, &scene, WRAPPED);
             }
         }
     }
 }
 
-/// Solids cut by the sides of a turned and stretched box, with the axis in the box's middle or not:
-/// tiles in both stages, in compute with lists. The sides leave some narrow solids whole.
+/// Solids cut by the sides of a turned and stretched box, with the axis in the box's middle or not.
+/// Fragments of cells before a side draw the cut there.
 #[test]
 fn what_the_box_cuts() {
     for (name, profile) in shapes::all() {
@@ -136,10 +135,6 @@ fn what_the_box_cuts() {
             (0.25, [0.4, 0.5]),
             (0.5, [0.45, 0.55]),
         ] {
-            let [x, y] = axis.map(|a: f64| (a - 0.5).abs());
-            let side = 0.5 - x.max(y);
-            let whole = profile.outline.bounds().unwrap().r_max + extend < side + 1e-3;
-            let ways = if whole { WRAPPED } else { WALKED };
             for elevation in [-50.0, 0.0, 30.0, 89.5] {
                 let mut scene = scene_of(profile.clone(), eye(elevation, 2.8));
                 let object = &mut scene.objects[0];
@@ -148,15 +143,21 @@ fn what_the_box_cuts() {
                 object.axis = axis;
                 object.placement = placement([0.1, -0.2, 0.05], [0.3, -0.2, 0.7], [1.1, 0.8, 0.9]);
                 let name = format!("{name} with {extend} at {axis:?} from {elevation}");
-                EXACT.assert_same(&name, &scene, ways);
+                EXACT.assert_same(&name, &scene, WRAPPED);
             }
         }
     }
 }
 
-/// The same for flat boxes, viewed along a side.
+/// The same for flat boxes, viewed along a side. One of the 1,474 pixels of the ridged column hits a
+/// crease, where the normals of both faces are right and 103 degrees apart, so their 99th percentile
+/// is bounded.
 #[test]
 fn what_a_flat_box_cuts_along_its_side() {
+    let search = Search {
+        normals: (|spread| spread.p99, 0.1),
+        ..EXACT
+    };
     for (name, profile) in shapes::all() {
         for (elevation, azimuth) in [(0.0, 0.52), (3.0, 0.02), (5.0, 0.8)] {
             let far = eye(elevation, 2.8);
@@ -170,7 +171,7 @@ fn what_a_flat_box_cuts_along_its_side() {
             object.axis = [0.35, 0.5];
             object.placement = placement([0.0, 0.0, 0.3], [0.0; 3], [1.0, 1.0, 0.06]);
             let name = format!("{name} from {elevation}, {azimuth}");
-            EXACT.assert_same(&name, &scene, WALKED);
+            search.assert_same(&name, &scene, WRAPPED);
         }
     }
 }
@@ -245,10 +246,10 @@ fn all_that_the_box_draws() {
     cut.objects[0].axis = [0.8, 0.5];
     let mut replicas = scene_of(shapes::vase(), eye(25.0, 2.4));
     replicas.objects[0].repeat = [2, 2, 2];
-    EXACT.assert_same("cut by its box", &cut, WALKED);
+    EXACT.assert_same("cut by its box", &cut, WRAPPED);
     EXACT.assert_same("replicas", &replicas, WALKED);
     let mut all: Vec<(&str, Scene, Ways)> = Vec::new();
-    all.push(("cut by its box", cut, WALKED));
+    all.push(("cut by its box", cut, WRAPPED));
     all.push(("replicas", replicas, WALKED));
     let mut flat = scene_of(shapes::jewel(), eye(35.0, 2.6));
     flat.objects[0].placement = placement([0.1, 0.2, 0.3], [0.7, -0.4, 1.1], [1.5, 0.5, 0.8]);

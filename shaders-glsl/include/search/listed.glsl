@@ -78,13 +78,10 @@ bool search_listed(uvec2 pixel, out Hit hit)
     PatchRow row = begin_row(tile_rays, pixel);
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
     if (OUTSIDE == 0u) {
-        vec2 span = between_sides(row.m.o, row.m.v, sides_of_box());
-        row.least = max(row.least, span.x);
-        row.most = span.y;
-        row.best = span.y;
+        clip_to_sides(row);
     }
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
-        take_nearer(row.m, listed_vector(2u * k), listed_vector(2u * k + 1u), row.least, row.best, row.quadric);
+        take_nearer(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
     }
     return end_row(row, LIST_LENGTH, hit);
 }

@@ -3,6 +3,7 @@
 use crate::scenes::{eye, scene_of};
 use crate::shapes;
 use revmap::gpu::{Device, DrawPath};
+use revmap::scene::Clip;
 use revmap::settings::{Planes, Settings, Solver};
 use revmap_offscreen::Offscreen;
 use shaderc_link::{Compiler, OptimizationLevel, spirv};
@@ -32,14 +33,17 @@ fn fetching(file: &str, macros: &[(&str, &str)]) -> revmap::error::Result<Option
     Ok(Some(made.as_binary().to_vec()))
 }
 
-/// Both ways draw the same bits.
+/// Both ways draw the same bits, of whole solids and of those that their box cuts.
 #[test]
 fn fetched_cells_are_passed_cells() {
     let passed = Device::open_validated(None).unwrap();
     // SAFETY: the modules are the library's own.
     #[allow(unsafe_code)]
     let fetched = unsafe { passed.with_shaders(Box::new(fetching)) }.unwrap();
-    let scene = scene_of(shapes::vase(), eye(25.0, 2.6));
+    let whole = scene_of(shapes::vase(), eye(25.0, 2.6));
+    let mut cut = whole.clone();
+    cut.objects[0].clip = Clip::Box;
+    cut.objects[0].offset.extend = 0.2;
     let settings = Settings {
         solver: Solver::Exact,
         planes: Planes::All,
@@ -48,13 +52,15 @@ fn fetched_cells_are_passed_cells() {
         proxy_min_pixels: 0,
         ..Settings::exact()
     };
-    let [a, b] = [&passed, &fetched].map(|device| {
-        let mut renderer = Offscreen::new(device, &scene, &settings).unwrap();
-        renderer.draw().unwrap();
-        assert_eq!(renderer.renderer().draw_paths(), [DrawPath::Cells]);
-        renderer.read().unwrap()
-    });
-    assert!((0..a.pixels()).filter(|&k| a.hits(k)).count() > 2000);
-    assert_eq!(a.first_difference(&b), None);
+    for scene in [&whole, &cut] {
+        let [a, b] = [&passed, &fetched].map(|device| {
+            let mut renderer = Offscreen::new(device, scene, &settings).unwrap();
+            renderer.draw().unwrap();
+            assert_eq!(renderer.renderer().draw_paths(), [DrawPath::Cells]);
+            renderer.read().unwrap()
+        });
+        assert!((0..a.pixels()).filter(|&k| a.hits(k)).count() > 2000);
+        assert_eq!(a.first_difference(&b), None);
+    }
     passed.check().unwrap();
 }
