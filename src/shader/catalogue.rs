@@ -17,6 +17,8 @@ pub enum Entry {
     TileVertex,
     /// Fragments of cells.
     Cells,
+    /// Fragments of cells that the box's sides may cut.
+    CutCells,
     /// Fragments of tiles.
     Tiles,
     /// Records of the copies of crowds.
@@ -46,7 +48,7 @@ impl Entry {
             Self::CellVertex => "proxy_cells.vert",
             Self::QuadVertex => "tile_quads.vert",
             Self::TileVertex => "tiles.vert",
-            Self::Cells => "cells.frag",
+            Self::Cells | Self::CutCells => "cells.frag",
             Self::Tiles => "tiles.frag",
             Self::CrowdCopies => "crowd_copies.comp",
             Self::CrowdTiles => "crowd_tiles.comp",
@@ -72,7 +74,7 @@ impl Entry {
     #[must_use]
     #[allow(dead_code)]
     pub const fn shades(self) -> bool {
-        matches!(self, Self::Cells | Self::TilePatches) || self.searches()
+        matches!(self, Self::Cells | Self::CutCells | Self::TilePatches) || self.searches()
     }
 
     /// True if its invocations search with code that another crate may provide. Build scripts do
@@ -158,6 +160,9 @@ impl Module {
             Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
             Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
+        if self.entry == Entry::CutCells {
+            all.push(("CUT", "1"));
+        }
         if self.features >= Features::Textured {
             all.push(("TEXTURED", "1"));
         }
@@ -185,6 +190,9 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
+        if self.entry == Entry::CutCells {
+            name.push_str(".cut");
+        }
         if self.search != Search::None {
             add(&mut name, &self.search);
             add(&mut name, &self.features);
@@ -199,7 +207,7 @@ impl Module {
 #[must_use]
 #[allow(dead_code)]
 pub fn shading_modules(compute: bool) -> Vec<Module> {
-    let in_pass = |entry| matches!(entry, Entry::Tree | Entry::Cells | Entry::Tiles);
+    let in_pass = |entry: Entry| entry.file().ends_with(".frag");
     let mut all = modules();
     all.retain(|m| {
         m.entry.shades()
@@ -255,6 +263,10 @@ pub fn modules() -> Vec<Module> {
         (Entry::Cells, patches, Planes, &[P, F]),
         (Entry::Cells, patches, List, &[T]),
         (Entry::Cells, patches, Depth, &[P]),
+        (Entry::CutCells, patches, Color, &[P, T]),
+        (Entry::CutCells, patches, Planes, &[P, F]),
+        (Entry::CutCells, patches, List, &[T]),
+        (Entry::CutCells, patches, Depth, &[P]),
         (Entry::Tiles, patches, Color, &[P, T]),
         (Entry::Tiles, patches, Planes, &[P, T]),
         (Entry::Tiles, patches, List, &[T]),

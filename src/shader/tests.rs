@@ -19,7 +19,7 @@ use std::mem::size_of;
 use std::sync::Arc;
 
 /// The number of modules; nine of them list and draw crowds.
-const MODULES: usize = 61;
+const MODULES: usize = 67;
 
 const NAME: u32 = 5;
 const MEMBER_NAME: u32 = 6;
@@ -158,10 +158,9 @@ fn modules_are_few_and_small() {
             (_, Features::Full, _) => 78_900,
             // Copies may also come from queues of the device.
             (Entry::TileCopies | Entry::Tiles, Features::Textured, _) => 43_000,
-            // Tiles share an instance, and `live` has both forms of its steps and of its map. Cells of
-            // cut solids test the start of a ray.
-            (_, Features::Textured, _) => 40_800,
-            (Entry::Tree | Entry::Cells, Features::Plain, Output::Color) => 29_700,
+            // Tiles share an instance, and `live` has both forms of its steps and of its map.
+            (_, Features::Textured, _) => 40_000,
+            (Entry::Tree | Entry::Cells, Features::Plain, Output::Color) => 26_600,
             // Tiles of several copies read a solid for each copy.
             (Entry::TileCopies | Entry::Tiles, Features::Plain, _) => 37_900,
             _ => 34_200,
@@ -171,7 +170,7 @@ fn modules_are_few_and_small() {
             .unwrap()
             .len();
     }
-    assert!(packed < 800_000, "{packed} bytes in all");
+    assert!(packed < 850_000, "{packed} bytes in all");
 }
 
 /// Every pipeline that can be drawn with has its modules.

@@ -370,7 +370,10 @@ impl Variant {
     /// The module of its fragments, or of its compute invocations.
     #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
-        let entry = kind.entry();
+        let entry = match kind {
+            Kind::Cells if self.outside == 0 => Entry::CutCells,
+            _ => kind.entry(),
+        };
         if entry.makes_lists() {
             return Module::plain(entry);
         }

@@ -81,7 +81,7 @@ bool search_listed(uvec2 pixel, out Hit hit)
         clip_to_sides(row);
     }
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {
-        take_nearer(row, listed_vector(2u * k), listed_vector(2u * k + 1u));
+        take_nearer(row.m, listed_vector(2u * k), listed_vector(2u * k + 1u), row.least, row.best, row.quadric);
     }
     return end_row(row, LIST_LENGTH, hit);
 }

@@ -10,7 +10,6 @@ struct PatchRow {
     float least, most; // range of t of valid hits
     float best;
     vec4 quadric; // patch of the nearest hit so far
-    bool entered; // the ray enters a patch before `least`
 };
 
 PatchRow begin_row(PixelRays rays, vec2 pixel)
@@ -25,7 +24,6 @@ PatchRow begin_row(PixelRays rays, vec2 pixel)
     row.most = 2e38;
     row.best = row.most;
     row.quadric = vec4(0.0);
-    row.entered = false;
     return row;
 }
 
@@ -36,22 +34,6 @@ void clip_to_sides(inout PatchRow row)
     row.least = max(row.least, span.x);
     row.most = span.y;
     row.best = span.y;
-}
-
-const float HEIGHT_SLACK = 1e-3; // outside the box's height another sheet of a quadric may satisfy the guard
-
-// Replaces the nearest hit so far by the hit with patch `q`, if that is nearer.
-void take_nearer(inout PatchRow row, vec4 q, vec4 guard)
-{
-    float above = row.m.o.z - guard.x;
-    float root = entering_root(row.m, q, above, 1.0);
-    float z = row.m.o.z + root * row.m.v.z;
-    float guarded = abs(q.x) * (above + root * row.m.v.z) + guard.y * square_at(row.m, root);
-    bool within = all(lessThanEqual(vec3(guard.z, guarded, abs(z - 0.5)), vec3(guarded, guard.w, 0.5 + HEIGHT_SLACK)));
-    bool nearer = within && root > row.least && root < row.best;
-    row.entered = row.entered || within && root <= row.least;
-    row.best = mix(row.best, root, nearer);
-    row.quadric = mix(row.quadric, vec4(q.x, guard.x, q.zw), bvec4(nearer));
 }
 
 // Returns true if one of `count` patches was hit.

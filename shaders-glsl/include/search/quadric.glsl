@@ -25,6 +25,23 @@ float square_at(Meridian m, float s)
     return m.c + s * (2.0 * m.b + s * m.a);
 }
 
+const float HEIGHT_SLACK = 1e-3; // outside the box's height another sheet of a quadric may satisfy the guard
+
+// Replaces the nearest hit so far by the hit with patch `q`, if that is after `least` and nearer. Returns true if the hit
+// is not after `least`.
+bool take_nearer(Meridian m, vec4 q, vec4 guard, float least, inout float best, inout vec4 quadric)
+{
+    float above = m.o.z - guard.x;
+    float root = entering_root(m, q, above, 1.0);
+    float z = m.o.z + root * m.v.z;
+    float guarded = abs(q.x) * (above + root * m.v.z) + guard.y * square_at(m, root);
+    bvec3 within = lessThanEqual(vec3(guard.z, guarded, abs(z - 0.5)), vec3(guarded, guard.w, 0.5 + HEIGHT_SLACK));
+    bool nearer = all(within) && root > least && root < best;
+    best = mix(best, root, nearer);
+    quadric = mix(quadric, vec4(q.x, guard.x, q.zw), bvec4(nearer));
+    return all(within) && root <= least;
+}
+
 // Returns true if the ray starts in the solid: the number of patches outward of the start is odd.
 bool starts_within(Meridian m)
 {
