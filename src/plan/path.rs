@@ -171,9 +171,15 @@ impl Conditions {
         match cells {
             Some(frusta) => Path::Cells(frusta),
             _ if self.takes_tiles(of) && !view.parallel && self.is_crowd(of) => Path::Crowd,
-            _ if self.takes_tiles(of) && !view.parallel => Path::Tiles,
+            _ if self.takes_tiles(of) && !view.parallel && !self.prefers_box(of) => Path::Tiles,
             _ => Path::Box,
         }
+    }
+
+    /// True if a box is faster than tiles: for one copy of a solid that fills its box.
+    fn prefers_box(&self, of: &PlanObject) -> bool {
+        let fills = |s: &Arc<OffsetSurface>| s.is_of_patches() && proxy::fills_box(of.object, s);
+        !self.compute && of.copies().len() == 1 && of.surface.is_some_and(fills)
     }
 
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of

@@ -61,14 +61,19 @@ pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     sides.max_element() > LOPSIDED * sides.min_element()
 }
 
-/// Largest radius of a solid with cells, over half the box's side. Most of a wider solid's cells is
-/// outside of the box, and interpolated depths become too rough: at 60 they lost a pixel.
-pub(crate) const WIDEST: f64 = 2.0;
+/// Largest radius of a solid with cells, over half the box's side. Most rays to a wider solid enter
+/// the box within it, which the box finds at once, and most of its cells are outside of the box.
+const WIDEST: f64 = 1.5;
+
+/// True if a solid fills so much of its box that the box is drawn.
+pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
+    surface.extent()[0] > WIDEST * object.profile.radius
+}
 
 /// The frusta of `object`'s cells. Returns none unless they show all that the box shows from this
 /// camera: the box holds no replicas, the eye is outside all shells, and the near plane cuts none.
-/// Returns none also if the object is too small on the screen for its triangles to pay, or much
-/// wider than its box.
+/// Returns none also if the object is too small on the screen for its triangles to pay, or if it
+/// fills its box.
 pub(crate) fn frusta(
     object: &Object,
     surface: &OffsetSurface,
@@ -76,8 +81,7 @@ pub(crate) fn frusta(
     least_pixels: u32,
 ) -> Option<Vec<Range<u32>>> {
     let radius = object.profile.radius;
-    let too_wide = surface.extent()[0] > WIDEST * radius;
-    if object.repeat != [1; 3] || too_wide || surface.hull().touches {
+    if object.repeat != [1; 3] || fills_box(object, surface) || surface.hull().touches {
         return None;
     }
     let copies = object.placements();
