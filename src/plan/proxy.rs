@@ -61,13 +61,10 @@ pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
     sides.max_element() > LOPSIDED * sides.min_element()
 }
 
-/// Largest radius of a solid with cells, over half the box's side. Most rays to a wider solid enter
-/// the box within it, which the box finds at once, and most of its cells are outside of the box.
-const WIDEST: f64 = 1.5;
-
-/// True if a solid fills so much of its box that the box is drawn.
+/// True if a solid fills its box, so that the box is drawn: most rays enter the box within the solid,
+/// and most of the cells would be outside of the box.
 pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
-    surface.extent()[0] > WIDEST * object.profile.radius
+    surface.extent()[0] > Object::WIDEST * object.profile.radius
 }
 
 /// The frusta of `object`'s cells. Returns none unless they show all that the box shows from this

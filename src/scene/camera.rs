@@ -1,6 +1,6 @@
 //! Converts pixels to ray directions; the GPU's block and the reference share this code.
 
-use super::{Camera, Cluster, Growth, Placement, Scene};
+use super::{Camera, Cluster, Growth, Object, Placement, Scene};
 use crate::error::{Error, ErrorKind, Result, content};
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
@@ -112,7 +112,7 @@ impl CameraFrame {
             let side = object.profile.radius + growth.side;
             // The hull of a solid that its box cuts holds all of the solid.
             let whole = object.widest() + DVec2::from(object.axis_offset()).abs().max_element();
-            let radius = 1.04 * whole.clamp(side, 2.0 * side) + 0.02;
+            let radius = 1.04 * whole.clamp(side, Object::WIDEST * side) + 0.02;
             let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
             let middle_z = 0.5 * (1.0 + growth.high - growth.low);
             let range = |p: &Placement| {

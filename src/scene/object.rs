@@ -125,6 +125,9 @@ impl Object {
         self.axis.map(|o| (2.0 * o - 1.0) * self.profile.radius)
     }
 
+    /// Largest radius of a solid that cells draw, over half the side of its box.
+    pub(crate) const WIDEST: f64 = 1.5;
+
     /// Upper limit on the distance of the surface from its axis, before the box cuts it.
     pub(crate) fn widest(&self) -> f64 {
         let Offset {
