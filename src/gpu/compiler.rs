@@ -143,7 +143,7 @@ impl PipelineCompiler {
             one_object: 1,
             ..variant
         };
-        let outside = u32::from(object.clip != Clip::Box);
+        let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
         let (mut copies, mut all) = (object.clone(), Vec::new());
         copies.instances = vec![Placement::default(); 2].into();
         for object in [object, &copies] {
@@ -164,7 +164,8 @@ impl PipelineCompiler {
                 // for tables that are too large, and for many solids, do so too.
                 let own = variant.of_kind(kind);
                 let look_of = |v: &Variant| (v.lights, v.beveled, v.external);
-                let seen = Variant { outside, ..v }.of_kind(kind) == v;
+                // A box that may cut leaves some solids whole.
+                let seen = may_cut || Variant { outside: 1, ..v }.of_kind(kind) == v;
                 let choice = PipelineChoice(v, kind);
                 if look_of(&own) == look_of(&v) && seen && !all.contains(&choice) {
                     all.push(choice);

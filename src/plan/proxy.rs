@@ -68,7 +68,7 @@ pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
 }
 
 /// The frusta of `object`'s cells. Returns none unless they show all that the box shows from this
-/// camera: the box holds no replicas, the eye is outside all shells, and the near plane cuts none.
+/// camera: the eye is outside all shells, and the near plane cuts none.
 /// Returns none also if the object is too small on the screen for its triangles to pay, or if it
 /// fills its box.
 pub(crate) fn frusta(
@@ -78,7 +78,7 @@ pub(crate) fn frusta(
     least_pixels: u32,
 ) -> Option<Vec<Range<u32>>> {
     let radius = object.profile.radius;
-    if object.repeat != [1; 3] || fills_box(object, surface) || surface.hull().touches {
+    if fills_box(object, surface) || surface.hull().touches {
         return None;
     }
     let copies = object.placements();

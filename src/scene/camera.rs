@@ -100,7 +100,7 @@ impl CameraFrame {
         self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
     }
 
-    /// The depth range that contains every box before the eye; near is never closer than a
+    /// The depth range that contains every box and hull before the eye; near is never closer than a
     /// ten-thousandth of far.
     pub(crate) fn depth_range(&self, scene: &Scene) -> [f64; 2] {
         let mut low = f64::INFINITY;
@@ -111,8 +111,9 @@ impl CameraFrame {
             let growth = Growth::of(object);
             let side = object.profile.radius + growth.side;
             // The hull of a solid that its box cuts holds all of the solid.
-            let whole = object.widest() + DVec2::from(object.axis_offset()).abs().max_element();
-            let radius = 1.04 * whole.clamp(side, Object::WIDEST * side) + 0.02;
+            let shift = DVec2::from(object.axis_offset()).abs().max_element();
+            let whole = object.widest().min(Object::WIDEST * side) + shift;
+            let radius = 1.04 * whole.max(side) + 0.02;
             let half = DVec3::new(radius, radius, 0.5 * growth.height() + 0.002);
             let middle_z = 0.5 * (1.0 + growth.high - growth.low);
             let range = |p: &Placement| {

@@ -48,7 +48,7 @@ fn drawn(host: &Host, renderer: &mut Renderer, views: &[View]) -> Picture {
     (into.color(0), into.depths())
 }
 
-/// Cells, boxes, clipped cells and quads of copies.
+/// Cells, boxes, cut cells and quads of copies.
 fn scene(shadow: Shadow) -> Scene {
     let mut scene = three();
     scene.shadow = shadow;

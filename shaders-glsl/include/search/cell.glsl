@@ -1,10 +1,14 @@
-// Intersects the ray of a fragment with the patches of its cell, without branches. src/surface/hull.rs defines
-// cells and proves that no ray is lost; `trace_hull` of tests/common/walk.rs is the CPU twin of this file.
+// Intersects the ray of a fragment with the patches of its cell, without branches unless the box cuts the solid.
+// src/surface/hull.rs defines cells and proves that no ray is lost; `trace_hull` of tests/common/walk.rs is the CPU twin
+// for whole solids.
 #ifndef CELL_GLSL
 #define CELL_GLSL
 #extension GL_EXT_control_flow_attributes : require
 #include "stage/cell_varyings.glsl"
 #include "search/patch_row.glsl"
+#ifdef CUT
+#include "core/trace.glsl"
+#endif
 
 bool trace_cell(vec2 pixel, out Hit hit)
 {
@@ -15,7 +19,6 @@ bool trace_cell(vec2 pixel, out Hit hit)
     float eye = row.least;
     clip_to_sides(row);
     bool by_side = row.least > eye && row.least < row.most;
-    float side_t = row.least;
     row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
 #endif
     bool entered = false;
@@ -33,19 +36,10 @@ bool trace_cell(vec2 pixel, out Hit hit)
     }
     bool found = end_row(row, PATCHES_PER_CELL, hit);
 #ifdef CUT
-    // A ray that is in the solid where it passes a side of the box has entered the solid before, so it has a fragment
-    // in the cell where it entered, and this fragment draws the cut.
+    // A ray that enters the solid before a side may be in the solid there, or leave it into the shell of a cell that it
+    // then enters from behind. The fragment of the cell where it entered searches all of the box.
     if (by_side && entered) {
-        Meridian side = row.m;
-        side.o += side_t * side.v;
-        side.c = dot(side.o.xy, side.o.xy);
-        if (starts_within(side)) {
-            vec2 across = abs(side.o.xy + object.axis.xy);
-            hit.t = side_t;
-            hit.normal = face_normal(across.x > across.y ? FACE_X : FACE_Y, side.v, -1.0);
-            hit.point = side.o;
-            found = true;
-        }
+        found = trace_solid(row.m.o, row.m.v, -eye, EVERYWHERE, false, hit);
     }
 #endif
     return found;
