@@ -96,9 +96,11 @@ void make_record(uint visible)
     float largest = max(max(i.position_sx.w, i.scale_depth.x), i.scale_depth.y);
     precise vec4 limits = largest * crowd.objects_of[n].limits;
     uvec4 passes = uvec4(greaterThanEqual(i.scale_depth.zzzz, limits));
-    uvec4 levels = crowd.objects_of[n].levels;
-    uint coarser = max(passes.x + passes.y + passes.z + passes.w, levels.x) - levels.x;
-    i.object = uvec4(coarser == 0u ? numbers.w : levels.y + coarser - 1u, crowd.objects_of[n].pieces.x, 0u, 0u);
+    uvec4 pieces = crowd.objects_of[n].pieces;
+    uint coarser = max(passes.x + passes.y + passes.z + passes.w, pieces.w) - pieces.w;
+    uint finest = objects[numbers.w].object.patches.x;
+    uint table = coarser == 0u ? finest : objects[numbers.w].object.levels[coarser - 1u];
+    i.object = uvec4(numbers.w, pieces.x, 0u, table);
     instances[numbers.z + copy - numbers.x] = i;
 }
 

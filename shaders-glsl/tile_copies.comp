@@ -45,7 +45,7 @@ void main()
         count_steps(pixel, hit);
         if (found) {
             Instance i = instances[index];
-            take_one_of_objects(i.object.x);
+            take_one_of_objects(i);
             store(pixel, depth, shade(look_of(i, index), pixel_rays(i), pixel, hit));
         }
     }

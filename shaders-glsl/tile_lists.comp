@@ -26,14 +26,14 @@ void main()
     Instance instance;
     if (ONE_INSTANCE != 0u) {
         instance = instances[pushed.instance];
-        take_object(pushed.object);
+        take_only_object(pushed.object);
+        take_level(instance);
     } else {
         instance = instances[number];
-        take_object(instance.object.x);
+        take_object(instance);
     }
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
-    place_own_tables();
     uvec2 header = listed_table(0u).xy;
     float unit = uintBitsToFloat(header.y);
 

@@ -13,7 +13,7 @@ void main()
     share_patches();
     barrier();
     take_shared_instance();
-    take_one_of_objects(tile_instance.object.x);
+    take_one_of_objects(tile_instance);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;

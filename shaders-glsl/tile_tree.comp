@@ -8,8 +8,7 @@ void main()
     take_frame();
     take_record();
     take_only_object(pushed.object);
-    take_one_of_objects(tile_instance.object.x);
-    place_own_tables();
+    take_one_of_objects(tile_instance);
     begin_tile();
     // Records of the last bin contain the span. Records in tile order do not.
     vec2 span = LIST_LENGTH != 0u && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;

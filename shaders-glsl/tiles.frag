@@ -21,7 +21,7 @@ void main()
         discard;
     }
     Instance i = instances[index];
-    take_one_of_objects(i.object.x);
+    take_one_of_objects(i);
     PixelRays rays = pixel_rays(i);
     store(shade(look_of(i, index), rays, pixel, hit), rays, index, pixel, hit);
     gl_FragDepth = depth_of(rays.base + hit.t);

@@ -275,10 +275,9 @@ fn crowd_object(
         all
     };
     let [x, y] = [shape.axis.x, shape.axis.y].map(words_of);
-    // Without levels every copy has the object's block.
-    let levels = of.levelled.map_or(([f32::INFINITY; 4], [0; 2]), |copies| {
-        let levels = &copies.levels;
-        (levels.limits, [levels.first as u32, copies.first_block])
+    // Without levels every copy has the finest one.
+    let (limits, finest) = of.levelled.map_or(([f32::INFINITY; 4], 0), |copies| {
+        (copies.levels.limits, copies.levels.first as u32)
     });
     CrowdObject {
         axis: [x[0], x[1], y[0], y[1]],
@@ -294,10 +293,9 @@ fn crowd_object(
             layer,
             outer.len() as u32,
             inner.len().min(g::CROWD_PIECES as usize) as u32,
-            0,
+            finest,
         ],
-        limits: levels.0,
-        levels: [levels.1[0], levels.1[1], 0, 0],
+        limits,
         outer: packed(outer),
         inner: packed(inner),
     }

@@ -84,8 +84,6 @@ pub(crate) struct LevelledCopies {
     pub levels: CopyLevels,
     /// The surfaces of the levels after the finest.
     pub coarser: Vec<Arc<OffsetSurface>>,
-    /// Number of the block of the first of these.
-    pub first_block: u32,
 }
 
 impl LevelledCopies {
@@ -94,14 +92,6 @@ impl LevelledCopies {
         let [_, _, _, across] = copy.position_sx;
         let [y, z, depth, _] = copy.scale_depth;
         self.levels.of(depth, across.max(y).max(z))
-    }
-
-    /// Number of the block of a copy. `number`: that of its object.
-    pub fn block(&self, number: u32, copy: &InstanceBlock) -> u32 {
-        match self.level(copy) - self.levels.first {
-            0 => number,
-            n => self.first_block + n as u32 - 1,
-        }
     }
 }
 

@@ -152,7 +152,7 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
-            one_object: u32::from(alone) << u32::from(of.levelled.is_some()),
+            one_object: u32::from(alone),
             one_instance: u32::from(alone && of.copies().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant

@@ -118,7 +118,7 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 /// object. Lists take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer on lavapipe 22.
 /// On lavapipe 25 they take 1.07 to 1.13 of it at 200 to 300 pixels for each patch, 0.95 to 1.0 at
 /// 360 to 600 and 0.79 to 0.93 beyond; on lavapipe 22 0.94, 0.73 to 0.86 and less.
-const LISTED_PIXELS: [u64; 2] = [300, 3];
+const LISTED_PIXELS: [u64; 2] = [150, 3];
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
 pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =

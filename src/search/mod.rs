@@ -137,8 +137,10 @@ impl Steps {
 /// A search's own table on the device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SearchTable {
-    /// The results of `patch_vector(0)` and so on in GLSL.
+    /// The results of `patch_vector(0)` and so on in GLSL, after `before` others.
     pub vectors: Vec<[u32; 4]>,
+    /// Number of the vectors with negative numbers in GLSL, from -1 backwards.
+    pub before: u32,
     /// The value of `object.patches.yzw` in GLSL.
     pub facts: [u32; 3],
 }

@@ -73,6 +73,7 @@ blocks! {
         instances: [u32; 4],
         patches: [u32; 4],
         parts: [u32; 4],
+        levels: [u32; 4],
     }
 
     /// `CasterNode` of `core/shadow.glsl`.
@@ -112,7 +113,6 @@ blocks! {
         copies: [u32; 4],
         pieces: [u32; 4],
         limits: [f32; 4],
-        levels: [u32; 4],
         outer: [[f32; 4]; CROWD_PIECES as usize],
         inner: [[f32; 4]; CROWD_PIECES as usize],
     }

@@ -157,7 +157,7 @@ fn modules_are_few_and_small() {
             // SPIR-V's optimiser inlines every call.
             (_, Features::Full, _) => 78_900,
             // Solves patches, and walks the tree for rays that pass a side.
-            (Entry::CutCells, Features::Textured, _) => 49_400,
+            (Entry::CutCells, Features::Textured, _) => 49_700,
             (Entry::CutCells, Features::Plain, _) => 44_000,
             // Copies may also come from queues of the device.
             (Entry::TileCopies | Entry::Tiles, Features::Textured, _) => 43_000,

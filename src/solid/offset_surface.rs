@@ -138,7 +138,10 @@ impl OffsetSurface {
 
     /// The tables that the search walks.
     pub fn tables(&self) -> &SearchTable {
-        let make = || SearchTable::new(self.quadrics().unwrap_or_default());
+        let make = || match (self.quadrics(), self.contour.get()) {
+            (Some(patches), Ok(contour)) => SearchTable::new(patches, contour),
+            _ => SearchTable::default(),
+        };
         match self.made() {
             Ok(Made::Table(table)) => table,
             _ => self.tables.get_or_init(make),
@@ -206,6 +209,16 @@ impl OffsetSurface {
 
     pub fn slot(&self, part: Part) -> Option<&Slot> {
         self.slots[part as usize].get()
+    }
+
+    /// The number in the buffer of all tables from which shaders count a part's vectors; 0 if the part
+    /// is not stored.
+    pub fn start(&self, part: Part) -> u32 {
+        let before = || match part {
+            Part::Tables => self.tables().before,
+            Part::Frusta | Part::Patches => 0,
+        };
+        self.slot(part).map_or(0, |slot| slot.begin() + before())
     }
 
     /// Keeps the slot of a part, unless it has one.

@@ -10,20 +10,15 @@ impl SearchTable {
     /// `core/patch_tables.glsl`. GLSL searches them with `search/quadric.glsl`.
     #[must_use]
     pub fn of_patches(contour: &Contour) -> Self {
-        Self::new(&fit_patches(contour, &FitOptions::default()))
+        Self::new(&fit_patches(contour, &FitOptions::default()), contour)
     }
 
-    /// Patches in the layout of `patch_tables.glsl`.
-    pub(crate) fn new(patches: &[QuadricPatch]) -> Self {
+    /// Patches of a contour in the layout of `patch_tables.glsl`.
+    pub(crate) fn new(patches: &[QuadricPatch], contour: &Contour) -> Self {
         let tables = Tables::new(patches, PATCH_ROWS);
-        let (mut words, unit) = nodes(&tables.nodes);
+        let unit = unit(contour);
+        let mut words = nodes(&tables.nodes, unit);
         words.extend(&tables.rows);
-        let mut vectors = words.as_chunks().0.to_vec();
-        let first_record = vectors.len();
-        for record in &tables.records {
-            vectors.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
-        }
-        let first_range = vectors.len();
         let ranges = |pair: &[GpuPatch]| {
             let range = |k: usize| {
                 pair.get(k)
@@ -32,18 +27,17 @@ impl SearchTable {
             let [[a, b], [c, d]] = [range(0), range(1)];
             [a, b, c, d]
         };
-        vectors.extend(tables.records.chunks(2).map(ranges));
+        let mut vectors: Vec<_> = tables.records.chunks(2).rev().map(ranges).collect();
+        let before = index(vectors.len());
+        vectors.extend(words.as_chunks().0);
+        for record in &tables.records {
+            vectors.extend([record.quadric, record.guard].map(|v| v.map(f32::to_bits)));
+        }
         Self {
             vectors,
-            facts: [index(first_record), index(first_range), unit.to_bits()],
+            before,
+            facts: [0, 0, unit.to_bits()],
         }
-    }
-
-    /// `Object.patches` of `blocks.glsl` for a table whose first vector is number `begin` of the
-    /// buffer.
-    pub(crate) fn block(&self, begin: u32) -> [u32; 4] {
-        let [a, b, c] = self.facts;
-        [begin, a, b, c]
     }
 }
 
@@ -77,18 +71,24 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
         .collect()
 }
 
-/// Least and largest `r^2` of each node in two 16-bit halves of a word, rounded outwards, and their
-/// unit.
-fn nodes(extents: &[[f32; 2]]) -> (Vec<u32>, f32) {
-    let largest = extents.iter().fold(1e-6f32, |m, n| m.max(n[1]));
-    // The unit is slightly larger than 16 bits need, so that roundings of the product stay inside.
-    let unit = largest * (1.0 + 1e-6) / 65535.0;
+/// The largest distance of a level from its contour, object units; an upper bound.
+pub(crate) const LEVELS_BULGE: f64 = 1.0 / 32.0;
+
+/// The unit of `r^2` in the tables of all levels of a contour.
+fn unit(contour: &Contour) -> f32 {
+    let points = contour.chains.iter().flat_map(|chain| &chain.points);
+    let largest = points.fold(0.0, |m: f64, p| m.max(p.x)) + LEVELS_BULGE;
+    (largest * largest / 65535.0) as f32
+}
+
+/// Least and largest `r^2` of each node in two 16-bit halves of a word, rounded outwards.
+fn nodes(extents: &[[f32; 2]], unit: f32) -> Vec<u32> {
     let word = |[low, high]: &[f32; 2]| {
         let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;
         let high = (high / unit).ceil().clamp(0.0, 65535.0) as u32;
         low | high << 16
     };
-    (extents.iter().map(word).collect(), unit)
+    extents.iter().map(word).collect()
 }
 
 fn index(n: usize) -> u32 {

@@ -276,20 +276,16 @@ impl Cutter {
                 return None;
             }
         }
-        let q = if linear.abs() > 2.0 * widest * FLAT {
-            0.0f64.clamp(low, high)
-        } else {
-            0.5 * (low + high)
-        };
-        // The guard can separate it from its neighbours by length along the boundary, if r is
-        // monotone; else by z, if its ends are steep.
-        let climb = b.y - a.y;
-        let ends = [(a.x, linear - q * climb), (b.x, linear + q * climb)];
-        let monotone = ends[0].1 * ends[1].1 >= 0.0;
-        let steep = ends
-            .iter()
-            .all(|&(r, slope)| r == 0.0 || slope.abs() <= 2.0 * r * STEEP);
-        (monotone || steep).then_some(q)
+        let nearest = |q: f64| q.clamp(low, high);
+        let middle = 0.5 * (low + high);
+        if linear.abs() > 2.0 * widest * FLAT {
+            return Some(nearest(0.0)).filter(|&q| separates(a, b, q));
+        }
+        // A wide interval permits bends that no guard separates: one without a turn may be in it.
+        let monotone = (linear / (b.y - a.y)).abs();
+        [middle, nearest(middle.clamp(-monotone, monotone))]
+            .into_iter()
+            .find(|&q| separates(a, b, q))
     }
 
     fn quadric(&self, i: usize, j: usize, q: f64, chain: u32) -> QuadricPatch {
@@ -365,6 +361,14 @@ impl Cutter {
             next: None,
         }
     }
+}
+
+/// True if a guard can separate a patch from its neighbours: by length along the boundary, if `r` is
+/// monotone; else by `z`, if its ends are steep.
+fn separates(a: DVec2, b: DVec2, q: f64) -> bool {
+    let (_, slopes) = parabola(a, b, q);
+    let steep = |(r, slope): (f64, f64)| r == 0.0 || slope.abs() <= 2.0 * r * STEEP;
+    slopes[0] * slopes[1] >= 0.0 || [a.x, b.x].into_iter().zip(slopes).all(steep)
 }
 
 /// `[p0, p1, p2]` of the parabola through both ends, and its slopes there.

@@ -237,6 +237,25 @@ fn pictures_are_twice_as_good_as_the_rbm_baseline() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// A wider tolerance takes at most a quarter more patches than any narrower one, or 10.
+#[test]
+fn coarser_levels_have_fewer_patches() {
+    for (name, profile) in profiles() {
+        let source = ContourSource::new(&profile.outline).unwrap();
+        let contour = source.contour(&Offset::default()).unwrap();
+        let mut most = usize::MAX;
+        for level in 0..=12 {
+            let tolerance = FitOptions::default().tolerance * f64::from(1 << level);
+            let patches = fit_patches(&contour, &FitOptions { tolerance }).len();
+            assert!(
+                patches <= most,
+                "{name}, level {level}: {patches} patches, at most {most}"
+            );
+            most = most.min(patches.max(8) * 5 / 4);
+        }
+    }
+}
+
 /// Eyes within the box and within the solid, and boxes that cut the solid at their sides.
 #[test]
 fn eyes_inside_and_boxes_that_cut() {

@@ -15,7 +15,7 @@ use revmap::frame::Frame;
 use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, Renderer, View};
 use revmap::maps::MapFormat;
 use revmap::scene::{Material, Object, Placement, Scene};
-use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Settings, Solver};
+use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Settings, Solver, Tolerance};
 use std::collections::HashSet;
 
 type F = vk::Format;
@@ -117,6 +117,35 @@ fn all_planes(scene: &Scene, solver: Solver) -> Frame {
         ..sized(options().width, options().height)
     };
     draw(scene, &settings)
+}
+
+/// Copies of an object have its number, whatever their levels.
+#[test]
+fn levels_of_copies_keep_the_identity() {
+    let (host, mut scene) = (open(), three());
+    let device = borrow(&host);
+    let copy = |n: u32| Placement {
+        position: DVec3::new(f64::from(n % 10) - 4.5, -4.0 * f64::from(n / 10), 0.0),
+        ..Placement::default()
+    };
+    scene.objects[1].instances = (0..100).map(copy).collect();
+    let settings = SearchSettings {
+        tolerance: Tolerance::DEFAULT,
+        ..SearchSettings::exact()
+    };
+    let mut lists = Lists::new(&host, &device, &[Plane::Identity], &scene, &settings);
+    lists.draw(&view_of(&scene, &options()));
+    let numbers: HashSet<u32> = lists.ids.iter().map(|id| id.number()).collect();
+    let drawn = lists.read::<2>(Plane::Identity);
+    let levels = lists.renderer.copy_levels().concat();
+    let mut drawn_levels = HashSet::new();
+    for [object, copy] in drawn.into_iter().filter(|pixel| *pixel != [u32::MAX; 2]) {
+        assert!(numbers.contains(&object), "object {object}");
+        if object == lists.ids[1].number() {
+            drawn_levels.insert(levels[copy as usize]);
+        }
+    }
+    assert!(drawn_levels.len() > 1, "{drawn_levels:?}");
 }
 
 fn far(a: &[f32], b: &[f32]) -> f32 {

@@ -109,6 +109,7 @@ impl Cones {
     fn table(&self) -> SearchTable {
         SearchTable {
             vectors: self.rows.iter().map(|r| r.map(f32::to_bits)).collect(),
+            before: 0,
             facts: [self.rows.len() as u32, self.reach.to_bits(), 0],
         }
     }

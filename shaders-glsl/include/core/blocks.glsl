@@ -45,7 +45,7 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
     vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
-    uvec4 object;     // x: index of its object; y, z: its layer, and its index among those of crowds
+    uvec4 object;     // index of its object; layer, in crowds; first vectors of its listed patches and of its table
 };
 
 // An object: the data that its instances share.
@@ -58,16 +58,18 @@ struct Object {
     vec4 specular;   // strength, shininess; height of the box and of its part below z = 0, profile units
     vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
     uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
-    uvec4 instances; // first, count, index of the shape map among those of shadows, first vector of all levels' tables
-    uvec4 patches;    // quadric search (patch_tables.glsl): table start, first record, first range, unit of r^2 (bits);
-                     // other searches: table start, three words of their own
-    uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of the listed patches
+    uvec4 instances; // first, count, index of the shape map among those of shadows, first vector of all tables
+    uvec4 patches;   // table start, the copy's; three words: quadric search: 0, 0, unit of r^2 (bits); other searches:
+                     // three words of their own
+    uvec4 parts;     // first frustum; roughness and metalness (16 bits each); first vector of listed patches, the copy's,
+                     // and of those of all levels
+    uvec4 levels;    // table starts of the levels of copies after the finest
 };
 
 // An object padded to the largest alignment of uniform buffer offsets on any device.
 struct PaddedObject {
     Object object;
-    uvec4 padding[5];
+    uvec4 padding[4];
 };
 
 layout(set = 0, binding = 1, std430) readonly buffer ObjectBlock {
@@ -106,76 +108,65 @@ void take_frame()
     second_light.color = frame_block.lights[1].color;
 }
 
-// Copy the members of an object that all levels share, and those that differ, from either buffer.
-#define TAKE_SHARED(from) \
+#define TAKE_OBJECT(from) \
     object.map = from.map; \
+    object.bounds = from.bounds; \
     object.offset = from.offset; \
     object.axis = from.axis; \
     object.albedo = from.albedo; \
     object.specular = from.specular; \
     object.texturing = from.texturing; \
     object.cells = from.cells; \
-    object.instances = from.instances
-
-#define TAKE_LEVEL(from) \
-    object.bounds = from.bounds; \
+    object.instances = from.instances; \
     object.patches = from.patches; \
     object.parts = from.parts
 
-// Loads what a draw or dispatch of one object has in a uniform buffer.
+// Loads the object of a draw or dispatch that has only one.
 void take_only_object(uint number)
 {
     if (ONE_OBJECT != 0u) {
-        TAKE_SHARED(own_object);
+        TAKE_OBJECT(own_object);
         // Loop lengths come from the storage buffer: lavapipe 22 treats uniforms that loops depend on as constants, and
         // crashes.
         object.offset.w = objects[number].object.offset.w;
         object.cells = objects[number].object.cells;
     }
-    if (ONE_OBJECT == 1u) {
-        TAKE_LEVEL(own_object);
-    }
 }
 
-// Loads the rest: one of several objects, or a level.
-void take_one_of_objects(uint number)
+// Sets the places of the tables that a copy's level has.
+void take_level(Instance i)
+{
+    object.parts.z = i.object.z;
+    object.patches.x = i.object.w;
+}
+
+// Loads the rest: one of several objects, and a copy's level.
+void take_one_of_objects(Instance i)
 {
     if (ONE_OBJECT == 0u) {
-        TAKE_SHARED(objects[number].object);
+        TAKE_OBJECT(objects[i.object.x].object);
     }
-    if (ONE_OBJECT != 1u) {
-        TAKE_LEVEL(objects[number].object);
-    }
+    take_level(i);
 }
 
-void take_object(uint number)
+void take_object(Instance i)
 {
-    take_only_object(number);
-    take_one_of_objects(number);
-}
-
-// Makes the places of the object's tables relative to the uniform buffer, if it holds them.
-void place_own_tables()
-{
-    if (OWN_TABLES != 0u) {
-        object.patches.x = ONE_OBJECT == 2u ? object.patches.x - object.instances.w : 0u;
-        object.parts.z = ONE_OBJECT == 2u ? object.parts.z - object.instances.w : 0u;
-    }
+    take_only_object(i.object.x);
+    take_one_of_objects(i);
 }
 
 // Loads the members of an object that a search reads and that another copy of the draw may not share.
-void take_shape(uint number)
+void take_shape(Instance i)
 {
-    if (ONE_OBJECT != 1u) {
-        object.bounds = objects[number].object.bounds;
-        object.patches = objects[number].object.patches;
-    }
     if (ONE_OBJECT == 0u) {
-        object.map = objects[number].object.map;
-        object.offset = objects[number].object.offset;
-        object.axis = objects[number].object.axis;
-        object.cells = objects[number].object.cells;
+        object.map = objects[i.object.x].object.map;
+        object.bounds = objects[i.object.x].object.bounds;
+        object.offset = objects[i.object.x].object.offset;
+        object.axis = objects[i.object.x].object.axis;
+        object.cells = objects[i.object.x].object.cells;
+        object.patches = objects[i.object.x].object.patches;
     }
+    take_level(i);
 }
 
 #endif

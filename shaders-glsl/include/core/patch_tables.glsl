@@ -1,9 +1,9 @@
-// Tables of quadric patches. The tables of an object, in this order:
+// Tables of quadric patches. The tables of a level, in this order:
+// - ranges of z in front of the start, two records per vector, the first ones last;
 // - words, four per vector: first PATCH_NODES nodes of the tree, level by level. A node holds the least r^2 (rounded
 //   down, low half) and the largest (rounded up, high half) in units of object.patches.w. The runs of the rows follow,
 //   first << RUN_BITS | count;
-// - records from object.patches.y, two vectors each: a patch's quadric, its guard;
-// - ranges of z from object.patches.z, two records per vector.
+// - records from FIRST_RECORD on, two vectors each: a patch's quadric, its guard.
 // Frusta of cells are stored separately (proxy_cells.vert).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
@@ -20,37 +20,37 @@ layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
 };
 
 const uint RUN_BITS = 12u;
+const uint FIRST_RECORD = (PATCH_NODES + PATCH_ROWS) / 4u;
 
 bool takes_own_tables()
 {
     return OWN_TABLES != 0u && !casts;
 }
 
-// The functions below need place_own_tables() of blocks.glsl.
 uint patch_word(uint at)
 {
     uint vector = object.patches.x + (at >> 2);
-    return takes_own_tables() ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
+    return takes_own_tables() ? own_patch_tables[vector - object.instances.w][at & 3u] : patch_tables[vector][at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
     uint vector = object.patches.x + at;
-    return uintBitsToFloat(takes_own_tables() ? own_patch_tables[vector] : patch_tables[vector]);
+    return uintBitsToFloat(takes_own_tables() ? own_patch_tables[vector - object.instances.w] : patch_tables[vector]);
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
     uint vector = object.parts.z + at;
-    return OWN_TABLES != 0u ? own_patch_tables[vector] : patch_tables[vector];
+    return OWN_TABLES != 0u ? own_patch_tables[vector - object.parts.w] : patch_tables[vector];
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
     uint vector = object.parts.z + at;
-    return OWN_TABLES != 0u ? own_patch_tables[vector][k] : patch_tables[vector][k];
+    return OWN_TABLES != 0u ? own_patch_tables[vector - object.parts.w][k] : patch_tables[vector][k];
 }
 
 // Returns the least and largest r^2 of a node.

@@ -154,7 +154,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
                 break;
             }
             Instance i = instances[met];
-            take_shape(i.object.x);
+            take_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load
             // gives 0, and a loop's counter an index without a texture.

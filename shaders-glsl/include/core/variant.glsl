@@ -74,7 +74,7 @@ layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, 
 // the first condition counts. Cells do not read it: modules with CUT replace 0.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
-layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: one object, in a uniform buffer; 2: its copies also have levels
+layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side

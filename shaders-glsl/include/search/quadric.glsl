@@ -50,10 +50,10 @@ bool starts_within(Meridian m)
     uint beyond = 0u;
     for (uint n = 0u; n < (run & ((1u << RUN_BITS) - 1u)); ++n) {
         uint record = (run >> RUN_BITS) + n;
-        uint at = object.patches.y + 2u * record;
+        uint at = FIRST_RECORD + 2u * record;
         vec4 q = patch_vector(at);
         float above = m.o.z - patch_vector(at + 1u).x;
-        vec4 ranges = patch_vector(object.patches.z + (record >> 1));
+        vec4 ranges = patch_vector(~(record >> 1));
         vec2 range = (record & 1u) == 0u ? ranges.xy : ranges.zw;
         float p = -q.x * (q.y + above * (q.z + above * q.w));
         beyond += uint(q.x != 0.0 && range.x <= m.o.z && m.o.z < range.y && p > m.c);
@@ -114,7 +114,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        uint first = object.patches.y + 2u * (run >> RUN_BITS);
+        uint first = FIRST_RECORD + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
             uint at = first + 2u * k;
             vec4 q = patch_vector(at);

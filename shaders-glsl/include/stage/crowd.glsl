@@ -31,9 +31,8 @@ struct CrowdObject {
     vec4 shape;    // the same; radius of the cylinder around it; unused
     vec4 heights;  // lowest and highest z of that cylinder; unused
     uvec4 copies;  // first and end among all copies of crowds; first instance; index of the object
-    uvec4 pieces;  // layer; number of outer and of inner pieces; unused
+    uvec4 pieces;  // layer; number of outer and of inner pieces; the finest level
     vec4 limits;   // limits of the levels of copies
-    uvec4 levels;  // the finest level; number of the block of the next one; unused
     vec4 outer[CROWD_PIECES]; // cylinders around the solid: radius, low, high
     vec4 inner[CROWD_PIECES]; // cylinders within the solid
 };

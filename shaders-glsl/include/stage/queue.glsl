@@ -54,8 +54,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         if (!marked && i.object.y != layer) {
             continue;
         }
-        take_shape(i.object.x);
-        place_own_tables();
+        take_shape(i);
         PixelRays rays = pixel_rays(i);
         Hit hit;
         bool met = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);

@@ -33,7 +33,6 @@ void take_over_tree()
 #endif
 #if READS_TABLES
     object.patches = tree_patches;
-    place_own_tables();
 #endif
 }
 

@@ -26,7 +26,7 @@ layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both l
 void take_over()
 {
     take_frame();
-    take_object(instances[uint(look_ambient.w)].object.x);
+    take_object(instances[uint(look_ambient.w)]);
     frame.dir_00.w = ray_dir_00.w;
     frame.dir_x.w = ray_dir_x.w;
     frame.dir_y.w = ray_dir_y.w;

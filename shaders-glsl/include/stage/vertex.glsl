@@ -13,7 +13,7 @@ Instance begin(uint number)
     take_frame();
     instance_number = number;
     Instance i = instances[number];
-    take_object(i.object.x);
+    take_object(i);
     return i;
 }
 

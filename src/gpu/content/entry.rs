@@ -1,12 +1,14 @@
 //! A renderer's record of an object: its values, and the resources that are derived from them.
 
+use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
+use crate::plan::levels::COPY_LEVELS;
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
-use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
+use crate::solid::offset_surface::{OffsetSurface, Part};
 use crate::solid::{farthest_corner, largest_width};
 use std::ops::Range;
 use std::sync::Arc;
@@ -153,7 +155,11 @@ impl Entry {
     /// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside
     /// of which nothing is solid.
     #[allow(clippy::cast_possible_truncation)]
-    pub fn bounds(&self, derived: &Derived, surface: Option<&OffsetSurface>) -> [f32; 4] {
+    pub fn bounds<'a>(
+        &self,
+        derived: &Derived,
+        surfaces: impl Iterator<Item = &'a Arc<OffsetSurface>>,
+    ) -> [f32; 4] {
         let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
         let texel = 1.0 / f64::from(map.rows);
         let grow = largest_width(&object.offset).max(0.0) + texel;
@@ -166,19 +172,18 @@ impl Entry {
         let radius = (map.bounds.r_max + grow)
             .min(farthest_corner(object) + texel)
             .min(reach);
-        let patches = surface.filter(|_| solver.follows_tolerance());
+        let patches = surfaces.filter(|_| solver.follows_tolerance());
         [
             object.profile.radius as f32,
-            radius as f32 + patches.map_or(0.0, |s| s.slack() as f32),
+            (radius + patches.map(|s| s.slack()).fold(0.0, f64::max)) as f32,
             (map.bounds.z_min - grow).max(0.0) as f32,
             (map.bounds.z_max + grow).min(1.0) as f32,
         ]
     }
 
-    /// The block that shaders read, for this surface; `None` before anything was derived.
-    /// `window`: first vector of the tables of all levels.
+    /// The block that shaders read; `None` before anything was derived.
     #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
-    pub fn block(&self, surface: Option<&OffsetSurface>, window: u32) -> Option<ObjectBlock> {
+    pub fn block(&self, planned: &PlannedObject) -> Option<ObjectBlock> {
         let (_, derived) = self.resources()?;
         let (object, map) = (self.drawn(), &derived.facts);
         let f = |v: f64| v as f32;
@@ -198,8 +203,14 @@ impl Entry {
         };
         let (strength, shininess) = (object.specular.strength, object.specular.shininess);
         let first = self.instances.start;
-        let begin = |part| surface.and_then(|s| s.slot(part)).map(Slot::begin);
-        let tables = begin(Part::Tables).zip(surface);
+        let finest = planned.surface.as_ref();
+        let start = |part| finest.map_or(0, |s| s.start(part));
+        let stored = finest.filter(|s| s.slot(Part::Tables).is_some());
+        let [a, b, c] = stored.map_or([0; 3], |s| s.tables().facts);
+        let mut levels = [0; COPY_LEVELS.len() - 1];
+        for (to, surface) in levels.iter_mut().zip(planned.surfaces().skip(1)) {
+            *to = surface.start(Part::Tables);
+        }
         Some(ObjectBlock {
             map: [
                 map.columns as f32,
@@ -207,7 +218,7 @@ impl Entry {
                 f(1.0 / f64::from(map.rows)),
                 map.scale,
             ],
-            bounds: self.bounds(derived, surface),
+            bounds: self.bounds(derived, planned.surfaces()),
             offset: [
                 f(offset.extend),
                 f(bevel),
@@ -228,15 +239,16 @@ impl Entry {
                 first,
                 self.instances.end - first,
                 derived.shadow_map,
-                window,
+                planned.window(Part::Tables).start,
             ],
-            patches: tables.map_or([0; 4], |(at, surface)| surface.tables().block(at)),
+            patches: [start(Part::Tables), a, b, c],
             parts: [
-                begin(Part::Frusta).unwrap_or(0),
+                start(Part::Frusta),
                 object.material().bits(),
-                begin(Part::Patches).unwrap_or(0),
-                0,
+                start(Part::Patches),
+                planned.window(Part::Patches).start,
             ],
+            levels,
         })
     }
 }

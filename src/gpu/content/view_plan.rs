@@ -8,8 +8,9 @@ use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{
     self, COPY_LEVELS, CopyLevels, GRAZING, LevelledCopies, coarsest, pixels_per_unit,
 };
-use crate::plan::{Conditions, FramePlan, MOST_PROXIES, Parts, PlanObject, View, plan, shape_of};
+use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
+use crate::shader::InstanceBlock;
 use crate::solid::largest_width;
 use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
 use rayon::prelude::*;
@@ -27,8 +28,6 @@ pub(crate) struct ViewPlan {
     pub frame: FramePlan,
     /// One per drawn object, in order.
     pub objects: Vec<PlannedObject>,
-    /// Number of blocks: those of all objects, then those of coarser levels.
-    pub blocks: u32,
     /// Number of instances, with free ones. The records of the last frame's placements are after
     /// them.
     pub instances: u32,
@@ -51,17 +50,21 @@ impl PlannedObject {
         self.surface.iter().chain(coarser)
     }
 
-    /// The vectors that hold the tables of all its levels, and other tables between them.
-    pub fn window(&self, parts: &Parts) -> Range<u32> {
-        let kinds = [(parts.tables, Part::Tables), (parts.patches, Part::Patches)];
-        let stored = self.surfaces().flat_map(|surface| {
-            let read = kinds.into_iter().filter(|(reads, _)| *reads);
-            read.filter_map(|(_, part)| Some((surface.slot(part)?.begin(), surface.vectors(part))))
+    /// The vectors that hold a part of all its levels, and others between them.
+    pub fn window(&self, part: Part) -> Range<u32> {
+        let stored = self.surfaces().filter_map(|surface| {
+            let begin = surface.slot(part)?.begin();
+            Some(begin..begin + surface.vectors(part).len() as u32)
         });
         stored
-            .map(|(begin, vectors)| begin..begin + vectors.len() as u32)
             .reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
             .unwrap_or_default()
+    }
+
+    /// The number of a copy's surface among all.
+    pub fn surface_of(&self, copy: &InstanceBlock) -> usize {
+        let coarser = |copies: &LevelledCopies| copies.level(copy) - copies.levels.first;
+        self.levelled.as_ref().map_or(0, coarser)
     }
 }
 
@@ -76,12 +79,7 @@ impl Content {
             self.plan = Some(plan.clone());
             return Ok(plan);
         }
-        let mut objects = self.with_surfaces(Some(view))?;
-        let mut blocks = self.objects.number_count() as u32;
-        for copies in objects.iter_mut().filter_map(|of| of.levelled.as_mut()) {
-            copies.first_block = blocks;
-            blocks += copies.coarser.len() as u32;
-        }
+        let objects = self.with_surfaces(Some(view))?;
         let read = objects.iter().filter_map(|planned| {
             let entry = self.objects.at(planned.number)?;
             entry.plan_object(planned)
@@ -91,7 +89,6 @@ impl Content {
             version: self.version,
             frame: plan(view, &read.collect::<Vec<_>>(), &self.conditions()),
             objects,
-            blocks,
             instances: self.objects.instances(),
         });
         self.plan = Some(made.clone());
@@ -292,7 +289,7 @@ impl Entry {
     pub fn plan_object<'a>(&'a self, planned: &'a PlannedObject) -> Option<PlanObject<'a>> {
         let (boundary, derived) = self.resources()?;
         let (object, surface) = (self.drawn(), planned.surface.as_ref());
-        let bounds = self.bounds(derived, surface.map(Arc::as_ref));
+        let bounds = self.bounds(derived, surface.into_iter());
         let texels = 2.0 / f64::from(derived.facts.rows);
         let away = largest_width(&object.offset).max(0.0) + texels;
         Some(PlanObject {

@@ -3,18 +3,16 @@
 //! objects anew.
 
 use super::Renderer;
-use super::slot::{BoundPlan, BoundStep, FrameSlot, FrameStatistics, SlotBuffer, Written};
+use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer, Written};
 use crate::error::{Error, ErrorKind, Result, lock};
-use crate::gpu::content::entry::Entry;
-use crate::gpu::content::view_plan::{PlannedObject, ViewPlan};
+use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
 use crate::plan::View;
 use crate::settings::Planes;
 use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
-use crate::solid::offset_surface::{Part, Slot};
+use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
 use std::borrow::Cow;
-use std::iter;
 use std::sync::Arc;
 
 /// A frame that was prepared in a slot; the argument of [`Renderer::record`]. Preparing the slot
@@ -151,18 +149,12 @@ impl Renderer {
                 _ => Part::Tables,
             };
             let mut variant = step.variant;
-            let begin = match (&object.surface, &object.levelled) {
-                _ if variant.own_tables == 0 => 0,
-                (_, Some(_)) => {
-                    let window = object.window(&frame.parts[step.object as usize]);
-                    variant.own_tables = u32::from(window.len() <= own_vectors);
-                    window.start
-                }
-                (surface, None) => {
-                    let slot = surface.as_ref().and_then(|s| s.slot(part));
-                    slot.map_or(0, Slot::begin)
-                }
-            };
+            let mut begin = 0;
+            if variant.own_tables != 0 {
+                let window = object.window(part);
+                variant.own_tables = u32::from(window.len() <= own_vectors);
+                begin = window.start;
+            }
             // What draws crowds needs their lists.
             let hides = self.hides && n < frame.steps.len();
             steps.push(BoundStep {
@@ -189,7 +181,7 @@ impl Renderer {
         let hierarchy = shadowed.then(|| self.content.hierarchy(plan));
         let to = &mut self.slots[slot];
         let records = u64::from(plan.instances) * if motion { 2 } else { 1 };
-        let bytes = u64::from(plan.blocks) * u64::from(OBJECT_STRIDE);
+        let bytes = self.content.objects.number_count() as u64 * u64::from(OBJECT_STRIDE);
         let grown = to.fit(SlotBuffer::Objects, bytes)?
             | to.fit(
                 SlotBuffer::Instances,
@@ -210,30 +202,32 @@ impl Renderer {
             .as_ref()
             .filter(same)
             .map_or(0, |before| before.version);
-        let parts = &plan.frame.parts;
-        for ((object, copies), parts) in plan.objects.iter().zip(&plan.frame.copies).zip(parts) {
+        for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
             let number = object.number;
             let Some(entry) = self.content.objects.at(number) else {
                 continue;
             };
             let placements = entry.drawn().placements();
-            let levels = object.levelled.as_ref();
-            write_blocks(to, entry, object, object.window(parts).start)?;
+            if let Some(block) = entry.block(object) {
+                let at = number as usize * OBJECT_STRIDE as usize;
+                to.write(SlotBuffer::Objects, at, &block)?;
+            }
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
-                // Other objects move the blocks of levels.
-                None if entry.version > known || levels.is_some() => {
+                // With shadows another object may change the level of all.
+                None if entry.version > known || self.content.casts() => {
                     (0..placements.len() as u32).collect()
                 }
                 None => continue,
             };
             let first = entry.instances.start;
+            let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
+            let starts: Vec<_> = object.surfaces().map(starts).collect();
             to.write_instances(first, &shown, |copy| {
                 let placement = &placements[copy as usize];
                 let mut block = instance_block(entry.drawn(), placement, number, view);
-                if let Some(levels) = levels {
-                    block.object[0] = levels.block(number, &block);
-                }
+                let starts = starts.get(object.surface_of(&block));
+                block.object[2..].copy_from_slice(starts.unwrap_or(&[0; 2]));
                 block
             })?;
             if motion {
@@ -257,24 +251,4 @@ impl Renderer {
         }
         Ok(())
     }
-}
-
-/// Writes the block of an object, and those of the coarser levels of its copies. `window`: first
-/// vector of their tables.
-fn write_blocks(
-    to: &mut FrameSlot,
-    entry: &Entry,
-    object: &PlannedObject,
-    window: u32,
-) -> Result<()> {
-    let levels = object.levelled.as_ref();
-    let coarser = levels.map(|l| (l.first_block..).zip(l.coarser.iter().map(Some)));
-    let all = iter::once((object.number, object.surface.as_ref()));
-    for (at, surface) in all.chain(coarser.into_iter().flatten()) {
-        if let Some(block) = entry.block(surface.map(Arc::as_ref), window) {
-            let at = at as usize * OBJECT_STRIDE as usize;
-            to.write(SlotBuffer::Objects, at, &block)?;
-        }
-    }
-    Ok(())
 }

@@ -7,7 +7,7 @@ void main()
 {
     take_frame();
     take_record();
-    take_object(ONE_OBJECT != 0u ? pushed.object : tile_instance.object.x);
+    take_object(tile_instance);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);

@@ -164,6 +164,7 @@ fn parsed(text: &str, rows: u32) -> std::result::Result<SearchTable, String> {
     let length = u32::try_from(vectors.len()).unwrap_or(u32::MAX);
     Ok(SearchTable {
         vectors,
+        before: 0,
         facts: [length, rows, 0],
     })
 }
