@@ -130,13 +130,7 @@ impl Object {
 
     /// Upper limit on the distance of the surface from its axis, before the box cuts it.
     pub(crate) fn widest(&self) -> f64 {
-        let Offset {
-            extend,
-            bevel,
-            chamfer,
-        } = self.offset;
-        let outline = self.profile.outline.bounds().map_or(0.0, |b| b.r_max);
-        outline + (extend + bevel * chamfer).max(0.0)
+        self.profile.outline.bounds().map_or(0.0, |b| b.r_max) + self.offset.largest_width()
     }
 
     /// The placements of all copies: the instances, or the one placement.

@@ -6,20 +6,14 @@ pub(crate) mod offset_surface;
 pub(crate) mod proxy_hull;
 pub(crate) mod tables;
 
-use crate::scene::{Object, Offset};
-
-/// The largest offset of the surface in the box.
-pub(crate) fn largest_width(offset: &Offset) -> f64 {
-    offset.extend + (offset.bevel * offset.chamfer.clamp(0.0, 1.0)).max(0.0)
-}
+use crate::scene::Object;
 
 /// The radius that the map must cover. The result is the box's half side if the solid stays within
 /// the box's inscribed cylinder about a centred axis. Otherwise the radius covers the part of the
 /// solid that the box can hold.
 pub(crate) fn reach(object: &Object, margin: f64) -> f64 {
     let radius = object.profile.radius;
-    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
-    let solid = widest + largest_width(&object.offset);
+    let solid = object.widest();
     if solid <= radius && object.axis_offset() == [0.0; 2] {
         return radius;
     }

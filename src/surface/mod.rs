@@ -63,6 +63,13 @@ impl Default for Offset {
     }
 }
 
+impl Offset {
+    /// The largest offset of the surface in the box.
+    pub(crate) fn largest_width(&self) -> f64 {
+        self.extend + (self.bevel * self.chamfer.clamp(0.0, 1.0)).max(0.0)
+    }
+}
+
 /// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its
 /// left.
 ///

@@ -116,6 +116,36 @@ fn fragment_and_compute_agree_bit_for_bit() {
     }
 }
 
+/// Copies of two looks, each with tables of its own, cast shadows.
+#[test]
+fn shadowed_copies_of_two_looks_agree() {
+    let mut scene = scene_of(shapes::vase(), eye(25.0, 2.2));
+    scene.shadow = Shadow::Hard;
+    scene
+        .objects
+        .push(Object::new("jewel", Arc::new(shapes::jewel())));
+    scene.objects[0].texturing.color_map = Some(maps().earth);
+    for (n, object) in (0..).zip(&mut scene.objects) {
+        let copy = |k: i32| {
+            let at = [0.3 * f64::from(k - n), 0.25 * f64::from(n + k % 2), 0.0];
+            placement(at, [0.1 * f64::from(k), 0.0, 0.3], [0.7; 3])
+        };
+        object.instances = (-1..2).map(copy).collect();
+    }
+    let settings = from_boxes(Settings {
+        solver: Solver::Exact,
+        ..sized(320, 240)
+    });
+    let mut fragment = draw(&scene, &settings);
+    let mut compute = draw(&scene, &in_compute(settings));
+    assert!(hits(&fragment) > 10_000);
+    fragment.steps.fill(0.0);
+    compute.steps.fill(0.0);
+    if let Some(difference) = fragment.first_difference(&compute) {
+        panic!("{difference}");
+    }
+}
+
 /// The comparison itself detects one bit.
 #[test]
 fn one_changed_bit_is_noticed() {

@@ -165,6 +165,9 @@ void take_shape(Instance i)
         object.axis = objects[i.object.x].object.axis;
         object.cells = objects[i.object.x].object.cells;
         object.patches = objects[i.object.x].object.patches;
+        if (OWN_TABLES != 0u) {
+            object.instances.w = objects[i.object.x].object.instances.w;
+        }
     }
     take_level(i);
 }

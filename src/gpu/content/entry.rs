@@ -8,8 +8,8 @@ use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
 use crate::shader::{ObjectBlock, Variant, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
+use crate::solid::farthest_corner;
 use crate::solid::offset_surface::{OffsetSurface, Part};
-use crate::solid::{farthest_corner, largest_width};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -162,7 +162,7 @@ impl Entry {
     ) -> [f32; 4] {
         let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
         let texel = 1.0 / f64::from(map.rows);
-        let grow = largest_width(&object.offset).max(0.0) + texel;
+        let grow = object.offset.largest_width().max(0.0) + texel;
         // The map gives no values beyond its last column.
         let reach = if solver.reads_map() {
             f64::from(map.columns) * texel

@@ -11,7 +11,6 @@ use crate::plan::levels::{
 use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
 use crate::shader::InstanceBlock;
-use crate::solid::largest_width;
 use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -291,7 +290,7 @@ impl Entry {
         let (object, surface) = (self.drawn(), planned.surface.as_ref());
         let bounds = self.bounds(derived, surface.into_iter());
         let texels = 2.0 / f64::from(derived.facts.rows);
-        let away = largest_width(&object.offset).max(0.0) + texels;
+        let away = object.offset.largest_width().max(0.0) + texels;
         Some(PlanObject {
             object,
             number: planned.number,
