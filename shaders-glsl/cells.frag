@@ -15,12 +15,7 @@ void main()
     if (!found) {
         discard;
     }
-#if OUTPUT == OUTPUT_DEPTH
-    float depth = biased_depth(varying_rays(), pixel, hit);
-#else
-    store(shade(varying_look(), varying_rays(), pixel, hit), varying_rays(), uint(look_ambient.w), pixel, hit);
-    float depth = depth_of(ray_origin_base.w + hit.t);
-#endif
+    float depth = draw(varying_look(), varying_rays(), pixel, hit);
     // The triangle is never behind the surface that it wraps, except by rounding.
     float sense = ray_dir_00.w;
     gl_FragDepth = sense * max(sense * depth, sense * gl_FragCoord.z);

@@ -23,15 +23,9 @@ void main()
     uint corner_word = tile_words[4u * record];
     uvec2 corner = uvec2(corner_word & 0xffffu, corner_word >> 16);
     uint number = tile_words[4u * record + 1u];
-    Instance instance;
-    if (ONE_INSTANCE != 0u) {
-        instance = instances[pushed.instance];
-        take_only_object(pushed.object);
-        take_level(instance);
-    } else {
-        instance = instances[number];
-        take_object(instance);
-    }
+    Instance instance = instances[ONE_INSTANCE != 0u ? pushed.instance : number];
+    take_only_object(pushed.object);
+    take_one_of_objects(instance);
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
     uvec2 header = listed_table(0u).xy;

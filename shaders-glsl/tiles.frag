@@ -1,9 +1,10 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Traces a fragment of a tile: the nearest of the copies in its queue.
-#include "stage/queue_varyings.glsl"
 #include "stage/queue.glsl"
 #include "stage/outputs.glsl"
+
+layout(location = 0) flat in uvec2 tile_queue; // first word, number of copies
 
 layout(depth_greater) out float gl_FragDepth;
 
@@ -22,7 +23,5 @@ void main()
     }
     Instance i = instances[index];
     take_one_of_objects(i);
-    PixelRays rays = pixel_rays(i);
-    store(shade(look_of(i, index), rays, pixel, hit), rays, index, pixel, hit);
-    gl_FragDepth = depth_of(rays.base + hit.t);
+    gl_FragDepth = draw(look_of(i, index), pixel_rays(i), pixel, hit);
 }

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // Corners of two triangles over a tile (tile_words.glsl). Points would vanish where their middle is outside of the
 // picture.
-#define VARYING out
-#include "stage/queue_varyings.glsl"
 #include "stage/tile_words.glsl"
 #include "core/pixel_ray.glsl"
+
+layout(location = 0) flat out uvec2 tile_queue; // first word, number of copies
 
 void main()
 {

@@ -13,19 +13,12 @@ void main()
     take_over();
     take_over_tree();
     PixelRays rays = varying_rays();
-    Hit hit;
-    hit.steps = 0u;
-    hit.exhausted = false;
+    Hit hit = NO_HIT;
     vec2 span = span_of_rays();
     bool found = span.x <= span.y && trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;
     }
-#if OUTPUT == OUTPUT_DEPTH
-    gl_FragDepth = biased_depth(rays, pixel, hit);
-#else
-    store(shade(varying_look(), rays, pixel, hit), rays, uint(look_ambient.w), pixel, hit);
-    gl_FragDepth = depth_of(ray_origin_base.w + hit.t);
-#endif
+    gl_FragDepth = draw(varying_look(), rays, pixel, hit);
 }

@@ -118,7 +118,7 @@ impl PipelineCompiler {
     #[must_use]
     pub fn pipelines(&self, look: &Look, stage: DrawStage, solver: Solver) -> Vec<PipelineChoice> {
         let of_host = !matches!(look.planes, Planes::Color | Planes::All);
-        let exact = matches!(solver, Solver::Exact | Solver::Quadric | Solver::Live);
+        let exact = solver.external().is_none();
         let listed = matches!(look.planes, Planes::List(_));
         if (of_host && (stage == DrawStage::Compute || !exact))
             || (listed && look.format == MapFormat::Rgba8)
@@ -153,9 +153,9 @@ impl PipelineCompiler {
                 first_instance: 0,
                 variant,
                 textures: 0,
-                surface: None,
+                surfaces: &[],
                 takes_patches: solver == Solver::Exact,
-                levelled: None,
+                levels: None,
                 shape: shape_of(object, [0.0; 4]),
                 outline: None,
             };
@@ -174,10 +174,6 @@ impl PipelineCompiler {
         }
         let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
         if crowds && variant.is_shaded() && variant.cells == 0 && object.clip != Clip::Box {
-            let variant = Variant {
-                outside: 0,
-                ..variant
-            };
             let of_kind = |kind| PipelineChoice(variant.of_kind(kind), kind);
             all.extend(conditions.crowd_kinds().map(of_kind));
         }

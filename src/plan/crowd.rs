@@ -14,6 +14,7 @@ use super::{
 use crate::scene::Placement;
 use crate::shader::generated as g;
 use crate::shader::{CrowdBlock, CrowdObject, Kind, Pushed, Variant};
+use crate::solid::offset_surface::Part;
 use crate::surface::CylinderPiece;
 use glam::DVec3;
 
@@ -61,20 +62,16 @@ pub(super) fn add(
     let mut layers = Vec::new();
     let mut layer_of = Vec::with_capacity(members.len());
     for &n in &members {
-        let variant = Variant {
-            outside: 0,
-            ..variants[n as usize]
-        };
-        let layer = Layer::of(&mut layers, objects, n, (variant, kind));
+        let layer = Layer::of(&mut layers, objects, n, (variants[n as usize], kind));
         layer_of.push(layer as u32);
-        plan.parts[n as usize].tables = true;
+        plan.parts[n as usize][Part::Tables as usize] = true;
         plan.copies[n as usize] = Some(Vec::new());
     }
 
     let projector = projector(view, objects, with);
     let [across, down] = projector.tiles();
     let counts: Vec<u32> = (members.iter())
-        .map(|&n| objects[n as usize].copies().len() as u32)
+        .map(|&n| objects[n as usize].object.placements().len() as u32)
         .collect();
     let lists = layers.len() as u32 * across * down;
     let copies: u32 = counts.iter().sum();
@@ -255,7 +252,7 @@ fn crowd_object(
     with: &Conditions,
 ) -> CrowdObject {
     let shape = of.shape;
-    let surface = of.surface.filter(|_| with.occlusion_culling);
+    let surface = of.surface().filter(|_| with.occlusion_culling);
     let whole = [CylinderPiece {
         radius: shape.radius,
         low: shape.low,
@@ -276,9 +273,9 @@ fn crowd_object(
     };
     let [x, y] = [shape.axis.x, shape.axis.y].map(words_of);
     // Without levels every copy has the finest one.
-    let (limits, finest) = of.levelled.map_or(([f32::INFINITY; 4], 0), |copies| {
-        (copies.levels.limits, copies.levels.first as u32)
-    });
+    let (limits, finest) = of
+        .levels
+        .map_or(([f32::INFINITY; 4], 0), |of| (of.limits, of.first as u32));
     CrowdObject {
         axis: [x[0], x[1], y[0], y[1]],
         shape: [

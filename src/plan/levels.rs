@@ -7,11 +7,9 @@ use super::view::View;
 use crate::scene::{Cluster, Object, Placement};
 use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
-use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::FitOptions;
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
-use std::sync::Arc;
 
 /// The coarsest level: patches within a 36th of the height.
 pub(crate) const COARSEST: u8 = 12;
@@ -76,22 +74,12 @@ impl CopyLevels {
         let passes = |limit: &&f32| depth >= scale * **limit;
         self.limits.iter().filter(passes).count().max(self.first)
     }
-}
 
-/// The copies of an object, each with a level of its own.
-#[derive(Default)]
-pub(crate) struct LevelledCopies {
-    pub levels: CopyLevels,
-    /// The surfaces of the levels after the finest.
-    pub coarser: Vec<Arc<OffsetSurface>>,
-}
-
-impl LevelledCopies {
-    /// Index of a copy's level among [`COPY_LEVELS`].
-    pub fn level(&self, copy: &InstanceBlock) -> usize {
+    /// The same, from a copy's block.
+    pub fn of_block(&self, copy: &InstanceBlock) -> usize {
         let [_, _, _, across] = copy.position_sx;
         let [y, z, depth, _] = copy.scale_depth;
-        self.levels.of(depth, across.max(y).max(z))
+        self.of(depth, across.max(y).max(z))
     }
 }
 

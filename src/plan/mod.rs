@@ -22,6 +22,7 @@ use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
 use crate::shader::{Kind, Pushed, Variant};
+use crate::solid::offset_surface::Part;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -46,23 +47,12 @@ pub(crate) struct FramePlan {
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
     pub copies: Vec<Option<Vec<u32>>>,
-    /// The parts of each object's surface that are read.
-    pub parts: Vec<Parts>,
+    /// For each object, whether each [`Part`] of its surfaces is read.
+    pub parts: Vec<[bool; 3]>,
     /// True if compute compares depths.
     pub compares_depths: bool,
     /// Crowds, whose tiles the device lists.
     pub crowds: Option<crowd::Crowds>,
-}
-
-/// Parts of a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Parts {
-    /// Tables that searches walk.
-    pub tables: bool,
-    /// Frusta of cells.
-    pub frusta: bool,
-    /// Patches that lists are made from.
-    pub patches: bool,
 }
 
 /// One draw or dispatch, or several draws that one command records.
@@ -83,12 +73,8 @@ pub(crate) struct Step {
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
     Draws(Range<u32>),
-    /// Records of quads.
-    Quads(Range<u32>),
-    /// Records of tiles, for fragments.
+    /// Records of quads or tiles, for fragments.
     Tiles(Range<u32>),
-    /// Work groups.
-    Dispatch(u32, Pushed),
     /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
     /// Work groups along three axes.
@@ -111,7 +97,7 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     let mut plan = FramePlan {
         paths: paths.iter().map(Path::public).collect(),
         copies: vec![None; objects.len()],
-        parts: vec![Parts::default(); objects.len()],
+        parts: vec![[false; 3]; objects.len()],
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
@@ -119,15 +105,15 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     plan.add_tiles(view, objects, (&paths, &variants), with);
     crowd::add(&mut plan, view, objects, (&paths, &variants), with);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
-        parts.tables |= with.casts;
-        parts.tables &= object.surface.is_some();
+        let tables = &mut parts[Part::Tables as usize];
+        *tables = (*tables || with.casts) && !object.surfaces.is_empty();
     }
     plan
 }
 
 /// The projector of a view, with a margin for the levels of copies.
 fn projector(view: &View, objects: &[PlanObject], with: &Conditions) -> Projector {
-    let levelled = objects.iter().any(|of| of.levelled.is_some());
+    let levelled = objects.iter().any(|of| of.levels.is_some());
     let slack = if levelled { with.level_pixels } else { 0.0 };
     Projector::new(view, with.ray_spread, slack)
 }
@@ -153,7 +139,7 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
             one_object: u32::from(alone),
-            one_instance: u32::from(alone && of.copies().len() == 1),
+            one_instance: u32::from(alone && of.object.placements().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
             ..of.variant
         }
@@ -214,8 +200,8 @@ impl FramePlan {
                 Path::Tiles | Path::Crowd => continue,
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
-                    self.parts[n].tables = true;
-                    let outside = of.surface.is_some_and(|s| apart(s));
+                    self.parts[n][Part::Tables as usize] = true;
+                    let outside = of.surface().is_some_and(|s| apart(s));
                     (Kind::Boxes, outside, vec![draw(BOX_INDICES, 0)])
                 }
                 Path::Cells(frusta) => {
@@ -224,8 +210,8 @@ impl FramePlan {
                         let first = BOX_INDICES + corners(run.start);
                         draw(corners(run.end - run.start), first)
                     };
-                    self.parts[n].frusta = true;
-                    self.parts[n].tables = !of.is_whole();
+                    self.parts[n][Part::Frusta as usize] = true;
+                    self.parts[n][Part::Tables as usize] = !of.is_whole();
                     (
                         Kind::Cells,
                         of.is_whole(),

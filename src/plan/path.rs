@@ -1,8 +1,8 @@
 //! The choice of each object's draw path from the view, the placements and the surface.
 
-use super::levels::LevelledCopies;
+use super::levels::CopyLevels;
 use super::proxy;
-use super::tiles::{Cylinder, Placements};
+use super::tiles::Cylinder;
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::{
@@ -53,12 +53,12 @@ pub(crate) struct PlanObject<'a> {
     pub variant: Variant,
     /// Identifies a set of textures.
     pub textures: usize,
-    /// The surface that its search walks.
-    pub surface: Option<&'a Arc<OffsetSurface>>,
+    /// The surfaces that its search walks, from the finest level on.
+    pub surfaces: &'a [Arc<OffsetSurface>],
     /// True if cells and lists may replace the tree.
     pub takes_patches: bool,
-    /// Its copies, if they have levels of their own.
-    pub levelled: Option<&'a LevelledCopies>,
+    /// The choice of each copy's level, if copies have levels of their own.
+    pub levels: Option<&'a CopyLevels>,
     pub shape: Cylinder,
     /// The outline, and the largest distance of the surface from it in object units.
     pub outline: Option<(&'a Solid, f64)>,
@@ -127,14 +127,14 @@ pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
 impl Conditions {
     /// True if an object may be drawn by cells. The view may still rule that out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
-        let few = of.copies().len() <= MOST_PROXIES;
+        let few = of.object.placements().len() <= MOST_PROXIES;
         self.shows_patches(of) && !self.compute && self.passes_cells && few
     }
 
     /// True if an object may be drawn by tiles. The box is as good as tiles for one copy whose
     /// outline is not used.
     fn takes_tiles(&self, of: &PlanObject) -> bool {
-        let pays = of.copies().len() > 1 || self.uses_outline(of);
+        let pays = of.object.placements().len() > 1 || self.uses_outline(of);
         self.compute || (of.variant.is_shaded() && pays)
     }
 
@@ -147,7 +147,7 @@ impl Conditions {
     /// True if the device lists the tiles of an object's copies.
     fn is_crowd(&self, of: &PlanObject) -> bool {
         let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
-        let many = of.copies().len() > MOST_PROXIES && of.object.repeat == [1; 3];
+        let many = of.object.placements().len() > MOST_PROXIES && of.object.repeat == [1; 3];
         self.lists_crowds && shows && many && of.is_whole()
     }
 
@@ -163,9 +163,9 @@ impl Conditions {
 
     /// The path of an object in a view: cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
-        let surface = of.surface.filter(|_| self.takes_cells(of));
+        let surface = of.surface().filter(|_| self.takes_cells(of));
         let cells = surface.and_then(|surface| {
-            let least = self.least_pixels(of.copies().len());
+            let least = self.least_pixels(of.object.placements().len());
             proxy::frusta(of.object, surface, view, least)
         });
         match cells {
@@ -178,8 +178,8 @@ impl Conditions {
 
     /// True if a box is faster than tiles: for one copy of a solid that fills its box.
     fn prefers_box(&self, of: &PlanObject) -> bool {
-        let fills = |s: &Arc<OffsetSurface>| s.is_of_patches() && proxy::fills_box(of.object, s);
-        !self.compute && of.copies().len() == 1 && of.surface.is_some_and(fills)
+        let fills = |s: &Arc<OffsetSurface>| proxy::fills_box(of.object, s);
+        !self.compute && of.object.placements().len() == 1 && of.surface().is_some_and(fills)
     }
 
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
@@ -200,7 +200,7 @@ impl Conditions {
 
     /// True if patches may be listed for tiles of an object.
     pub fn permits_lists(&self, of: &PlanObject) -> bool {
-        self.may_permit_lists(of) && of.surface.is_some_and(|s| !s.listed().is_empty())
+        self.may_permit_lists(of) && of.surface().is_some_and(|s| !s.listed().is_empty())
     }
 
     /// True if patches may be listed for tiles of an object under some offset.
@@ -234,7 +234,7 @@ impl Conditions {
 
     /// True if a uniform buffer holds an object's tables.
     pub fn holds_tables(&self, of: &PlanObject) -> bool {
-        of.surface
+        of.surface()
             .is_some_and(|surface| surface.tables().vectors.len() <= self.own_vectors)
     }
 
@@ -270,51 +270,41 @@ impl Conditions {
         let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
         // An offset may move the size of the tables across the limit, and levels may lie apart.
         let large =
-            (of.surface).is_some_and(|s| 4 * s.tables().vectors.len() > 3 * self.own_vectors);
-        let large = large || of.levelled.is_some();
+            (of.surface()).is_some_and(|s| 4 * s.tables().vectors.len() > 3 * self.own_vectors);
+        let large = large || of.levels.is_some();
         let own: &[u32] = match (variant.one_object == 0, large) {
             (true, _) => &[0],
             (false, false) => &[1],
             (false, true) => &[0, 1],
         };
-        let depths: &[bool] = if self.host_depths {
-            &[true]
-        } else {
-            &[false, true]
+        let depths: &[u32] = if self.host_depths { &[1] } else { &[0, 1] };
+        let lengths = LIST_LENGTHS
+            .into_iter()
+            .filter(|_| self.may_permit_lists(of));
+        let lengths: Vec<u32> = std::iter::once(0).chain(lengths).collect();
+        type Axis<'a> = (&'a [u32], fn(&mut Variant) -> &mut u32);
+        let axes: [Axis; 4] = [
+            (counts, |v| &mut v.lights),
+            (own, |v| &mut v.own_tables),
+            (depths, |v| &mut v.depths),
+            (&lengths, |v| &mut v.list_length),
+        ];
+        let along = |all: Vec<Variant>, (values, member): Axis| -> Vec<Variant> {
+            let with = |mut v: Variant, value| {
+                *member(&mut v) = value;
+                v
+            };
+            let of = |v| values.iter().map(move |&value| with(v, value));
+            all.into_iter().flat_map(of).collect()
         };
-        let lengths: Vec<u32> = if self.may_permit_lists(of) {
-            std::iter::once(0).chain(LIST_LENGTHS).collect()
-        } else {
-            vec![0]
-        };
-        let mut data = Vec::new();
-        for (&lights, &own_tables) in counts.iter().flat_map(|c| own.iter().map(move |o| (c, o))) {
-            for &depths in depths {
-                let of = |&length: &u32| (lights, own_tables, u32::from(depths), length);
-                data.extend(lengths.iter().map(of));
-            }
-        }
-        let forms = variant.forms();
         let mut all = Vec::new();
         for (kind, outside) in kinds {
-            for (form, &outside) in forms
-                .iter()
-                .flat_map(|f| outside.iter().map(move |o| (f, o)))
-            {
-                for &(lights, own_tables, depths, list_length) in &data {
-                    let variant = Variant {
-                        outside,
-                        lights,
-                        own_tables,
-                        list_length,
-                        depths,
-                        ..*form
-                    };
-                    let key = (variant.of_kind(kind), kind);
-                    let empty = kind == Kind::TilePatches && list_length == 0;
-                    if !empty && !all.contains(&key) {
-                        all.push(key);
-                    }
+            let first: Axis = (outside, |v| &mut v.outside);
+            for v in [first].into_iter().chain(axes).fold(variant.forms(), along) {
+                let key = (v.of_kind(kind), kind);
+                let empty = kind == Kind::TilePatches && v.list_length == 0;
+                if !empty && !all.contains(&key) {
+                    all.push(key);
                 }
             }
         }
@@ -327,27 +317,22 @@ fn pixels(tiles: u64) -> u64 {
     tiles * u64::from(GROUP_PIXELS * GROUP_PIXELS)
 }
 
-impl PlanObject<'_> {
-    /// The object's copies, as input for finding tiles.
-    pub fn copies(&self) -> Placements<'_> {
-        if self.object.instances.is_empty() {
-            Placements::One(&self.object.placement)
-        } else {
-            Placements::Many(&self.object.instances)
-        }
+impl<'a> PlanObject<'a> {
+    /// The surface of the finest level.
+    pub fn surface(&self) -> Option<&'a Arc<OffsetSurface>> {
+        self.surfaces.first()
     }
 
     /// Number of patches that lists of its tiles are made from: those of the second level if its
     /// copies have levels of their own, as few have the finest.
     pub fn listed_patches(&self) -> u64 {
-        let second = self.levelled.and_then(|copies| copies.coarser.first());
-        let surface = second.or(self.surface);
+        let surface = self.surfaces.iter().take(2).next_back();
         surface.map_or(0, |surface| surface.patches() as u64)
     }
 
     /// True if the box shows no more than the surface's patches.
     pub fn is_whole(&self) -> bool {
-        self.surface
+        self.surface()
             .is_some_and(|surface| proxy::is_whole(self.object, surface))
     }
 }

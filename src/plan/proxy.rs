@@ -125,30 +125,19 @@ fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View) ->
 /// picture.
 fn covered_pixels(view: &View, radius: f64, copy: &Placement) -> u64 {
     let corners: [_; 8] = std::array::from_fn(|corner| {
-        let side = |bit: usize| {
-            if corner >> bit & 1 == 0 {
-                -radius
-            } else {
-                radius
-            }
-        };
+        let side = |bit: usize| [-radius, radius][corner >> bit & 1];
         let p = DVec3::new(side(0), side(1), (corner >> 2) as f64);
         view.project(copy.position + copy.rotation * (copy.scale * p))
     });
-    let depths = corners.map(|(_, depth)| depth);
-    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let farthest = corners.iter().fold(f64::NEG_INFINITY, |m, c| m.max(c.1));
     if farthest <= 0.0 {
         return 0;
     }
-    let [first, end] = view.corners();
-    let (mut low, mut high) = (first, end);
+    let [mut low, mut high] = view.corners();
     // A box around the eye, or beside it, has no rectangular projection.
-    if depths.iter().all(|&depth| depth > 1e-9 * farthest) {
-        let of = |pick: fn(DVec2, DVec2) -> DVec2| corners.map(|(p, _)| p).into_iter().reduce(pick);
-        (low, high) = (
-            of(DVec2::min).map_or(low, |p| p.max(first)),
-            of(DVec2::max).map_or(high, |p| p.min(end)),
-        );
+    if corners.iter().all(|&(_, depth)| depth > 1e-9 * farthest) {
+        low = low.max(corners.iter().fold(DVec2::INFINITY, |m, c| m.min(c.0)));
+        high = high.min(corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(c.0)));
     }
     let size = (high - low).max(DVec2::ZERO);
     (size.x * size.y) as u64

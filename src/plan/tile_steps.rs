@@ -8,6 +8,7 @@ use super::{
 };
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
+use crate::solid::offset_surface::Part;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -54,7 +55,7 @@ impl FramePlan {
             layer_of.push(layer as u32);
         }
         let queues = |layer: &Layer| {
-            let copies = |n: &u32| objects[*n as usize].copies().len();
+            let copies = |n: &u32| objects[*n as usize].object.placements().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
             enough && Conditions::takes_queues(&objects[layer.objects[0] as usize])
         };
@@ -67,8 +68,9 @@ impl FramePlan {
             }
             let shows = !copies.is_empty();
             let lists = || !dealt.layers[layer_of[batch] as usize].listed.is_empty();
-            self.parts[n].tables = shows;
-            self.parts[n].patches = shows && visible.lists_patches(batch) && lists();
+            self.parts[n][Part::Tables as usize] = shows;
+            self.parts[n][Part::Patches as usize] =
+                shows && visible.lists_patches(batch) && lists();
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
@@ -83,7 +85,7 @@ impl FramePlan {
                     call,
                 };
                 // Both are recorded, even if one is empty: the number of commands follows the content.
-                let quads = step(kind, Call::Quads(tiles.quads.clone()));
+                let quads = step(kind, Call::Tiles(tiles.quads.clone()));
                 self.steps.push(quads);
                 if queues {
                     let tiles = step(Kind::Tiles, Call::Tiles(tiles.queued.clone()));
@@ -135,7 +137,7 @@ impl FramePlan {
                     instance,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
-                let call = Call::Dispatch(groups, pushed(0));
+                let call = Call::Groups([groups, 1, 1], pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
                 // The last bin holds tiles that walk the tree.
                 let lengths = LIST_LENGTHS.into_iter().chain([1]);
@@ -163,7 +165,7 @@ impl FramePlan {
                     instance,
                     ..Pushed::default()
                 };
-                let call = Call::Dispatch(records.len() as u32, pushed);
+                let call = Call::Groups([records.len() as u32, 1, 1], pushed);
                 later.push(step(phase, kind, base, call));
             }
             phase += u32::from(!tiles.queued.is_empty());
@@ -202,14 +204,14 @@ fn leave_out_lists(
 
 /// An object's copies, as input for finding tiles.
 fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
-    let surface = of.surface.filter(|_| of.object.repeat == [1; 3]);
+    let surface = of.surface().filter(|_| of.object.repeat == [1; 3]);
     let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
     let culls = surface.filter(|_| with.occlusion_culling);
     let outlined = with.uses_outline(of) && of.object.repeat == [1; 3];
     let of_outline = of.outline.filter(|_| outlined && surface.is_none());
     let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
     Batch {
-        placements: of.copies(),
+        object: of.object,
         first: of.first_instance,
         shape: of.shape,
         inner: culls.filter(|_| of.is_whole()).and_then(|s| s.inner()),
@@ -218,7 +220,6 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
             .map(|outer| (outer, 0.0))
             .or(of_outline),
         surface,
-        half_side: of.object.profile.radius,
         permits_lists: with.permits_lists(of),
     }
 }

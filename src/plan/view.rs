@@ -65,17 +65,10 @@ pub struct View {
     pub(crate) layer: u32,
     /// Shift of the picture by the projection's jitter, pixels.
     pub(crate) jitter: DVec2,
-    /// The view of the last frame.
-    pub(crate) last: Option<LastView>,
+    /// [`View::pixel_rows`] of the last frame's view, for motion.
+    pub(crate) last: Option<[DVec4; 3]>,
     /// First row and end of the rows that are drawn; all if none.
     pub(crate) rows: Option<[u32; 2]>,
-}
-
-/// The view of the last frame, for motion: the rows of the map from the world to `(x w, y w, w)`,
-/// where x and y are a position in the picture without jitter, pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LastView {
-    pub rows: [DVec4; 3],
 }
 
 impl View {
@@ -183,9 +176,8 @@ impl View {
     /// from `last`; without it, only objects move.
     #[must_use]
     pub fn with_last(self, last: &Self) -> Self {
-        let rows = last.pixel_rows();
         Self {
-            last: Some(LastView { rows }),
+            last: Some(last.pixel_rows()),
             ..self
         }
     }
@@ -222,7 +214,8 @@ impl View {
             .map_or(tiles, |rows| (tiles as f64 * share(rows)) as u64)
     }
 
-    /// The rows of [`LastView`] for this view.
+    /// The rows of the map from the world to `(x w, y w, w)`, where x and y are a position in the
+    /// picture without jitter, pixels.
     pub(crate) fn pixel_rows(&self) -> [DVec4; 3] {
         let rows = self.clip_from_world.transpose();
         let v = &self.viewport;

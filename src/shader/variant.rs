@@ -141,13 +141,11 @@ pub struct Variant {
     /// Patches that each pixel of a listed tile tests; 1 for tiles that walk the tree. 0: tiles
     /// come from no list.
     pub list_length: u32,
-    /// 1 if the box cuts nothing of the solid and the eye is outside of it. Cells and listed
-    /// patches always have the eye outside, so for them it is 1 if the box cuts nothing.
+    /// 1 if the box cuts nothing of the solid and rays from the eye begin outside of it.
     pub outside: u32,
     /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
     pub own_tables: u32,
-    /// 1 if there is one object, and a uniform buffer holds it; 2 if its copies also have levels of
-    /// their own.
+    /// 1 if there is one object, and a uniform buffer holds it.
     pub one_object: u32,
     /// 1 if there is one instance of it. Compute stage.
     pub one_instance: u32,

@@ -90,6 +90,19 @@ layout(set = 0, binding = 2, std430) INSTANCE_ACCESS buffer InstanceBlock {
 
 // Current object: the instance's, or one that may cast a shadow on it.
 Object object;
+// True while the traced object is a possible shadow caster.
+#ifdef SHADOWED
+bool casts = false;
+#else
+const bool casts = false;
+#endif
+
+// True if the object's tables are in the uniform buffer of tables (core/patch_tables.glsl). Places of tables are then
+// relative to that buffer.
+bool takes_own_tables()
+{
+    return OWN_TABLES != 0u && !casts;
+}
 
 void take_frame()
 {
@@ -108,17 +121,20 @@ void take_frame()
     second_light.color = frame_block.lights[1].color;
 }
 
-#define TAKE_OBJECT(from) \
+#define TAKE_SHAPE(from) \
     object.map = from.map; \
     object.bounds = from.bounds; \
     object.offset = from.offset; \
     object.axis = from.axis; \
+    object.cells = from.cells; \
+    object.patches = from.patches
+
+#define TAKE_OBJECT(from) \
+    TAKE_SHAPE(from); \
     object.albedo = from.albedo; \
     object.specular = from.specular; \
     object.texturing = from.texturing; \
-    object.cells = from.cells; \
     object.instances = from.instances; \
-    object.patches = from.patches; \
     object.parts = from.parts
 
 // Loads the object of a draw or dispatch that has only one.
@@ -136,8 +152,8 @@ void take_only_object(uint number)
 // Sets the places of the tables that a copy's level has.
 void take_level(Instance i)
 {
-    object.parts.z = i.object.z;
-    object.patches.x = i.object.w;
+    object.parts.z = i.object.z - (takes_own_tables() ? object.parts.w : 0u);
+    object.patches.x = i.object.w - (takes_own_tables() ? object.instances.w : 0u);
 }
 
 // Loads the rest: one of several objects, and a copy's level.
@@ -159,12 +175,7 @@ void take_object(Instance i)
 void take_shape(Instance i)
 {
     if (ONE_OBJECT == 0u) {
-        object.map = objects[i.object.x].object.map;
-        object.bounds = objects[i.object.x].object.bounds;
-        object.offset = objects[i.object.x].object.offset;
-        object.axis = objects[i.object.x].object.axis;
-        object.cells = objects[i.object.x].object.cells;
-        object.patches = objects[i.object.x].object.patches;
+        TAKE_SHAPE(objects[i.object.x].object);
         if (OWN_TABLES != 0u) {
             object.instances.w = objects[i.object.x].object.instances.w;
         }

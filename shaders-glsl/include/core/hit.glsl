@@ -12,4 +12,6 @@ struct Hit {
     bool at_border; // the ray came from within and hit the face of box or cell, not the surface
 };
 
+const Hit NO_HIT = Hit(0.0, vec3(0.0), vec3(0.0), vec3(1.0), 0u, false, false);
+
 #endif

@@ -90,10 +90,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 // Traces the ray `eye + t v`, t >= -base. The ray has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
-    hit.steps = 0u;
-    hit.exhausted = false;
-    hit.sense = vec3(1.0);
-    hit.at_border = false;
+    hit = NO_HIT;
 #ifdef REPEATED
     return trace_replicas(eye, v, base, span, hit);
 #else

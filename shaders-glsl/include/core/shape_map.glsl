@@ -7,12 +7,6 @@
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
 int shadow_map; // index of the map of the traced object, if `casts`
-// True while the traced object is a possible shadow caster.
-#ifdef SHADOWED
-bool casts = false;
-#else
-const bool casts = false;
-#endif
 
 vec4 gather_map(vec2 at)
 {

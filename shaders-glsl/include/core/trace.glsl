@@ -12,9 +12,6 @@
 #include "search/external.glsl"
 #endif
 
-// True if rays begin outside the solid and the box does not cut it. Rays towards lights may begin anywhere.
-#define FROM_OUTSIDE (OUTSIDE != 0u && !casts)
-
 // Returns true if a point is in the solid; reads only m.o and m.c.
 #if SEARCH == SEARCH_QUADRIC
 #define SOLID_AT starts_within
@@ -67,7 +64,8 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     float s = 0.0;
     float f;
     bool within = false;
-    if (!FROM_OUTSIDE) {
+    // Rays towards lights may begin anywhere.
+    if (OUTSIDE == 0u || casts) {
         within = begins_within(m, inside, hit.steps, f);
     }
     hit.at_border = false;

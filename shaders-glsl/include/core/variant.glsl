@@ -70,8 +70,7 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0
 #endif
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: the target has no other depths: none is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
-// 1: the box does not cut the solid, and the eye is outside it. Listed patches always have the eye outside; for them only
-// the first condition counts. Cells do not read it: modules with CUT replace 0.
+// 1: the box does not cut the solid, and rays from the eye begin outside it. For cells the macro CUT replaces 0.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
 layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it

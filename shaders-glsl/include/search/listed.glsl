@@ -35,7 +35,7 @@ void share_patches()
     if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
         shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
     }
-    object.parts.z = instance_words[INSTANCE_WORDS * tile_record.y + 18u];
+    object.parts.z = instance_words[INSTANCE_WORDS * tile_record.y + 18u] - (OWN_TABLES != 0u ? object.parts.w : 0u);
     uint none = listed_word(0u, 0u);
     uint runs = tile_record.z;
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {

@@ -39,13 +39,11 @@ void clip_to_sides(inout PatchRow row)
 // Returns true if one of `count` patches was hit.
 bool end_row(PatchRow row, uint count, out Hit hit)
 {
+    hit = NO_HIT;
     hit.t = row.best;
     hit.normal = quadric_normal(row.m, row.best, row.quadric);
     hit.point = row.m.o + row.best * row.m.v;
-    hit.sense = vec3(1.0);
     hit.steps = count;
-    hit.exhausted = false;
-    hit.at_border = false;
     return row.best < row.most;
 }
 

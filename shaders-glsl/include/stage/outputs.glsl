@@ -21,23 +21,6 @@ layout(location = 5) out vec4 motion;   // pixels, from this frame's position to
 layout(location = 6) out uvec4 identity; // number of the object, number of the copy
 #endif
 
-#if OUTPUT == OUTPUT_DEPTH
-// Returns the depth value of a hit, moved away from the eye by the bias for the slope of its tangent plane.
-float biased_depth(PixelRays rays, vec2 pixel, Hit hit)
-{
-    float t = rays.base + hit.t;
-    if (SLOPE_BIAS == 0u) {
-        return depth_of(t);
-    }
-    // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
-    vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
-    float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
-    float slope = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
-    float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
-    return clamp(depth_of(t) + frame.forward.w * bias, 0.0, 1.0);
-}
-#endif
-
 // Adds the look-ups of a pixel, with or without a hit. `pixel`: of a sample, where each has a ray.
 void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
@@ -59,7 +42,7 @@ vec2 octahedral(vec3 n)
 }
 
 // Returns the way in pixels from a hit to where it was in the last frame. The hit moves along its normal by the change
-// of the extension; src/gpu/resources/motion.rs makes the rows.
+// of the extension; last_block() of src/gpu/resources/block.rs makes the rows.
 vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 {
     Instance before = instances[frame.size.w + instance];
@@ -74,10 +57,30 @@ vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 }
 #endif
 
-#if OUTPUT != OUTPUT_DEPTH
-// `rays` and `instance`: those of the copy that was hit.
-void store(Shaded s, PixelRays rays, uint instance, vec2 pixel, Hit hit)
+#if OUTPUT == OUTPUT_DEPTH
+// Returns the depth value of a hit, moved away from the eye by the bias for the slope of its tangent plane.
+float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
 {
+    float t = rays.base + hit.t;
+    if (SLOPE_BIAS == 0u) {
+        return depth_of(t);
+    }
+    // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
+    vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
+    float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
+    float slope = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
+    float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
+    return clamp(depth_of(t) + frame.forward.w * bias, 0.0, 1.0);
+}
+#else
+// Shades and writes a hit, and returns its depth value.
+float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
+{
+#if OUTPUT == OUTPUT_LIST
+    // Before shade(): shadows read other objects in its place.
+    motion = vec4(motion_of(rays, look.instance, pixel, hit), 0.0, 1.0);
+#endif
+    Shaded s = shade(look, rays, pixel, hit);
     color = s.color;
 #if OUTPUT == OUTPUT_PLANES
     normal_distance = vec4(s.normal, s.distance);
@@ -89,9 +92,9 @@ void store(Shaded s, PixelRays rays, uint instance, vec2 pixel, Hit hit)
     world_normal = vec4(s.shading_normal, 1.0);
     octahedral_normal = vec4(octahedral(s.shading_normal), 0.0, 1.0);
     material = vec4(unpackUnorm2x16(object.parts.y), 0.0, 1.0);
-    motion = vec4(motion_of(rays, instance, pixel, hit), 0.0, 1.0);
-    identity = uvec4(instances[instance].object.x, instance - object.instances.x, 0u, 1u);
+    identity = uvec4(instances[look.instance].object.x, look.instance - object.instances.x, 0u, 1u);
 #endif
+    return depth_of(rays.base + hit.t);
 }
 #endif
 

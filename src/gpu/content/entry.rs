@@ -155,11 +155,7 @@ impl Entry {
     /// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside
     /// of which nothing is solid.
     #[allow(clippy::cast_possible_truncation)]
-    pub fn bounds<'a>(
-        &self,
-        derived: &Derived,
-        surfaces: impl Iterator<Item = &'a Arc<OffsetSurface>>,
-    ) -> [f32; 4] {
+    pub fn bounds(&self, derived: &Derived, surfaces: &[Arc<OffsetSurface>]) -> [f32; 4] {
         let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
         let texel = 1.0 / f64::from(map.rows);
         let grow = object.offset.largest_width().max(0.0) + texel;
@@ -172,7 +168,7 @@ impl Entry {
         let radius = (map.bounds.r_max + grow)
             .min(farthest_corner(object) + texel)
             .min(reach);
-        let patches = surfaces.filter(|_| solver.follows_tolerance());
+        let patches = surfaces.iter().filter(|_| solver.follows_tolerance());
         [
             object.profile.radius as f32,
             (radius + patches.map(|s| s.slack()).fold(0.0, f64::max)) as f32,
@@ -203,12 +199,12 @@ impl Entry {
         };
         let (strength, shininess) = (object.specular.strength, object.specular.shininess);
         let first = self.instances.start;
-        let finest = planned.surface.as_ref();
+        let finest = planned.surfaces.first();
         let start = |part| finest.map_or(0, |s| s.start(part));
         let stored = finest.filter(|s| s.slot(Part::Tables).is_some());
         let [a, b, c] = stored.map_or([0; 3], |s| s.tables().facts);
         let mut levels = [0; COPY_LEVELS.len() - 1];
-        for (to, surface) in levels.iter_mut().zip(planned.surfaces().skip(1)) {
+        for (to, surface) in levels.iter_mut().zip(planned.surfaces.iter().skip(1)) {
             *to = surface.start(Part::Tables);
         }
         Some(ObjectBlock {
@@ -218,7 +214,7 @@ impl Entry {
                 f(1.0 / f64::from(map.rows)),
                 map.scale,
             ],
-            bounds: self.bounds(derived, planned.surfaces()),
+            bounds: self.bounds(derived, &planned.surfaces),
             offset: [
                 f(offset.extend),
                 f(bevel),

@@ -11,7 +11,6 @@ pub(super) mod view_plan;
 
 use crate::error::Result;
 use crate::gpu::device::Shared;
-use crate::gpu::memory::images::Uploads;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::{ObjectImages, Textures};
 use crate::gpu::vk::output::{ComputeTarget, Output};
@@ -28,7 +27,6 @@ use view_plan::{Casters, ViewPlan};
 pub(super) struct Content {
     pub objects: Objects,
     pub textures: Textures,
-    pub uploads: Uploads,
     pub geometry: Arc<Mutex<Geometry>>,
     pub lighting: Lighting,
     /// The lights of the last refresh that succeeded.
@@ -63,11 +61,9 @@ impl Content {
         output: Output,
         settings: &SearchSettings,
     ) -> Result<Self> {
-        let mut uploads = Uploads::new(device);
         Ok(Self {
             objects: Objects::new(),
-            textures: Textures::new(&mut uploads, settings.map_format)?,
-            uploads,
+            textures: Textures::new(device, settings.map_format)?,
             geometry,
             lighting: Lighting::default(),
             lit: Lighting::default(),

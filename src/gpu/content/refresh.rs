@@ -208,10 +208,7 @@ impl Content {
         boundary.map = match known {
             _ if !self.solver_of(&boundary).reads_map() => None,
             Some(known) => Some(known),
-            None => {
-                let (uploads, profile) = (&mut self.uploads, &values.drawn().profile);
-                Some(self.textures.shape(uploads, profile, key)?)
-            }
+            None => Some(self.textures.shape(&values.drawn().profile, key)?),
         };
         values.boundary = Some(boundary);
         Ok(())
@@ -240,8 +237,7 @@ impl Content {
             |map| map.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {
-            let (uploads, profile) = (&mut self.uploads, &object.profile);
-            Some(self.textures.arc(uploads, profile, &facts)?)
+            Some(self.textures.arc(&object.profile, &facts)?)
         } else {
             None
         };
@@ -257,8 +253,7 @@ impl Content {
             arc: arc.clone(),
             shadows: shadows.clone(),
         };
-        let (uploads, look) = (&mut self.uploads, &object.texturing);
-        let textures = self.textures.set(uploads, look, bound)?;
+        let textures = self.textures.set(&object.texturing, bound)?;
         let steps = self.settings.max_steps;
         let steps = steps.unwrap_or_else(|| solver.default_steps(is_beveled(object)));
         values.derived = Some(Derived {

@@ -5,9 +5,7 @@ use super::entry::{Boundary, Derived, Entry, Values};
 use super::refresh::distinct;
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
-use crate::plan::levels::{
-    self, COPY_LEVELS, CopyLevels, GRAZING, LevelledCopies, coarsest, pixels_per_unit,
-};
+use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, GRAZING, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
 use crate::settings::{Solver, Tolerance};
 use crate::shader::InstanceBlock;
@@ -36,22 +34,16 @@ pub(crate) struct ViewPlan {
 pub(crate) struct PlannedObject {
     pub number: u32,
     pub level: u8,
-    /// The surface that the search walks; `None` for searches on the map.
-    pub surface: Option<Arc<OffsetSurface>>,
-    /// Its copies, if they have levels of their own.
-    pub levelled: Option<LevelledCopies>,
+    /// The surfaces that the search walks, from the finest level on; none for searches on the map.
+    pub surfaces: Vec<Arc<OffsetSurface>>,
+    /// The choice of each copy's level, if copies have levels of their own.
+    pub levels: Option<CopyLevels>,
 }
 
 impl PlannedObject {
-    /// The surfaces of all its levels, from the finest on.
-    pub fn surfaces(&self) -> impl Iterator<Item = &Arc<OffsetSurface>> {
-        let coarser = self.levelled.iter().flat_map(|copies| &copies.coarser);
-        self.surface.iter().chain(coarser)
-    }
-
     /// The vectors that hold a part of all its levels, and others between them.
     pub fn window(&self, part: Part) -> Range<u32> {
-        let stored = self.surfaces().filter_map(|surface| {
+        let stored = self.surfaces.iter().filter_map(|surface| {
             let begin = surface.slot(part)?.begin();
             Some(begin..begin + surface.vectors(part).len() as u32)
         });
@@ -62,8 +54,8 @@ impl PlannedObject {
 
     /// The number of a copy's surface among all.
     pub fn surface_of(&self, copy: &InstanceBlock) -> usize {
-        let coarser = |copies: &LevelledCopies| copies.level(copy) - copies.levels.first;
-        self.levelled.as_ref().map_or(0, coarser)
+        let coarser = |levels: &CopyLevels| levels.of_block(copy) - levels.first;
+        self.levels.as_ref().map_or(0, coarser)
     }
 }
 
@@ -143,11 +135,12 @@ impl Content {
             let Some(entry) = self.objects.at_mut(one.number) else {
                 continue;
             };
-            one.surface = entry.surface(one.level, &mut new)?;
-            if let Some(copies) = &mut one.levelled {
-                for level in &COPY_LEVELS[copies.levels.first + 1..] {
-                    copies.coarser.extend(entry.surface(*level, &mut new)?);
-                }
+            let coarser = one
+                .levels
+                .iter()
+                .flat_map(|of| &COPY_LEVELS[of.first + 1..]);
+            for level in [one.level].iter().chain(coarser) {
+                one.surfaces.extend(entry.surface(*level, &mut new)?);
             }
         }
         self.make_surfaces(&mut new);
@@ -163,18 +156,15 @@ impl Content {
         let mut planned = PlannedObject {
             number,
             level: 0,
-            surface: None,
-            levelled: None,
+            surfaces: Vec::new(),
+            levels: None,
         };
         match view {
             Some(view) if self.levels_copies(entry, derived) => {
                 let (object, height) = (entry.drawn(), entry.values.growth().height());
                 let levels = CopyLevels::new(object, height, view, tolerance, self.lists_crowds());
                 planned.level = COPY_LEVELS[levels.first];
-                planned.levelled = Some(LevelledCopies {
-                    levels,
-                    ..LevelledCopies::default()
-                });
+                planned.levels = Some(levels);
             }
             Some(view) if fitted => {
                 let pixels = entry.pixels_per_unit(view, self.casts());
@@ -287,8 +277,8 @@ impl Entry {
     /// The object in the form that a plan reads; `None` before it is derived.
     pub fn plan_object<'a>(&'a self, planned: &'a PlannedObject) -> Option<PlanObject<'a>> {
         let (boundary, derived) = self.resources()?;
-        let (object, surface) = (self.drawn(), planned.surface.as_ref());
-        let bounds = self.bounds(derived, surface.into_iter());
+        let object = self.drawn();
+        let bounds = self.bounds(derived, &planned.surfaces[..planned.surfaces.len().min(1)]);
         let texels = 2.0 / f64::from(derived.facts.rows);
         let away = object.offset.largest_width().max(0.0) + texels;
         Some(PlanObject {
@@ -297,9 +287,9 @@ impl Entry {
             first_instance: self.instances.start,
             variant: derived.variant,
             textures: Arc::as_ptr(&derived.textures) as usize,
-            surface,
-            takes_patches: derived.takes_patches && surface.is_some(),
-            levelled: planned.levelled.as_ref(),
+            surfaces: &planned.surfaces,
+            takes_patches: derived.takes_patches && !planned.surfaces.is_empty(),
+            levels: planned.levels.as_ref(),
             shape: shape_of(object, bounds.map(f64::from)),
             outline: Some((boundary.solid.as_ref(), away)),
         })

@@ -139,7 +139,7 @@ fn extent(width: u32, height: u32) -> vk::Extent3D {
 /// Copies that wait for a renderer's commands.
 pub(crate) struct Uploads {
     waiting: Vec<Upload>,
-    pub device: Arc<Shared>,
+    device: Arc<Shared>,
 }
 
 /// The copy of one image.

@@ -58,10 +58,10 @@ impl Renderer {
         let objects = self.content.plan.iter().flat_map(|plan| {
             plan.objects.iter().map(|object| {
                 let entry = self.content.objects.at(object.number)?;
-                let copies = object.levelled.as_ref()?;
+                let levels = object.levels.as_ref()?;
                 let level = |placement| {
                     let block = instance_block(entry.drawn(), placement, 0, &plan.view);
-                    COPY_LEVELS[copies.level(&block)]
+                    COPY_LEVELS[levels.of_block(&block)]
                 };
                 Some(entry.drawn().placements().iter().map(level).collect())
             })
@@ -87,14 +87,13 @@ impl Entry {
     fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> Option<ObjectCost> {
         let (boundary, derived) = self.resources()?;
         let follows = derived.solver.follows_tolerance();
-        let fitted = object.surface.as_ref().filter(|_| follows);
-        let copies = object.levelled.as_ref().filter(|c| !c.coarser.is_empty());
-        let of_coarser = copies.map_or(0.0, |copies| copies.levels.error);
+        let fitted = object.surfaces.first().filter(|_| follows);
+        let levels = object.levels.as_ref().filter(|_| object.surfaces.len() > 1);
+        let of_coarser = levels.map_or(0.0, |levels| levels.error);
         let error = fitted.map(|_| self.error_pixels(object.level, view).max(of_coarser));
-        let parts = [Part::Tables, Part::Frusta, Part::Patches];
-        let stored = object.surfaces().flat_map(|surface| {
+        let stored = object.surfaces.iter().flat_map(|surface| {
             let stored = move |part: &Part| surface.slot(*part).is_some();
-            let stored = parts.into_iter().filter(stored);
+            let stored = Part::ALL.into_iter().filter(stored);
             stored.map(move |part| 16 * surface.vectors(part).len() as u64)
         });
         let map = boundary.map.as_ref().map(|map| map.texture.bytes());

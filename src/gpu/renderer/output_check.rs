@@ -5,7 +5,7 @@ use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
 use crate::maps::MapFormat;
-use crate::settings::{Plane, Planes, SearchSettings, Solver};
+use crate::settings::{Plane, Planes, SearchSettings};
 use ash::vk;
 
 /// Most views of a pass; every device with multiview has this many.
@@ -15,7 +15,7 @@ impl Output {
     /// Returns an error for an output that the device or the solver cannot draw.
     pub(crate) fn check(&self, device: &Shared, settings: &SearchSettings) -> Result<()> {
         let (planes, solver) = (self.planes(), settings.solver);
-        let exact = solver.follows_tolerance() || solver == Solver::Live;
+        let exact = solver.external().is_none();
         let all_outputs = matches!(planes, Planes::Color | Planes::All);
         if !(all_outputs || exact && matches!(self, Self::Pass(_))) {
             let message = "depth alone and lists are drawn in a pass, by exact, quadric or live; give one of them";

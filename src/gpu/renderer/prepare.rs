@@ -80,7 +80,7 @@ impl Renderer {
         let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
         let plan = self.content.plan(view, known)?;
         let to = &mut self.slots[slot];
-        to.staging = self.content.uploads.record(cmd);
+        to.staging = self.content.textures.uploads.record(cmd);
         let stale = |bound: &BoundPlan| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0;
         if to.bound.as_ref().is_none_or(stale) {
             to.bound = None;
@@ -132,8 +132,8 @@ impl Renderer {
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
-        let read =
-            parts.flat_map(|(object, parts)| object.surfaces().map(|surface| (surface, *parts)));
+        let read = parts
+            .flat_map(|(object, parts)| object.surfaces.iter().map(|surface| (surface, *parts)));
         let buffers = lock(&self.content.geometry)?.store(read)?;
         let pipelines = &self.device.pipelines;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
@@ -222,7 +222,7 @@ impl Renderer {
             };
             let first = entry.instances.start;
             let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
-            let starts: Vec<_> = object.surfaces().map(starts).collect();
+            let starts: Vec<_> = object.surfaces.iter().map(starts).collect();
             to.write_instances(first, &shown, |copy| {
                 let placement = &placements[copy as usize];
                 let mut block = instance_block(entry.drawn(), placement, number, view);

@@ -9,7 +9,7 @@ use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::plan::levels::LevelledCopies;
+use crate::plan::levels::CopyLevels;
 use crate::plan::{PlanObject, variants};
 use crate::shader::{Kind, Pushed, Variant};
 use ash::vk;
@@ -127,8 +127,13 @@ impl Content {
             let planned = PlannedObject {
                 number,
                 level: 0,
-                surface: boundary.levels.first().map(|l| l.1.clone()),
-                levelled: (self.levels_copies(entry, derived)).then(LevelledCopies::default),
+                surfaces: boundary
+                    .levels
+                    .first()
+                    .map(|l| l.1.clone())
+                    .into_iter()
+                    .collect(),
+                levels: (self.levels_copies(entry, derived)).then(CopyLevels::default),
             };
             Some((entry, derived.textures.set, planned))
         });
@@ -155,7 +160,7 @@ impl Content {
                 };
                 let object = PlanObject {
                     variant: fallback,
-                    surface: None,
+                    surfaces: &[],
                     takes_patches: false,
                     ..*object
                 };

@@ -7,7 +7,7 @@ use super::slot::{BoundPlan, BoundStep, FrameSlot, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::usage::Usage;
 use crate::plan::{Call, IndexedDraw, Step};
-use crate::shader::Pushed;
+use crate::shader::{Kind, Pushed};
 use ash::vk;
 use std::ops::Range;
 
@@ -171,7 +171,7 @@ impl Renderer {
         cmd: vk::CommandBuffer,
         slot: &FrameSlot,
         bound: &BoundPlan,
-        call: &Call,
+        step: &Step,
     ) {
         let raw = &self.device.raw;
         let bins = slot.buffer(SlotBuffer::Bins).raw;
@@ -182,19 +182,15 @@ impl Renderer {
         };
         // SAFETY: as the caller promised; draws and heads are within their buffers.
         unsafe {
-            match call {
+            match &step.call {
                 Call::Draws(range) => self.draw(cmd, slot, bound, range.clone()),
-                Call::Quads(range) => {
+                Call::Tiles(range) => {
                     let large_points = self.device.chosen.constants().large_points;
-                    corners(if large_points { 1 } else { 6 }, range);
+                    let points = step.kind == Kind::Quads && large_points;
+                    corners(if points { 1 } else { 6 }, range);
                 }
-                Call::Tiles(range) => corners(6, range),
                 Call::IndirectTiles(word) => {
                     raw.cmd_draw_indirect(cmd, bins, 4 * u64::from(*word), 1, 0);
-                }
-                Call::Dispatch(groups, pushed) => {
-                    self.push(cmd, pushed);
-                    raw.cmd_dispatch(cmd, *groups, 1, 1);
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);
@@ -260,18 +256,14 @@ impl Renderer {
         let Some(pipeline) = own.pipeline else {
             return Ok(());
         };
-        let point = match step.call {
-            Call::Draws(_) | Call::Quads(_) | Call::Tiles(_) | Call::IndirectTiles(_) => {
-                vk::PipelineBindPoint::GRAPHICS
-            }
-            Call::Dispatch(..) | Call::Indirect(..) | Call::Groups(..) => {
-                vk::PipelineBindPoint::COMPUTE
-            }
+        let point = match step.variant.vertices(step.kind) {
+            Some(_) => vk::PipelineBindPoint::GRAPHICS,
+            None => vk::PipelineBindPoint::COMPUTE,
         };
         self.device.labelled(cmd, step.kind.label(), || {
             self.bind_sets(cmd, point, slot, pipeline, own.textures.set, &own.offsets)?;
             // SAFETY: as the caller promised.
-            unsafe { self.call(cmd, slot, bound, &step.call) };
+            unsafe { self.call(cmd, slot, bound, step) };
             Ok(())
         })
     }

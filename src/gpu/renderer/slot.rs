@@ -193,15 +193,15 @@ impl FrameSlot {
         for (step, _) in steps.filter(|(_, bound)| bound.pipeline.is_some()) {
             match &step.call {
                 Call::Draws(range) => all.draws += range.end - range.start,
-                Call::Quads(range) | Call::Tiles(range) => {
+                Call::Tiles(range) => {
                     all.draws += 1;
                     all.tiles += range.end - range.start;
                 }
-                Call::Dispatch(groups, _) => {
+                Call::Groups([groups, ..], _) => {
                     all.dispatches += 1;
                     all.tiles += groups;
                 }
-                Call::Indirect(..) | Call::Groups(..) => all.dispatches += 1,
+                Call::Indirect(..) => all.dispatches += 1,
                 Call::IndirectTiles(_) => all.draws += 1,
             }
         }

@@ -1,6 +1,6 @@
 //! Conversion of scene values to the blocks that shaders read.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Result, content};
 use crate::gpu::content::entry::Entry;
 use crate::maps::MapFormat;
 use crate::plan::casters::Hierarchy;
@@ -18,11 +18,8 @@ pub(crate) fn check_format(
     settings: &SearchSettings,
 ) -> Result<()> {
     if solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
-        return Err(Error::new(
-            ErrorKind::Content,
-            "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric",
-        )
-        .at_key("extend"));
+        let message = "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric";
+        return content("extend", message);
     }
     Ok(())
 }
@@ -65,9 +62,7 @@ pub(crate) fn last_block(entry: &Entry, copy: usize, view: &View) -> InstanceBlo
     let last = entry.last.as_ref();
     let last = last.and_then(|last| Some((&last.placements(all.len())?[copy], last.extend)));
     let (placement, extend) = last.unwrap_or((&all[copy], object.offset.extend));
-    let rows = view
-        .last
-        .map_or_else(|| view.pixel_rows(), |last| last.rows);
+    let rows = view.last.unwrap_or_else(|| view.pixel_rows());
     // A point `p` of the drawn box is `height p + origin` in the object's own units.
     let height = growth.height();
     let [x, y] = object.axis_offset();
@@ -148,8 +143,7 @@ pub(crate) fn add_casters(to: &mut FrameBlock, all: &Hierarchy, eye: DVec3, maps
 pub(crate) fn check_lights(lighting: &Lighting) -> Result<()> {
     let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
     if count > most as usize {
-        let message = format!("{count} lights; at most {most} are drawn");
-        return Err(Error::new(ErrorKind::Content, message).at_key("light"));
+        return content("light", format!("{count} lights; at most {most} are drawn"));
     }
     Ok(())
 }

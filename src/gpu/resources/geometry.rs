@@ -5,7 +5,6 @@
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::device::Shared;
 use crate::gpu::memory::buffers::{Buffer, Use, write_slice};
-use crate::plan::Parts;
 use crate::solid::cache::SolidCache;
 use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
 use crate::solid::proxy_hull;
@@ -65,14 +64,13 @@ impl Geometry {
     /// Stores parts of surfaces. Frames that were prepared earlier keep their buffers.
     pub fn store<'a>(
         &mut self,
-        surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, Parts)>,
+        surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, [bool; 3])>,
     ) -> Result<TableBuffers> {
         for (surface, parts) in surfaces {
-            let wanted = [parts.tables, parts.frusta, parts.patches];
-            for (_, part) in wanted.into_iter().zip(Part::ALL).filter(|(is, _)| *is) {
+            for (_, part) in parts.into_iter().zip(Part::ALL).filter(|(is, _)| *is) {
                 self.store_part(surface, part)?;
             }
-            if parts.frusta {
+            if parts[Part::Frusta as usize] {
                 self.fit(surface.hull().hull.frusta.len() as u32)?;
             }
         }

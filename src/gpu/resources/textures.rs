@@ -108,6 +108,8 @@ pub(crate) struct Textures {
     /// The texture that is bound if an object has none of a kind.
     blank: Arc<Image>,
     pool: Arc<SetPool>,
+    /// Copies to new images, which wait for commands.
+    pub uploads: Uploads,
 }
 
 /// The textures that an object binds, besides its colour and displacement maps.
@@ -119,7 +121,8 @@ pub(crate) struct BoundTextures {
 }
 
 impl Textures {
-    pub fn new(uploads: &mut Uploads, format: MapFormat) -> Result<Self> {
+    pub fn new(device: &Arc<Shared>, format: MapFormat) -> Result<Self> {
+        let mut uploads = Uploads::new(device);
         let texel = vk::Format::R32_SFLOAT;
         Ok(Self {
             shapes: Kept::default(),
@@ -127,40 +130,26 @@ impl Textures {
             coverings: Kept::default(),
             sets: Kept::default(),
             blank: uploads.image("blank", texel, (1, 1), &[&[0; 4]])?,
-            pool: Arc::new(SetPool::new(&uploads.device, format)?),
+            pool: Arc::new(SetPool::new(device, format)?),
+            uploads,
         })
     }
 
     /// The shape map of a profile. A new map is baked, and its upload is queued.
-    pub fn shape(
-        &mut self,
-        uploads: &mut Uploads,
-        profile: &Arc<Profile>,
-        key: MapKey,
-    ) -> Result<Arc<ShapeTexture>> {
-        let make = || ShapeTexture::bake(uploads, profile, key);
+    pub fn shape(&mut self, profile: &Arc<Profile>, key: MapKey) -> Result<Arc<ShapeTexture>> {
+        let make = || ShapeTexture::bake(&mut self.uploads, profile, key);
         self.shapes.get((address(profile), key), make)
     }
 
     /// The lengths along the outline of a profile, for a map with these facts.
-    pub fn arc(
-        &mut self,
-        uploads: &mut Uploads,
-        profile: &Arc<Profile>,
-        facts: &MapFacts,
-    ) -> Result<Arc<ArcTexture>> {
-        let make = || ArcTexture::new(uploads, profile, facts);
+    pub fn arc(&mut self, profile: &Arc<Profile>, facts: &MapFacts) -> Result<Arc<ArcTexture>> {
+        let make = || ArcTexture::new(&mut self.uploads, profile, facts);
         let key = (address(profile), facts.columns, facts.rows);
         self.arcs.get(key, make)
     }
 
     /// The set of an object of this look, shared by all objects that bind the same textures.
-    pub fn set(
-        &mut self,
-        uploads: &mut Uploads,
-        look: &Texturing,
-        bound: BoundTextures,
-    ) -> Result<Arc<TextureSet>> {
+    pub fn set(&mut self, look: &Texturing, bound: BoundTextures) -> Result<Arc<TextureSet>> {
         let BoundTextures {
             images,
             shape,
@@ -184,7 +173,7 @@ impl Textures {
         if let Some(known) = self.sets.known(&key) {
             return Ok(known);
         }
-        let coverings = &mut self.coverings;
+        let (coverings, uploads) = (&mut self.coverings, &mut self.uploads);
         let color = color_map.map(|map| {
             let format = vk::Format::R8G8B8A8_SRGB;
             covering(coverings, map, || {

@@ -1,12 +1,12 @@
 //! The output of a renderer, set once: formats and conventions, the memory that compute writes to,
 //! and a host's function of shading.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Result, usage};
 use crate::frame::srgb_from_linear;
 use crate::gpu::vk::descriptors::SETS;
 use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
-use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
+use crate::settings::{DrawStage, Plane, Planes, SearchSettings};
 use crate::shader::generated::{EXHAUSTED_BIT, SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
 use crate::shading::Shading;
 use ash::vk;
@@ -87,16 +87,17 @@ impl SlopeBias {
     /// # Errors
     /// [`ErrorKind::Usage`] if a number is negative or not finite, and for a limit of 0 with a factor.
     pub fn new(factor: f32, limit: f32) -> Result<Self> {
-        let wrong = |key, message| Err(Error::new(ErrorKind::Usage, message).at_key(key));
         for (key, value) in [("factor", factor), ("limit", limit)] {
             if !(value.is_finite() && value >= 0.0) {
                 let message = format!("{value}; give a finite number that is not negative");
-                return wrong(key, message);
+                return usage(key, message);
             }
         }
         if factor > 0.0 && limit == 0.0 {
-            let message = "0 leaves no bias; give the most that a depth may move".into();
-            return wrong("limit", message);
+            return usage(
+                "limit",
+                "0 leaves no bias; give the most that a depth may move",
+            );
         }
         // The sum turns -0 into 0, so that equal biases have equal bits.
         let [factor, limit] = [factor, limit].map(|value| (value + 0.0).to_bits());
@@ -258,8 +259,6 @@ impl HostShading {
     /// Returns an error for an output or a search that the function does not shade, and for a function
     /// that does not fit the sets.
     pub(crate) fn check(&self, output: &Output, settings: &SearchSettings) -> Result<()> {
-        let usage =
-            |key: &str, message: String| Err(Error::new(ErrorKind::Usage, message).at_key(key));
         let (stage, name) = match output {
             Output::Pass(_) => (DrawStage::Fragment, "a pass"),
             Output::Compute(_) => (DrawStage::Compute, "a compute target"),
@@ -277,15 +276,11 @@ impl HostShading {
         if !has_color {
             let message =
                 "a host's function shades colour, or a list with colour; give one of them";
-            return usage("planes", message.into());
+            return usage("planes", message);
         }
-        let exact = matches!(
-            settings.solver,
-            Solver::Exact | Solver::Quadric | Solver::Live
-        );
-        if !exact || settings.map_format == MapFormat::Rgba8 {
+        if settings.solver.external().is_some() || settings.map_format == MapFormat::Rgba8 {
             let message = "a host's function shades hits of exact, quadric or live, with maps in r16 or r32; give one of them";
-            return usage("solver", message.into());
+            return usage("solver", message);
         }
         for (set, binding) in self.shading.bindings() {
             let known = SETS.get(set as usize).map(|own| binding < own.len() as u32);
@@ -295,7 +290,7 @@ impl HostShading {
             }
             if set == HOST_SET && self.set_layout == vk::DescriptorSetLayout::null() {
                 let message = "is null, and the shading reads set 3; give one";
-                return usage("set_layout", message.into());
+                return usage("set_layout", message);
             }
         }
         Ok(())

@@ -28,7 +28,7 @@ pub(crate) use bounds::{Cylinder, Projector};
 pub(crate) use deal::LEAST_QUEUE;
 
 use super::view::View;
-use crate::scene::{Cluster, Copies, Placement};
+use crate::scene::{Cluster, Object};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::Cylinders;
 use bounds::ScreenBounds;
@@ -39,7 +39,7 @@ use strip::{Item, Opened, Strip};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
-    pub placements: Placements<'a>,
+    pub object: &'a Object,
     /// The number of its first copy among all instances.
     pub first: u32,
     pub shape: Cylinder,
@@ -50,35 +50,8 @@ pub(crate) struct Batch<'a> {
     pub outer: Option<(&'a Cylinders, f64)>,
     /// The surface; none unless its patches are searched and there are no replicas.
     pub surface: Option<&'a OffsetSurface>,
-    /// Half of the box's side.
-    pub half_side: f64,
     /// True if patches may be listed for its tiles in some views.
     pub permits_lists: bool,
-}
-
-/// The placements of an object's copies.
-#[derive(Clone, Copy)]
-pub(crate) enum Placements<'a> {
-    One(&'a Placement),
-    Many(&'a Copies),
-}
-
-impl<'a> Placements<'a> {
-    /// The number of the copy at a rank in the order of the clusters, and its placement.
-    fn at(&self, rank: u32) -> (u32, &'a Placement) {
-        match self {
-            Self::One(placement) => (0, placement),
-            Self::Many(copies) => copies.clusters().at(rank),
-        }
-    }
-
-    /// Number of copies.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::One(_) => 1,
-            Self::Many(copies) => copies.len(),
-        }
-    }
 }
 
 /// A cluster that may be in the picture.
@@ -165,11 +138,11 @@ impl<'a> Visible<'a> {
                     ranks: cluster.range.clone(),
                 })
             };
-            match batch.placements {
-                Placements::One(_) => single.extend(item(number, 0)),
-                Placements::Many(copies) => {
-                    clusters.par_extend(copies.clusters().all().par_iter().filter_map(candidate));
-                }
+            let copies = &batch.object.instances;
+            if copies.is_empty() {
+                single.extend(item(number, 0));
+            } else {
+                clusters.par_extend(copies.clusters().all().par_iter().filter_map(candidate));
             }
         }
         clusters.par_sort_unstable_by_key(|c| c.bounds.near.to_bits());
@@ -244,7 +217,7 @@ impl<'a> Visible<'a> {
         all.par_sort_unstable();
         all.dedup();
         let of = |batch: &Batch| {
-            let end = batch.first + batch.placements.len() as u32;
+            let end = batch.first + batch.object.placements().len() as u32;
             let [from, to] = [batch.first, end].map(|n| all.partition_point(|copy| *copy < n));
             all[from..to]
                 .iter()
@@ -260,7 +233,7 @@ impl<'a> Visible<'a> {
     pub fn deal(&self, compute: bool, layer_of: &[u32], queues: &[bool]) -> TileWords {
         let lists = |b| compute && self.lists_patches(b);
         let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
-        let single = |batch: &Batch| batch.placements.len() == 1;
+        let single = |batch: &Batch| batch.object.placements().len() == 1;
         let single: Vec<bool> = self.batches.iter().map(single).collect();
         let dealer = Dealer {
             compute,

@@ -63,7 +63,7 @@ impl Item {
     /// The copy of this rank in a batch, if some pixel may show it.
     pub fn new(projector: &Projector, batches: &[Batch], batch: u32, rank: u32) -> Option<Self> {
         let of = &batches[batch as usize];
-        let (copy, placement) = of.placements.at(rank);
+        let (copy, placement) = of.object.copy_at(rank);
         let bounds = projector.bounds(placement, &of.shape)?;
         let copy = of.first + copy;
         Some(Self {
@@ -141,7 +141,7 @@ impl<'a> Strip<'a> {
             return;
         }
         let batch = &self.batches[item.batch as usize];
-        let (_, placement) = batch.placements.at(item.rank);
+        let (_, placement) = batch.object.copy_at(item.rank);
         let axes = self.projector.axes(placement, batch.shape.axis);
         let [_, top, _, bottom] = pixels.map(u32::from);
         let in_front = near > 0.0;
@@ -181,7 +181,7 @@ impl<'a> Strip<'a> {
         if let Some(surface) = batch.surface {
             let facts = &mut self.facts[item.batch as usize];
             facts.apart &= is_apart(surface, axes.eye);
-            facts.even &= !is_lopsided(batch.half_side, placement);
+            facts.even &= !is_lopsided(batch.object.profile.radius, placement);
         }
         if let Some(inner) = batch.inner.filter(|_| in_front) {
             self.cover.add(&axes, inner, pixels);
@@ -194,9 +194,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plan::View;
-    use crate::plan::tiles::{Cylinder, FIRST_ROUND, Placements, Visible};
+    use crate::plan::tiles::{Cylinder, FIRST_ROUND, Visible};
     use crate::profile::Profile;
-    use crate::scene::{Camera, Copies, Offset, Placement};
+    use crate::scene::{Camera, Object, Offset, Placement};
     use crate::solid::cache::Solid;
     use crate::solid::offset_surface::{OffsetSurface, Recipe};
     use crate::surface::FitOptions;
@@ -216,7 +216,7 @@ mod tests {
 
     /// A field of 20 x 20 world units with copies of about this size. `tall`: ratio of height to
     /// width.
-    fn field(count: u32, seed: u32, size: f64, tall: f64) -> Copies {
+    fn field(count: u32, seed: u32, size: f64, tall: f64) -> Object {
         let of = |k: u32| {
             let part = |step: f64| (f64::from(k + 999 * seed) * step).fract();
             let [x, y] = [part(0.754_877_666), part(0.569_840_291)];
@@ -228,7 +228,10 @@ mod tests {
                 scale: DVec3::new(scale, scale, tall * scale),
             }
         };
-        (0..count).map(of).collect()
+        let profile = Profile::polygon(&[[0.0, 0.0], [0.5, 0.5], [0.0, 1.0]], 0.5).unwrap();
+        let mut object = Object::new("field", Arc::new(profile));
+        object.instances = (0..count).map(of).collect();
+        object
     }
 
     /// The tiles equal those of one round, in which all clusters are opened, to the last word, wherever
@@ -245,9 +248,9 @@ mod tests {
         let mut first = 0;
         let batches: Vec<Batch> = fields
             .iter()
-            .map(|(placements, surface)| {
+            .map(|(object, surface)| {
                 let batch = Batch {
-                    placements: Placements::Many(placements),
+                    object,
                     first,
                     shape: Cylinder {
                         axis: DVec2::ZERO,
@@ -258,10 +261,9 @@ mod tests {
                     inner: surface.inner(),
                     outer: surface.outer().map(|outer| (outer, 0.0)),
                     surface: Some(surface),
-                    half_side: 0.5,
                     permits_lists: true,
                 };
-                first += placements.len() as u32;
+                first += object.instances.len() as u32;
                 batch
             })
             .collect();

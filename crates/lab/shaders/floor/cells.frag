@@ -18,15 +18,11 @@ void main()
     Meridian m;
     m.v = ray_direction(rays, pixel);
     m.o = ray_origin(rays, pixel);
-    Hit hit;
+    Hit hit = NO_HIT;
     hit.t = 1.0 / gl_FragCoord.w - rays.base;
     hit.normal = quadric_normal(m, hit.t, first_quadric);
     hit.point = m.o + hit.t * m.v;
-    hit.sense = vec3(1.0);
-    hit.steps = 0u;
-    hit.exhausted = false;
-    hit.at_border = false;
     count_steps(pixel, hit.steps, hit.exhausted);
-    store(shade(varying_look(), rays, pixel, hit), varying_rays(), uint(look_ambient.w), pixel, hit);
+    draw(varying_look(), rays, pixel, hit);
     gl_FragDepth = gl_FragCoord.z; // written, as the search does
 }

@@ -15,13 +15,9 @@ void main()
     float a = dot(v.xy, v.xy);
     float b = dot(o.xy, v.xy);
     float inside = b * b - a * (dot(o.xy, o.xy) - object.bounds.y * object.bounds.y);
-    Hit hit;
+    Hit hit = NO_HIT;
     hit.t = -(b + sqrt(max(inside, 0.0))) / a;
     hit.point = o + hit.t * v;
     hit.normal = vec3(hit.point.xy, 0.0);
-    hit.sense = vec3(1.0);
-    hit.at_border = false;
-    hit.steps = 0u;
-    hit.exhausted = false;
     store_tile(pixel, true, hit);
 }

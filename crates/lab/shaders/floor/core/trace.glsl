@@ -8,13 +8,10 @@
 
 bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
 {
+    hit = NO_HIT;
     hit.t = t;
     hit.point = o + t * v;
     hit.normal = vec3(hit.point.xy, 0.0);
-    hit.sense = vec3(1.0);
-    hit.steps = 0u;
-    hit.exhausted = false;
-    hit.at_border = false;
     return true;
 }
 
@@ -22,7 +19,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
 {
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.
-    return clip_ray(eye, v, base, m) && object.patches.z != 0u && hit_at(eye, v, m.t_start, hit);
+    return clip_ray(eye, v, base, m) && object.patches.w != 0u && hit_at(eye, v, m.t_start, hit);
 }
 
 #endif
