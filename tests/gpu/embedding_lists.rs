@@ -14,7 +14,7 @@ use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, Renderer, View};
 use revmap::maps::MapFormat;
-use revmap::scene::{Material, Object, Placement, Scene};
+use revmap::scene::{Light, Material, Object, Placement, Scene, Shadow};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Settings, Solver, Tolerance};
 use std::collections::HashSet;
 
@@ -303,6 +303,12 @@ fn motion_leads_to_the_last_frames_point() {
     (replicas.repeat, replicas.mirror) = ([2, 1, 3], [false, false, true]);
     replicas.placement.position = DVec3::new(-0.9, 0.1, 0.1);
     scene.objects.push(replicas);
+    // Rays towards the light meet other solids than the drawn one.
+    scene.shadow = Shadow::Hard;
+    scene.lights = vec![Light {
+        direction: DVec3::new(-1.0, -0.1, -0.1),
+        ..Light::default()
+    }];
     let before = scene.clone();
     let planes = [Plane::Motion, Plane::Identity];
     let mut lists = Lists::new(&host, &device, &planes, &scene, &SearchSettings::exact());
