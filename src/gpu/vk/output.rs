@@ -85,7 +85,8 @@ impl SlopeBias {
     /// silhouettes slopes have no limit. `factor`: at least half of the filter's width in texels.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] if a number is negative or not finite, and for a limit of 0 with a factor.
+    /// [`Usage`](crate::error::ErrorKind::Usage) if a number is negative or not finite, and for a
+    /// limit of 0 with a factor.
     pub fn new(factor: f32, limit: f32) -> Result<Self> {
         for (key, value) in [("factor", factor), ("limit", limit)] {
             if !(value.is_finite() && value >= 0.0) {
