@@ -295,6 +295,12 @@ fn first_hit(
 /// jittered.
 #[test]
 fn motion_leads_to_the_last_frames_point() {
+    for shadow in [Shadow::Off, Shadow::Hard] {
+        check_motion(shadow);
+    }
+}
+
+fn check_motion(shadow: Shadow) {
     let host = open();
     let device = borrow(&host);
     let mut scene = three();
@@ -304,7 +310,7 @@ fn motion_leads_to_the_last_frames_point() {
     replicas.placement.position = DVec3::new(-0.9, 0.1, 0.1);
     scene.objects.push(replicas);
     // Rays towards the light meet other solids than the drawn one.
-    scene.shadow = Shadow::Hard;
+    scene.shadow = shadow;
     scene.lights = vec![Light {
         direction: DVec3::new(-1.0, -0.1, -0.1),
         ..Light::default()
