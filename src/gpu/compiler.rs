@@ -139,10 +139,6 @@ impl PipelineCompiler {
             casts: lighting.shadow != Shadow::Off,
             ..self.conditions
         };
-        let alone = Variant {
-            one_object: 1,
-            ..variant
-        };
         let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
         let (mut copies, mut all) = (object.clone(), Vec::new());
         copies.instances = vec![Placement::default(); 2].into();
@@ -159,7 +155,12 @@ impl PipelineCompiler {
                 shape: shape_of(object, [0.0; 4]),
                 outline: None,
             };
-            for (v, kind) in conditions.reachable(&of, alone) {
+            let one_object = Variant {
+                one_object: 1,
+                depths: u32::from(object.placements().len() > 1),
+                ..variant
+            };
+            for (v, kind) in conditions.reachable(&of, one_object) {
                 // Pipelines for other values of the parameters belong to another look. Pipelines
                 // for tables that are too large, and for many solids, do so too.
                 let own = variant.of_kind(kind);

@@ -8,9 +8,7 @@
 //! comes from an earlier frame. `crowd.glsl` names the passes and the lists.
 
 use super::tiles::Projector;
-use super::{
-    Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View, projector, with_depths,
-};
+use super::{Call, Conditions, FramePlan, Layer, Path, PlanObject, Step, View, projector};
 use crate::scene::Placement;
 use crate::shader::generated as g;
 use crate::shader::{CrowdBlock, CrowdObject, Kind, Pushed, Variant};
@@ -132,22 +130,13 @@ fn add_draws(
     };
     let first_phase = plan.steps.last().map_or(2, |step| step.phase.max(1) + 1);
     for (n, layer) in (0u32..).zip(layers) {
-        let several = with.compute && (layers.len() > 1 || !plan.steps.is_empty());
-        plan.compares_depths |= several || (with.compute && with.host_depths);
-        let variant = with_depths(layer.variant, plan.compares_depths);
         plan.steps.push(Step {
             phase: if with.compute { first_phase + n } else { 0 },
-            variant: variant.of_kind(kind),
+            variant: layer.variant.of_kind(kind),
             kind,
             object: layer.objects[0],
             call: call_of(n),
         });
-    }
-    if with.compute && plan.compares_depths {
-        // Tiles that were drawn before keep their depths.
-        for step in &mut plan.steps {
-            step.variant = with_depths(step.variant, true).of_kind(step.kind);
-        }
     }
 }
 

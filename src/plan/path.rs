@@ -146,7 +146,7 @@ impl Conditions {
     }
 
     /// True if the device lists the tiles of an object's copies.
-    fn is_crowd(&self, of: &PlanObject) -> bool {
+    pub fn is_crowd(&self, of: &PlanObject) -> bool {
         let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
         let many = of.object.placements().len() > MOST_PROXIES && of.object.repeat == [1; 3];
         self.lists_crowds && shows && many && of.is_whole()
@@ -253,17 +253,17 @@ impl Conditions {
             kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
         } else if self.takes_tiles(of) && !self.compute {
             kinds.push((Kind::Quads, &[0, 1]));
-            if Self::takes_queues(of) {
+            if Self::takes_queues(of) && variant.one_instance == 0 {
                 kinds.push((Kind::Tiles, &[0, 1]));
             }
         } else if self.takes_tiles(of) {
             if self.may_permit_lists(of) {
                 kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
             }
-            kinds.extend([
-                (Kind::TileTree, [0, 1].as_slice()),
-                (Kind::TileCopies, &[0, 1]),
-            ]);
+            kinds.push((Kind::TileTree, &[0, 1]));
+            if variant.depths != 0 {
+                kinds.push((Kind::TileCopies, &[0, 1]));
+            }
         }
         if !self.compute {
             kinds.push((Kind::Boxes, &[0, 1]));
@@ -278,17 +278,11 @@ impl Conditions {
             (false, false) => &[1],
             (false, true) => &[0, 1],
         };
-        let depths: &[u32] = if self.host_depths { &[1] } else { &[0, 1] };
-        let lengths = LIST_LENGTHS
-            .into_iter()
-            .filter(|_| self.may_permit_lists(of));
-        let lengths: Vec<u32> = std::iter::once(0).chain(lengths).collect();
         type Axis<'a> = (&'a [u32], fn(&mut Variant) -> &mut u32);
-        let axes: [Axis; 4] = [
+        let axes: [Axis; 3] = [
             (counts, |v| &mut v.lights),
             (own, |v| &mut v.own_tables),
-            (depths, |v| &mut v.depths),
-            (&lengths, |v| &mut v.list_length),
+            (&LIST_LENGTHS, |v| &mut v.list_length),
         ];
         let along = |all: Vec<Variant>, (values, member): Axis| -> Vec<Variant> {
             let with = |mut v: Variant, value| {
@@ -303,8 +297,7 @@ impl Conditions {
             let first: Axis = (outside, |v| &mut v.outside);
             for v in [first].into_iter().chain(axes).fold(variant.forms(), along) {
                 let key = (v.of_kind(kind), kind);
-                let empty = kind == Kind::TilePatches && v.list_length == 0;
-                if !empty && !all.contains(&key) {
+                if !all.contains(&key) {
                     all.push(key);
                 }
             }

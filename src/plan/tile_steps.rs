@@ -4,7 +4,6 @@ use super::path::LIST_LENGTHS;
 use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
-    with_depths,
 };
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
@@ -24,7 +23,6 @@ impl FramePlan {
         let drawn = |n: &usize| paths[*n] == Path::Tiles;
         let numbers: Vec<usize> = (0..objects.len()).filter(drawn).collect();
         if numbers.is_empty() {
-            self.compares_depths = with.host_depths;
             return;
         }
         let batches: Vec<Batch> = (numbers.iter())
@@ -74,7 +72,7 @@ impl FramePlan {
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
-            self.dispatch(&layers, &dealt.layers, objects, with);
+            self.dispatch(&layers, &dealt.layers, objects);
         } else {
             for ((layer, tiles), queues) in layers.iter().zip(&dealt.layers).zip(queues) {
                 let step = |kind, call| Step {
@@ -98,15 +96,7 @@ impl FramePlan {
 
     /// Adds the dispatches of tiles. Lists of patches come first, then tiles of one copy, which
     /// share no pixels. Tiles of several copies follow, layer by layer.
-    fn dispatch(
-        &mut self,
-        layers: &[Layer],
-        tiles: &[LayerTiles],
-        objects: &[PlanObject],
-        with: &Conditions,
-    ) {
-        let several = tiles.iter().any(|t| !t.queued.is_empty());
-        self.compares_depths = several || with.host_depths;
+    fn dispatch(&mut self, layers: &[Layer], tiles: &[LayerTiles], objects: &[PlanObject]) {
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
         self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
@@ -114,7 +104,7 @@ impl FramePlan {
         let mut head = 0;
         self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
-            let base = with_depths(layer.variant, self.compares_depths);
+            let base = layer.variant;
             let step = |phase, kind, variant: Variant, call| Step {
                 phase,
                 variant: variant.of_kind(kind),
@@ -139,20 +129,15 @@ impl FramePlan {
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Groups([groups, 1, 1], pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
-                // The last bin holds tiles that walk the tree.
-                let lengths = LIST_LENGTHS.into_iter().chain([1]);
-                for (bin, list_length) in (0..).zip(lengths) {
-                    let call = Call::Indirect(head + 4 * bin, pushed(bin));
-                    let kind = match bin < TREE_BIN {
-                        true => Kind::TilePatches,
-                        false => Kind::TileTree,
-                    };
+                let call = |bin| Call::Indirect(head + 4 * bin, pushed(bin));
+                for (bin, list_length) in (0..).zip(LIST_LENGTHS) {
                     let variant = Variant {
                         list_length,
                         ..base
                     };
-                    later.push(step(1, kind, variant, call));
+                    later.push(step(1, Kind::TilePatches, variant, call(bin)));
                 }
+                later.push(step(1, Kind::TileTree, base, call(TREE_BIN)));
                 head += 4 * TILE_BINS;
                 self.bin_words += 4 * TILE_BINS * count;
             }

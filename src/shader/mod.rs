@@ -4,6 +4,7 @@
 mod blocks;
 mod catalogue;
 mod external;
+mod frozen;
 mod module;
 mod outputs;
 mod spirv;
@@ -22,6 +23,7 @@ pub(crate) use catalogue::modules;
 #[cfg(feature = "shaderc")]
 pub use catalogue::shading_macros;
 pub use catalogue::{Module, Search, shading_modules};
+pub use frozen::frozen;
 #[cfg(feature = "other-shaders")]
 pub use module::catalogued;
 pub use module::words;

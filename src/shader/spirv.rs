@@ -10,11 +10,27 @@ pub mod op {
     pub const ENTRY_POINT: u32 = 15;
     pub const EXECUTION_MODE: u32 = 16;
     pub const CAPABILITY: u32 = 17;
+    pub const TYPE_BOOL: u32 = 20;
     pub const TYPE_POINTER: u32 = 32;
+    pub const CONSTANT_TRUE: u32 = 41;
+    pub const CONSTANT_FALSE: u32 = 42;
+    pub const CONSTANT: u32 = 43;
     pub const SPEC_CONSTANT: u32 = 50;
+    pub const SPEC_CONSTANT_OP: u32 = 52;
     pub const VARIABLE: u32 = 59;
     pub const LOAD: u32 = 61;
     pub const DECORATE: u32 = 71;
+    pub const I_ADD: u32 = 128;
+    pub const I_MUL: u32 = 132;
+    pub const LOGICAL_OR: u32 = 166;
+    pub const LOGICAL_AND: u32 = 167;
+    pub const LOGICAL_NOT: u32 = 168;
+    pub const SELECT: u32 = 169;
+    pub const I_EQUAL: u32 = 170;
+    pub const I_NOT_EQUAL: u32 = 171;
+    pub const U_GREATER_THAN: u32 = 172;
+    pub const BITWISE_AND: u32 = 199;
+    pub const NOT: u32 = 200;
     pub const LABEL: u32 = 248;
 
     pub const SPEC_ID: u32 = 1;

@@ -133,13 +133,12 @@ pub struct Variant {
     pub projection: u32,
     /// The search of another crate, for [`Search::External`].
     pub external: Option<External>,
-    /// Compute stage: 0 if the target has no other depths, so none is compared or kept.
+    /// Compute stage: 0 if each pixel is drawn once, so no depth is compared or kept.
     pub depths: u32,
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
     /// one loop.
     pub lights: u32,
-    /// Patches that each pixel of a listed tile tests; 1 for tiles that walk the tree. 0: tiles
-    /// come from no list.
+    /// Patches that each pixel of a listed tile tests.
     pub list_length: u32,
     /// 1 if the box cuts nothing of the solid and rays from the eye begin outside of it.
     pub outside: u32,
@@ -341,11 +340,7 @@ impl Variant {
             // Lavapipe 22 crashes in shadows if it treats the solid as constants.
             one_object,
             one_instance: of(of_copy, self.one_instance & one_object),
-            list_length: match kind {
-                Kind::TilePatches => self.list_length,
-                Kind::TileTree => self.list_length.min(1),
-                _ => 0,
-            },
+            list_length: of(kind == Kind::TilePatches, self.list_length),
             depths: if compute { self.depths } else { 1 },
             ..self
         }

@@ -68,7 +68,7 @@ const uint RGBA8 = 0u;
 layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches that share their modules
 layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the object's block
 #endif
-layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: the target has no other depths: none is compared or kept
+layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
 // 1: the box does not cut the solid, and rays from the eye begin outside it. For cells the macro CUT replaces 0.
 layout(constant_id = 11) const uint OUTSIDE = 0u;
@@ -83,7 +83,7 @@ layout(constant_id = 20) const uint VIEW_INDEX = 0u; // replaced by gl_ViewIndex
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
-layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile; 1 if it walks the tree; 0: no list
+layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;

@@ -19,7 +19,7 @@ shared float listed[8u * LONGEST_LIST];
 void share_record()
 {
     if (gl_LocalInvocationIndex < 4u) {
-        shared_record[gl_LocalInvocationIndex] = record_word(gl_LocalInvocationIndex);
+        shared_record[gl_LocalInvocationIndex] = bin_words[bin_records(pushed.bin) + 4u * gl_WorkGroupID.x + gl_LocalInvocationIndex];
     }
 }
 

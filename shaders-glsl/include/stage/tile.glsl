@@ -8,16 +8,23 @@ Instance tile_instance;
 Look tile_look;
 PixelRays tile_rays;
 
-uint record_word(uint n)
+// Returns true if the dispatch reads a bin. Otherwise it reads records of tiles.
+bool reads_bin()
 {
-    uint at = 4u * gl_WorkGroupID.x + n + (LIST_LENGTH != 0u ? bin_records(pushed.bin) : 4u * pushed.first);
-    return LIST_LENGTH != 0u ? bin_words[at] : tile_words[at];
+    return pushed.count != 0u;
 }
 
 // Loads the record and its instance.
 void take_record()
 {
-    tile_record = uvec4(record_word(0u), record_word(1u), record_word(2u), record_word(3u));
+    uint at = 4u * gl_WorkGroupID.x;
+    if (reads_bin()) {
+        at += bin_records(pushed.bin);
+        tile_record = uvec4(bin_words[at], bin_words[at + 1u], bin_words[at + 2u], bin_words[at + 3u]);
+    } else {
+        at += 4u * pushed.first;
+        tile_record = uvec4(tile_words[at], tile_words[at + 1u], 0u, 0u);
+    }
     tile_instance = instances[ONE_INSTANCE != 0u ? pushed.instance : tile_record.y];
 }
 

@@ -8,10 +8,11 @@ use crate::gpu::vk::render_pass::CompatiblePass;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
-    Kind, Module, Search, Variant, depth_less, with_locations, with_outputs_for, with_view_index,
-    words,
+    Kind, Module, Search, Variant, depth_less, frozen, with_locations, with_outputs_for,
+    with_view_index, words,
 };
 use ash::vk;
+use std::collections::HashMap;
 
 impl Pipelines {
     pub(super) fn compile(
@@ -23,22 +24,13 @@ impl Pipelines {
         let (output, host) = (&owner.output, owner.shading.as_deref());
         let own = variant.constants().into_iter();
         let constants = own.chain(output.constants()).chain(self.constants.values());
-        let (ids, values): (Vec<u32>, Vec<u32>) = constants.unzip();
-        let entry = |(id, n): (&u32, u32)| vk::SpecializationMapEntry {
-            constant_id: *id,
-            offset: 4 * n,
-            size: 4,
-        };
-        let entries: Vec<_> = ids.iter().zip(0..).map(entry).collect();
-        let specialization = vk::SpecializationInfo::default()
-            .map_entries(&entries)
-            .data(bytemuck::cast_slice(&values));
+        let constants = constants.collect();
         let module = variant.module(kind);
         match (variant.vertices(kind), output) {
-            (None, _) => self.compute(variant, &module, host, &specialization),
+            (None, _) => self.compute(variant, &module, host, &constants),
             (Some(vertices), Output::Pass(pass)) => {
                 let modules = [&vertices, &module];
-                self.graphics((variant, kind), pass, modules, host, &specialization)
+                self.graphics((variant, kind), pass, modules, host, &constants)
             }
             (Some(_), Output::Compute(_)) => {
                 let message = "fragments are drawn in a pass, not in compute";
@@ -73,7 +65,7 @@ impl Pipelines {
     }
 
     /// The fragments of a pass: for its depth order, and with its attachments.
-    fn fragments(&self, mut words: Vec<u32>, pass: &PassFormats) -> Result<ShaderModule<'_>> {
+    fn fragments(&self, mut words: Vec<u32>, pass: &PassFormats) -> Vec<u32> {
         if pass.depth == DepthOrder::Reversed {
             words = depth_less(&words);
         }
@@ -84,11 +76,12 @@ impl Pipelines {
             }
             words = with_locations(&words, &locations);
         }
-        self.shader(&words)
+        words
     }
 
-    fn shader(&self, words: &[u32]) -> Result<ShaderModule<'_>> {
-        let info = vk::ShaderModuleCreateInfo::default().code(words);
+    fn shader(&self, words: &[u32], constants: &HashMap<u32, u32>) -> Result<ShaderModule<'_>> {
+        let words = frozen(words, constants);
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
         // host promised.
         let raw =
@@ -104,12 +97,13 @@ impl Pipelines {
         variant: &Variant,
         module: &Module,
         host: Option<&BoundShading>,
-        specialization: &vk::SpecializationInfo<'_>,
+        constants: &HashMap<u32, u32>,
     ) -> Result<vk::Pipeline> {
-        let module = self.shader(&self.words(variant, module, host)?)?;
+        let words = self.words(variant, module, host)?;
+        let module = self.shader(&words, constants)?;
         let info = vk::ComputePipelineCreateInfo::default()
             .flags(self.flags)
-            .stage(module.stage(vk::ShaderStageFlags::COMPUTE, specialization))
+            .stage(module.stage(vk::ShaderStageFlags::COMPUTE))
             .layout(host.map_or(self.layout, |host| host.layout));
         // SAFETY: `info` and all it points to live until the call returns.
         let made = unsafe { self.raw.create_compute_pipelines(self.cache, &[info], None) };
@@ -130,7 +124,7 @@ impl Pipelines {
         pass: &PassFormats,
         modules: [&Module; 2],
         host: Option<&BoundShading>,
-        specialization: &vk::SpecializationInfo<'_>,
+        constants: &HashMap<u32, u32>,
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
         let fragments = self.words(variant, fragment, host)?;
@@ -138,11 +132,11 @@ impl Pipelines {
         if pass.views > 1 {
             vertices = with_view_index(&vertices);
         }
-        let vertex = self.shader(&vertices)?;
-        let fragment = self.fragments(fragments, pass)?;
+        let vertex = self.shader(&vertices, constants)?;
+        let fragment = self.shader(&self.fragments(fragments, pass), constants)?;
         let stages = [
-            vertex.stage(vk::ShaderStageFlags::VERTEX, specialization),
-            fragment.stage(vk::ShaderStageFlags::FRAGMENT, specialization),
+            vertex.stage(vk::ShaderStageFlags::VERTEX),
+            fragment.stage(vk::ShaderStageFlags::FRAGMENT),
         ];
         // Proxies, quads and tiles have no vertex input: shaders make their corners from numbers.
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
@@ -242,16 +236,11 @@ struct ShaderModule<'a> {
 }
 
 impl ShaderModule<'_> {
-    fn stage<'i>(
-        &self,
-        stage: vk::ShaderStageFlags,
-        specialization: &'i vk::SpecializationInfo<'i>,
-    ) -> vk::PipelineShaderStageCreateInfo<'i> {
+    fn stage(&self, stage: vk::ShaderStageFlags) -> vk::PipelineShaderStageCreateInfo<'static> {
         vk::PipelineShaderStageCreateInfo::default()
             .stage(stage)
             .module(self.raw)
             .name(c"main")
-            .specialization_info(specialization)
     }
 }
 
