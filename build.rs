@@ -13,13 +13,9 @@ use std::path::{Path, PathBuf};
 #[path = "src/shader/catalogue.rs"]
 mod catalogue;
 
-#[allow(dead_code)]
-#[path = "src/search/module.rs"]
-mod search;
-
 const SOURCES: &str = "shaders-glsl";
 const INCLUDES: [&str; 3] = ["include/core", "include/search", "include/stage"];
-const CATALOGUE: [&str; 2] = ["src/shader/catalogue.rs", "src/search/module.rs"];
+const CATALOGUE: &str = "src/shader/catalogue.rs";
 const KEPT: &str = "shaders-spirv";
 
 fn main() {
@@ -45,7 +41,7 @@ fn generate() -> Fallible<()> {
         target.join("library.rs"),
         modules::texts(SOURCES, &sources)?,
     )?;
-    sources.extend(CATALOGUE.map(PathBuf::from));
+    sources.push(CATALOGUE.into());
     let module = |module: catalogue::Module| modules::Module {
         name: module.name(),
         entry: module.entry.file(),
@@ -56,11 +52,7 @@ fn generate() -> Fallible<()> {
     };
     let mut all: Vec<_> = catalogue::modules().into_iter().map(module).collect();
     // Tests read the layouts of blocks from these modules.
-    let every_block = vec![
-        ("SEARCH", "SEARCH_LIVE"),
-        ("SHADOWED", "1"),
-        ("OUTPUT", "OUTPUT_PLANES"),
-    ];
+    let every_block = vec![("SEARCH", "SEARCH_LIVE"), ("OUTPUT", "OUTPUT_PLANES")];
     let layouts = [
         ("layouts", "tree.frag", every_block),
         ("crowd_layouts", "crowd_copies.comp", vec![]),

@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Intersects a fragment's ray with the patches of its cell.
+#define SINGLE
 #include "search/cell.glsl"
 #include "stage/outputs.glsl"
 

@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Intersects the pixels of a tile with its listed patches.
+#define SINGLE
 #include "search/listed.glsl"
 
 void main()

@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Traces a fragment of a tile: the nearest of the copies in its queue.
+#define SINGLE
 #include "stage/queue.glsl"
 #include "stage/outputs.glsl"
 

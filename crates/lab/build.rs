@@ -64,11 +64,6 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
 /// Every module: its file's name, then what it was compiled for.
 #[cfg(feature = "shaderc")]
 fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
-    const VARIANTS: [&[(&str, &str)]; 3] = [
-        &[],
-        &[("TEXTURED", "1")],
-        &[("TEXTURED", "1"), ("OUTPUT", "OUTPUT_PLANES")],
-    ];
     let entries = [
         "cells.frag",
         "tiles.frag",
@@ -79,11 +74,12 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     ];
     let mut all = vec![floor_module("proxy_cells.vert", Vec::new())];
     for file in entries {
-        for variant in VARIANTS {
-            let mut macros = vec![("SEARCH", "SEARCH_QUADRIC")];
-            macros.extend(variant);
-            all.push(floor_module(file, macros));
-        }
+        let search = ("SEARCH", "SEARCH_QUADRIC");
+        all.push(floor_module(file, vec![search]));
+        all.push(floor_module(
+            file,
+            vec![search, ("OUTPUT", "OUTPUT_PLANES")],
+        ));
     }
     let modules = Modules {
         entries: &["shaders/floor", "../../shaders-glsl"],
@@ -101,6 +97,5 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
 fn floor_module(entry: &'static str, macros: Vec<(&'static str, &'static str)>) -> Module {
     let value = |name: &str| macros.iter().find(|(n, _)| *n == name).map(|(_, v)| *v);
     let output = value("OUTPUT").unwrap_or("OUTPUT_COLOR");
-    let textured = value("TEXTURED").unwrap_or("0");
-    module(format!("{entry} {output} {textured}"), entry, macros, true)
+    module(format!("{entry} {output}"), entry, macros, true)
 }

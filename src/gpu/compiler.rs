@@ -16,7 +16,7 @@ use crate::maps::MapFormat;
 use crate::plan::{Conditions, PlanObject, shape_of};
 use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, Kind, ShadowCasters, Variant, catalogued};
+use crate::shader::{HostLook, Kind, ShadowCasters, Variant};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -230,7 +230,7 @@ impl PipelineCompiler {
                 shader: stage_name(&text(executable.name_as_c_str())),
                 module: match variant.external {
                     Some(external) if !vertices => external.name(&module),
-                    _ => catalogued(&module).unwrap_or(module).name(),
+                    _ => module.name(),
                 },
                 subgroup_size: executable.subgroup_size,
                 statistics: said.iter().filter_map(statistic).collect(),

@@ -8,7 +8,7 @@ use crate::scene::Object;
 use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
-use crate::shader::{Features, Kind, Search, Variant};
+use crate::shader::{Kind, Search, Variant};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
 use glam::DVec2;
@@ -142,7 +142,7 @@ impl Conditions {
     /// True if fragments may search the queues of an object's tiles: it has the library's patches, no
     /// replicas and no shadows.
     pub fn takes_queues(of: &PlanObject) -> bool {
-        of.variant.search == Search::Quadric && of.variant.features() != Features::Full
+        of.variant.search == Search::Quadric && of.variant.is_single()
     }
 
     /// True if the device lists the tiles of an object's copies.

@@ -16,10 +16,9 @@
 //! `shaders-glsl/include`, and `search/hook.glsl` is the file of the search.
 //!
 //! ```
-//! use revmap::search::{Pass, Features, Output, SearchModule};
+//! use revmap::search::{Output, Pass, SearchModule};
 //! let module = SearchModule {
-//!     pass: Pass::Fragment, features: Features::Plain, output: Output::Color,
-//!     table: false, bounded: true,
+//!     pass: Pass::Fragment, output: Output::Color, table: false, bounded: true,
 //! };
 //! assert_eq!(module.entry(), "tree.frag");
 //! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL")]);
@@ -27,7 +26,7 @@
 
 mod module;
 
-pub use module::{Features, Output, Pass, SearchModule};
+pub use module::{Output, Pass, SearchModule};
 
 use crate::error::Result;
 use crate::surface::Contour;

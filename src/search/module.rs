@@ -11,17 +11,6 @@ pub enum Pass {
     Copies,
 }
 
-/// The features of a solid besides its shape; each value includes those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Features {
-    /// Only one colour, one solid in its box, no shadows.
-    Plain,
-    /// Maps of colour and bumps.
-    Textured,
-    /// Replicas and shadows.
-    Full,
-}
-
 /// The stored data of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
@@ -36,8 +25,6 @@ pub enum Output {
 pub struct SearchModule {
     /// The stage and geometry by which rays are traced.
     pub pass: Pass,
-    /// The supported features of solids.
-    pub features: Features,
     /// The stored data.
     pub output: Output,
     /// True if it reads a table of its own instead of the shape map.
@@ -60,13 +47,9 @@ impl SearchModule {
     /// The macros for its compilation.
     #[must_use]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
-        let shaded = self.features == Features::Full;
         let set = [
             (self.table, "SEARCH_TABLE"),
             (self.table && self.bounded, "SEARCH_BOUNDED"),
-            (self.features >= Features::Textured, "TEXTURED"),
-            (shaded, "REPEATED"),
-            (shaded, "SHADOWED"),
         ];
         let set = set.into_iter().filter(|(is_set, _)| *is_set);
         let mut all = vec![("SEARCH", "SEARCH_EXTERNAL")];
@@ -80,13 +63,6 @@ impl SearchModule {
     /// The module's name, without the search's.
     #[must_use]
     pub fn name(&self) -> String {
-        format!("{:?}.{:?}.{:?}", self.pass, self.features, self.output).to_lowercase()
-    }
-
-    /// Returns true if this module can replace `wanted`: it does at least the same work.
-    #[must_use]
-    pub fn serves(&self, wanted: &Self) -> bool {
-        self.features >= wanted.features
-            && (self.pass, self.output, self.table) == (wanted.pass, wanted.output, wanted.table)
+        format!("{:?}.{:?}", self.pass, self.output).to_lowercase()
     }
 }

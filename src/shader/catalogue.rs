@@ -1,8 +1,6 @@
 //! The catalogue of SPIR-V modules: every entry file with every set of macros that some pipeline needs.
 //! `build.rs` compiles them, and pipelines find modules in it. The file therefore names GLSL
-//! macros and depends only on `src/search/module.rs`, which build scripts can read, too.
-
-use super::search::Features;
+//! macros and depends on nothing.
 
 /// An entry file of `shaders-glsl/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -17,8 +15,6 @@ pub enum Entry {
     TileVertex,
     /// Fragments of cells.
     Cells,
-    /// Fragments of cells that the box's sides may cut.
-    CutCells,
     /// Fragments of tiles.
     Tiles,
     /// Records of the copies of crowds.
@@ -48,7 +44,7 @@ impl Entry {
             Self::CellVertex => "proxy_cells.vert",
             Self::QuadVertex => "tile_quads.vert",
             Self::TileVertex => "tiles.vert",
-            Self::Cells | Self::CutCells => "cells.frag",
+            Self::Cells => "cells.frag",
             Self::Tiles => "tiles.frag",
             Self::CrowdCopies => "crowd_copies.comp",
             Self::CrowdTiles => "crowd_tiles.comp",
@@ -74,7 +70,7 @@ impl Entry {
     #[must_use]
     #[allow(dead_code)]
     pub const fn shades(self) -> bool {
-        matches!(self, Self::Cells | Self::CutCells | Self::TilePatches) || self.searches()
+        matches!(self, Self::Cells | Self::TilePatches) || self.searches()
     }
 
     /// True if its invocations search with code that another crate may provide. Build scripts do
@@ -123,8 +119,6 @@ pub struct Module {
     pub entry: Entry,
     /// The search that it contains.
     pub search: Search,
-    /// The other features.
-    pub features: Features,
     /// The values that it stores.
     pub output: Output,
 }
@@ -136,19 +130,8 @@ impl Module {
         Self {
             entry,
             search: Search::None,
-            features: Features::Plain,
             output: Output::Color,
         }
-    }
-
-    /// The least general module that can replace this one, of those for which `is_there` is true.
-    #[must_use]
-    pub fn covered_by(self, is_there: impl Fn(&Self) -> bool) -> Option<Self> {
-        [Features::Plain, Features::Textured, Features::Full]
-            .into_iter()
-            .filter(|features| *features >= self.features)
-            .map(|features| Self { features, ..self })
-            .find(is_there)
     }
 
     /// The macros for compiling the GLSL; missing ones are 0. Only `build.rs` calls this.
@@ -160,18 +143,6 @@ impl Module {
             Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
             Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
-        if self.entry == Entry::CutCells {
-            all.push(("CUT", "1"));
-        }
-        if self.features >= Features::Textured {
-            all.push(("TEXTURED", "1"));
-        }
-        if self.features == Features::Full {
-            all.push(("REPEATED", "1"));
-            if self.output <= Output::List {
-                all.push(("SHADOWED", "1"));
-            }
-        }
         match self.output {
             Output::Color => {}
             Output::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
@@ -190,20 +161,16 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
-        if self.entry == Entry::CutCells {
-            name.push_str(".cut");
-        }
         if self.search != Search::None {
             add(&mut name, &self.search);
-            add(&mut name, &self.features);
             add(&mut name, &self.output);
         }
         name
     }
 }
 
-/// The modules of a stage in which a host's function may shade: colour alone, or planes of a list. All
-/// have texture coordinates, and none has shadows. Build scripts do not call this.
+/// The modules of a stage in which a host's function may shade: colour alone, or planes of a list.
+/// Build scripts do not call this.
 #[must_use]
 #[allow(dead_code)]
 pub fn shading_modules(compute: bool) -> Vec<Module> {
@@ -212,7 +179,6 @@ pub fn shading_modules(compute: bool) -> Vec<Module> {
     all.retain(|m| {
         m.entry.shades()
             && in_pass(m.entry) != compute
-            && m.features >= Features::Textured
             && matches!(m.output, Output::Color | Output::List)
     });
     all
@@ -223,7 +189,6 @@ pub fn shading_modules(compute: bool) -> Vec<Module> {
 #[allow(dead_code)]
 pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
     let mut all = module.macros();
-    all.retain(|(name, _)| *name != "SHADOWED");
     all.push(("HOST_SHADING", "1"));
     all
 }
@@ -231,7 +196,6 @@ pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
 /// Every module, in order.
 #[must_use]
 pub fn modules() -> Vec<Module> {
-    use Features::{Full as F, Plain as P, Textured as T};
     use Output::{Color, Depth, List, Planes};
     let plain = [
         Entry::TileLists,
@@ -244,39 +208,24 @@ pub fn modules() -> Vec<Module> {
         Entry::TileVertex,
     ];
     let mut all = plain.map(Module::plain).to_vec();
-    // Features that no row has are drawn by the next module with more. Shadows and replicas walk the
-    // tree; queues of both are left to quads.
     let both: &[Search] = &[Search::Live, Search::Quadric];
     let patches: &[Search] = &[Search::Quadric];
-    let rows: &[(Entry, &[Search], Output, &[Features])] = &[
-        (Entry::Tree, both, Color, &[P, T, F]),
-        (Entry::Tree, both, Planes, &[P, F]),
-        (Entry::Tree, both, List, &[T, F]),
-        (Entry::Tree, both, Depth, &[P, F]),
-        (Entry::TileTree, both, Color, &[P, T, F]),
-        (Entry::TileTree, both, Planes, &[P, F]),
-        (Entry::TileCopies, both, Color, &[P, T, F]),
-        (Entry::TileCopies, both, Planes, &[P, F]),
-        (Entry::TilePatches, patches, Color, &[P, T]),
-        (Entry::TilePatches, patches, Planes, &[P, F]),
-        (Entry::Cells, patches, Color, &[P, T]),
-        (Entry::Cells, patches, Planes, &[P, F]),
-        (Entry::Cells, patches, List, &[T]),
-        (Entry::Cells, patches, Depth, &[P]),
-        (Entry::CutCells, patches, Color, &[P, T]),
-        (Entry::CutCells, patches, Planes, &[P, F]),
-        (Entry::CutCells, patches, List, &[T]),
-        (Entry::CutCells, patches, Depth, &[P]),
-        (Entry::Tiles, patches, Color, &[P, T]),
-        (Entry::Tiles, patches, Planes, &[P, T]),
-        (Entry::Tiles, patches, List, &[T]),
+    let rows: [(Entry, &[Search], &[Output]); 6] = [
+        (Entry::Tree, both, &[Color, Planes, List, Depth]),
+        (Entry::TileTree, both, &[Color, Planes]),
+        (Entry::TileCopies, both, &[Color, Planes]),
+        (Entry::TilePatches, patches, &[Color, Planes]),
+        (Entry::Cells, patches, &[Color, Planes, List, Depth]),
+        (Entry::Tiles, patches, &[Color, Planes, List]),
     ];
-    for &(entry, searches, output, of) in rows {
-        for (&search, &features) in searches.iter().flat_map(|s| of.iter().map(move |f| (s, f))) {
+    for (entry, searches, outputs) in rows {
+        for (&search, &output) in searches
+            .iter()
+            .flat_map(|s| outputs.iter().map(move |o| (s, o)))
+        {
             all.push(Module {
                 entry,
                 search,
-                features,
                 output,
             });
         }

@@ -65,7 +65,6 @@ impl External {
         };
         Some(SearchModule {
             pass,
-            features: module.features,
             output,
             table: self.reads_table(),
             bounded: self.search.steps.is_some(),

@@ -11,9 +11,6 @@ mod spirv;
 mod variant;
 mod view_index;
 
-use crate::search;
-
-pub(crate) use crate::search::Features;
 pub use blocks::{
     CasterNode, CrowdBlock, CrowdObject, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE,
     ObjectBlock, Pushed,
@@ -24,8 +21,6 @@ pub(crate) use catalogue::modules;
 pub use catalogue::shading_macros;
 pub use catalogue::{Module, Search, shading_modules};
 pub use frozen::frozen;
-#[cfg(feature = "other-shaders")]
-pub use module::catalogued;
 pub use module::words;
 pub use outputs::{with_locations, with_outputs_for};
 pub use spirv::{depth_less, instructions, op};

@@ -119,7 +119,7 @@ mod tests {
             assert!(!chained, "{}", module.name());
             found += 1;
         }
-        assert_eq!(found, 7);
+        assert_eq!(found, 4);
     }
 
     /// Vertices write all that fragments read; validation layers report outputs that none reads.
@@ -131,7 +131,7 @@ mod tests {
                 Entry::Tree if module.output == Output::Depth => &[Entry::BoxVertex],
                 Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
                 Entry::Tiles => &[Entry::TileVertex],
-                Entry::Cells | Entry::CutCells => &[Entry::CellVertex],
+                Entry::Cells => &[Entry::CellVertex],
                 _ => &[],
             };
             let fragment = words(&module).unwrap();

@@ -4,7 +4,6 @@
 
 use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
-use crate::search::Features;
 use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Output, modules};
@@ -18,8 +17,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem::size_of;
 use std::sync::Arc;
 
-/// The number of modules; nine of them list and draw crowds.
-const MODULES: usize = 67;
+/// The number of modules.
+const MODULES: usize = 33;
 
 const NAME: u32 = 5;
 const MEMBER_NAME: u32 = 6;
@@ -152,28 +151,22 @@ fn modules_are_few_and_small() {
     let mut packed = 0;
     for module in &all {
         let bytes = 4 * words(module).unwrap().len();
-        let most = match (module.entry, module.features, module.output) {
+        let most = match (module.entry, module.output) {
+            // Solves patches, and walks the tree for rays that pass a side.
+            (Entry::Cells, _) => 50_500,
+            (Entry::Tiles, _) => 41_500,
+            (Entry::Tree, Output::Depth) => 30_000,
             // Traces twice, from the eye and towards lights, walks the hierarchy of casters, and
             // SPIR-V's optimiser inlines every call.
-            (_, Features::Full, _) => 78_900,
-            // Solves patches, and walks the tree for rays that pass a side.
-            (Entry::CutCells, Features::Textured, _) => 49_700,
-            (Entry::CutCells, Features::Plain, _) => 44_000,
-            // Copies may also come from queues of the device.
-            (Entry::TileCopies | Entry::Tiles, Features::Textured, _) => 43_000,
-            // Tiles share an instance, and `live` has both forms of its steps and of its map.
-            (_, Features::Textured, _) => 40_000,
-            (Entry::Tree | Entry::Cells, Features::Plain, Output::Color) => 26_600,
-            // Tiles of several copies read a solid for each copy.
-            (Entry::TileCopies | Entry::Tiles, Features::Plain, _) => 37_900,
-            _ => 34_200,
+            (Entry::Tree | Entry::TileTree | Entry::TileCopies, _) => 82_500,
+            _ => 28_500,
         };
         assert!(bytes <= most, "{}: {bytes} bytes", module.name());
         packed += std::fs::metadata(kept_file(&format!("{}.spv.z", module.name())))
             .unwrap()
             .len();
     }
-    assert!(packed < 900_000, "{packed} bytes in all");
+    assert!(packed < 530_000, "{packed} bytes in all");
 }
 
 /// Every pipeline that can be drawn with has its modules.

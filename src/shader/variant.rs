@@ -11,7 +11,6 @@ use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow, Texturing};
-use crate::search::Features;
 use crate::settings::{Planes, SearchSettings, Solver};
 use std::ffi::CStr;
 
@@ -287,15 +286,9 @@ impl Variant {
         all
     }
 
-    /// Features of the solid other than its shape.
-    pub const fn features(&self) -> Features {
-        if self.cells != 0 || self.shadow != g::SHADOW_OFF {
-            Features::Full
-        } else if self.color_map != 0 || self.bump != g::BUMP_OFF {
-            Features::Textured
-        } else {
-            Features::Plain
-        }
+    /// True if it draws neither replicas nor shadows.
+    pub const fn is_single(&self) -> bool {
+        self.cells == 0 && self.shadow == g::SHADOW_OFF
     }
 
     /// True if its search walks tables.
@@ -363,17 +356,13 @@ impl Variant {
     /// The module of its fragments, or of its compute invocations.
     #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
-        let entry = match kind {
-            Kind::Cells if self.outside == 0 => Entry::CutCells,
-            _ => kind.entry(),
-        };
+        let entry = kind.entry();
         if entry.makes_lists() {
             return Module::plain(entry);
         }
         Module {
             entry,
             search: self.search,
-            features: self.features(),
             output: self.output,
         }
     }

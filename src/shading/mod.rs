@@ -132,8 +132,7 @@ impl Shading {
     /// The words of the module that replaces `module` of the library.
     pub(crate) fn words(&self, module: &Module) -> Result<&[u32]> {
         let none = || Error::new(ErrorKind::Other, format!("no shading is {}", module.name()));
-        let own = module.covered_by(|known| self.modules.iter().any(|(own, _)| own == known));
-        let own = own.and_then(|own| self.modules.iter().find(|(known, _)| *known == own));
+        let own = self.modules.iter().find(|(own, _)| own == module);
         let (own, words) = own.ok_or_else(none)?;
         let words = words.get_or_init(|| {
             #[cfg(feature = "shaderc")]

@@ -56,13 +56,7 @@ fn words(file: &str, macros: &[(&str, &str)]) -> Result<Option<Vec<u32>>> {
         return refused("the default search cannot draw an object, and another takes its place");
     }
     let output = of("OUTPUT").unwrap_or("OUTPUT_COLOR");
-    // Every plane is stored by one module, which shades textures or not.
-    let textured = if output == "OUTPUT_PLANES" {
-        "1"
-    } else {
-        of("TEXTURED").unwrap_or("0")
-    };
-    let name = format!("{file} {output} {textured}");
+    let name = format!("{file} {output}");
     match MODULES.iter().find(|(known, _)| *known == name) {
         Some((_, words)) => Ok(Some(words.to_vec())),
         None => refused(&format!("there is no {name}")),

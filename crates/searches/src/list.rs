@@ -1,7 +1,7 @@
 // The list of SPIR-V modules. `build.rs` compiles this list, and searches look modules up in it; so
 // it depends only on `SearchModule`.
 
-use super::module::{Features, Output, Pass, SearchModule};
+use super::module::{Output, Pass, SearchModule};
 
 /// A module of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +21,7 @@ impl Listed {
     }
 }
 
-/// Every module. For each search, the plain module comes before the general ones that can replace
-/// it: most comparisons measure colour without textures, replicas and shadows.
+/// Every module.
 pub fn modules() -> Vec<Listed> {
     let mut all = Vec::new();
     for pass in [Pass::Fragment, Pass::Tile, Pass::Copies] {
@@ -32,12 +31,9 @@ pub fn modules() -> Vec<Listed> {
             ("cone/search.glsl", true, false),
             ("relaxed/search.glsl", true, true),
         ] {
-            let general = [Output::Color, Output::Planes].map(|output| (Features::Full, output));
-            let plain = [(Features::Plain, Output::Color)];
-            for (features, output) in plain.into_iter().chain(general) {
+            for output in [Output::Color, Output::Planes] {
                 let module = SearchModule {
                     pass,
-                    features,
                     output,
                     table,
                     bounded,

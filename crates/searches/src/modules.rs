@@ -26,7 +26,7 @@ pub(crate) fn found(hook: &str, wanted: &SearchModule) -> Result<Vec<u32>> {
     modules()
         .iter()
         .zip(generated::MODULES)
-        .find(|(listed, _)| listed.hook == hook && listed.module.serves(wanted))
+        .find(|(listed, _)| listed.hook == hook && listed.module == *wanted)
         .and_then(|(_, packed)| unpacked(packed))
         .ok_or_else(|| {
             let message = format!("no shader of {hook} is {}", wanted.name());

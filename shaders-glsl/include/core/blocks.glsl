@@ -90,18 +90,19 @@ layout(set = 0, binding = 2, std430) INSTANCE_ACCESS buffer InstanceBlock {
 
 // Current object: the instance's, or one that may cast a shadow on it.
 Object object;
-// True while the traced object is a possible shadow caster.
-#ifdef SHADOWED
-bool casts = false;
-#else
-const bool casts = false;
-#endif
+bool traces_caster = false;
+
+// Returns true while the traced object is a possible shadow caster.
+bool casts()
+{
+    return SHADOW != SHADOW_OFF && traces_caster;
+}
 
 // True if the object's tables are in the uniform buffer of tables (core/patch_tables.glsl). Places of tables are then
 // relative to that buffer.
 bool takes_own_tables()
 {
-    return OWN_TABLES != 0u && !casts;
+    return OWN_TABLES != 0u && !casts();
 }
 
 void take_frame()

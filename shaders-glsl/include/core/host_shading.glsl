@@ -1,5 +1,5 @@
 // Shading by a function of the host, which defines `host_shade`. src/shading compiles it behind each entry file that
-// shades, with HOST_SHADING and TEXTURED.
+// shades, with HOST_SHADING.
 #ifndef HOST_SHADING_GLSL
 #define HOST_SHADING_GLSL
 #ifdef HOST_SHADING

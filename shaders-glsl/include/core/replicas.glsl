@@ -5,7 +5,6 @@
 #define REPLICAS_GLSL
 #include "core/trace.glsl"
 
-#ifdef REPEATED
 // Returns -1 along axes in which a cell is reflected, else 1.
 vec3 cell_sense(vec3 cell)
 {
@@ -85,17 +84,12 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
     }
     return false;
 }
-#endif
 
 // Traces the ray `eye + t v`, t >= -base. The ray has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit = NO_HIT;
-#ifdef REPEATED
     return trace_replicas(eye, v, base, span, hit);
-#else
-    return trace_solid(eye, v, base, span, false, hit);
-#endif
 }
 
 #endif

@@ -22,7 +22,6 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
-#ifdef TEXTURED
 // Returns the changes of the surface point a pixel to the right and a pixel down, profile units. A replica's are in its
 // own space.
 void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
@@ -36,7 +35,7 @@ void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
         down *= hit.sense * vec3(object.cells.xyz);
     }
 }
-#endif
+
 #include "core/host_shading.glsl"
 
 // Returns the light reflected from one light, in turned space.
@@ -66,14 +65,11 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     s.albedo = look.albedo_strength.rgb;
     s.uv = vec2(0.0);
     vec3 shaded = turned;
-#if defined(TEXTURED) || OUTPUT == OUTPUT_PLANES
     // Normal in the replica's own space, which is reflected and scaled to its cell.
     vec3 count = vec3(object.cells.xyz);
     vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
-#endif
-#ifdef TEXTURED
     if (COLOR_MAP != 0u || BUMP != BUMP_OFF) {
         vec3 right, down;
         footprints(rays, v, hit, right, down);
@@ -86,25 +82,24 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
             shaded = object.texturing.z == 0.0 ? turned : tilted;
         }
     }
-#endif
-    // The back of a surface, seen from within, is lit like a front.
-    float facing = dot(turned, view) < 0.0 ? -1.0 : 1.0;
-    vec3 lit = facing * shaded;
+    // The back of a surface, seen from within, is lit like a front. Products with a sign would be rounded differently by
+    // different pipelines.
+    bool is_back = dot(turned, view) < 0.0;
+    vec3 lit = is_back ? -shaded : shaded;
+    vec3 outward = is_back ? -turned : turned;
     s.shading_normal = rotate(look.rotation, lit);
 #ifdef HOST_SHADING
     s.color = host_shade(surface_of(look, rays, pixel, hit, s, c));
     return s;
 #else
     vec3 color = s.albedo * look.ambient;
-#ifdef SHADOWED
     // A shadow ray starts off the surface, so that it cannot hit the surface itself. The offset is a few roundings for
     // exact patches and 1.5 texels for a map. Offsets are object space lengths, which a scale does not change equally
     // along all axes.
     float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * object.map.z;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
     vec3 from_axis = ray_origin(rays, pixel) + vec3(object.axis.xy, 0.0) + hit.t * v;
-    vec3 point = rotate(look.rotation, from_axis * scale + facing * lift * turned); // relative to the instance, world axes
-#endif
+    vec3 point = rotate(look.rotation, from_axis * scale + lift * outward); // relative to the instance, world axes
     // The first two lights are unrolled: a loop costs software drivers a sixth of a frame or more, even with no
     // iterations. Shadow code is so long that all lights share one loop.
     if (SHADOW == SHADOW_OFF) {
@@ -117,12 +112,10 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
             Light light = turned_to(look.rotation, frame_block.lights[n]);
             vec3 reflected = blinn_phong(look, light, lit, view, s.albedo);
-#ifdef SHADOWED
             if (SHADOW != SHADOW_OFF && reflected != vec3(0.0)) {
                 Disc disc = disc_of(rotate(look.rotation, light.towards.xyz), light.towards.w, uvec2(pixel + 0.5));
-                reflected *= light_reaching(look.position, point, rotate(look.rotation, facing * turned), disc);
+                reflected *= light_reaching(look.position, point, rotate(look.rotation, outward), disc);
             }
-#endif
             color += reflected;
         }
     }

@@ -1,7 +1,6 @@
 // Visible fraction of a light at a point, from rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#ifdef SHADOWED
 #include "core/pixel_ray.glsl"
 #include "core/replicas.glsl"
 
@@ -177,7 +176,7 @@ float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
         open |= dot(normal, towards_disc(disc, k, angle)) > 0.0 ? 1u << k : 0u;
         angle = next_angle(angle);
     }
-    casts = true;
+    traces_caster = true;
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
@@ -187,9 +186,8 @@ float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
-    casts = false;
+    traces_caster = false;
     return float(bitCount(lit)) / float(LIGHT_RAYS);
 }
 
-#endif
 #endif

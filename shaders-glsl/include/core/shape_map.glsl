@@ -6,11 +6,11 @@
 
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
-int shadow_map; // index of the map of the traced object, if `casts`
+int shadow_map; // index of the map of the traced object, if casts()
 
 vec4 gather_map(vec2 at)
 {
-    if (casts) {
+    if (casts()) {
         return textureGather(shadow_maps[shadow_map], at);
     }
     return textureGather(shape_map, at);
@@ -18,7 +18,7 @@ vec4 gather_map(vec2 at)
 
 vec4 filter_map(vec2 at)
 {
-    if (casts) {
+    if (casts()) {
         return textureLod(shadow_maps[shadow_map], at, 0.0);
     }
     return textureLod(shape_map, at, 0.0);

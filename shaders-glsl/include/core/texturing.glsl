@@ -4,7 +4,6 @@
 #define TEXTURING_GLSL
 #include "core/blocks.glsl"
 
-#if defined(TEXTURED) || OUTPUT == OUTPUT_PLANES
 layout(set = 1, binding = 1) uniform sampler2D color_map;
 layout(set = 1, binding = 2) uniform sampler2D displacement_map;
 layout(set = 1, binding = 3) uniform sampler2D arc_map;
@@ -103,7 +102,6 @@ vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
     return textureGrad(map, map_position(c), map_change(c, right), map_change(c, down));
 }
 
-#ifdef TEXTURED
 float height_at(vec2 position, vec2 change_x, vec2 change_y)
 {
     return textureGrad(displacement_map, position, change_x, change_y).r;
@@ -142,7 +140,5 @@ vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
     float len = length(tilted);
     return len > 0.0 ? tilted / len : n;
 }
-#endif
 
-#endif
 #endif

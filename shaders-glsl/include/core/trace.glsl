@@ -65,7 +65,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     float f;
     bool within = false;
     // Rays towards lights may begin anywhere.
-    if (OUTSIDE == 0u || casts) {
+    if (OUTSIDE == 0u || casts()) {
         within = begins_within(m, inside, hit.steps, f);
     }
     hit.at_border = false;
@@ -80,7 +80,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     float side = within && (inside || m.from_eye) && RGBA8 == 0u ? -1.0 : 1.0;
     vec4 quadric;
     uint end = search_any(m, side, f, span - m.t_start, s, hit.steps, quadric);
-#if defined(REPEATED) && SEARCH == SEARCH_QUADRIC
+#if SEARCH == SEARCH_QUADRIC
     // A floor or ceiling at a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
     end = REPLICAS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;

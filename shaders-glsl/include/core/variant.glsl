@@ -18,10 +18,7 @@
 #define OUTPUT_LIST 3   // planes by a host's list
 
 // Other macros are defined or not:
-// - CUT: the sides of the box may cut the solid's cells;
-// - TEXTURED: colours or bumps may come from maps;
-// - REPEATED: the box may hold several replicas;
-// - SHADOWED: solids may cast shadows;
+// - SINGLE: neither replicas nor shadows, in entries that do not draw them;
 // - HOST_SHADING: a function of the host shades; lights and shadows of the library are left out.
 #ifndef SEARCH
 #define SEARCH SEARCH_NONE
@@ -36,24 +33,17 @@
 #define OUTPUT OUTPUT_COLOR
 #endif
 
-// Smaller variations are specialisation constants.
-#ifdef REPEATED
-layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
-#else
+// All else is specialisation constants. src/shader/frozen.rs makes them plain before a driver reads a module.
+#ifdef SINGLE
 const uint REPLICAS = 0u;
-#endif
-#ifdef SHADOWED
-layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
-#else
 const uint SHADOW = 0u;
+#else
+layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
+layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #endif
-#ifdef TEXTURED
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
 layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
-#endif
-#if defined(TEXTURED) || OUTPUT == OUTPUT_PLANES
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*
-#endif
 #if OUTPUT == OUTPUT_DEPTH
 layout(constant_id = 23) const uint ORTHO = 0u; // 1: rays are parallel
 #else
@@ -70,8 +60,7 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0
 #endif
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
-// 1: the box does not cut the solid, and rays from the eye begin outside it. For cells the macro CUT replaces 0.
-layout(constant_id = 11) const uint OUTSIDE = 0u;
+layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box does not cut the solid, and rays from the eye begin outside it
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
 layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it

@@ -6,21 +6,20 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "stage/cell_varyings.glsl"
 #include "search/patch_row.glsl"
-#ifdef CUT
 #include "core/trace.glsl"
-#endif
 
 bool trace_cell(vec2 pixel, out Hit hit)
 {
     take_over();
     PatchRow row = begin_row(varying_rays(), pixel);
-#ifdef CUT
     const float SIDE_SLACK = 4e-6; // object units; a hit so close before a side of the box counts
     float eye = row.least;
-    clip_to_sides(row);
-    bool by_side = row.least > eye && row.least < row.most;
-    row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
-#endif
+    bool by_side = false;
+    if (OUTSIDE == 0u) {
+        clip_to_sides(row);
+        by_side = row.least > eye && row.least < row.most;
+        row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
+    }
     bool entered = false;
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * PATCHES_PER_CELL; ++k) {
@@ -35,13 +34,11 @@ bool trace_cell(vec2 pixel, out Hit hit)
         }
     }
     bool found = end_row(row, PATCHES_PER_CELL, hit);
-#ifdef CUT
     // A ray that enters the solid before a side may be in the solid there, or leave it into the shell of a cell that it
     // then enters from behind. The fragment of the cell where it entered searches all of the box.
-    if (by_side && entered) {
+    if (OUTSIDE == 0u && by_side && entered) {
         found = trace_solid(row.m.o, row.m.v, -eye, EVERYWHERE, false, hit);
     }
-#endif
     return found;
 }
 

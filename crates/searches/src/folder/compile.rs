@@ -4,7 +4,7 @@
 use super::Folder;
 use crate::manifest::Data;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::search::{Features, Output, Pass, SearchModule};
+use revmap::search::{Output, Pass, SearchModule};
 use revmap::settings::Solver;
 use std::fmt::Write as _;
 
@@ -27,7 +27,6 @@ pub fn compile(solver: Solver) -> Result<()> {
             folder,
             &SearchModule {
                 pass,
-                features: Features::Plain,
                 output: Output::Color,
                 table: !folder.manifest.reads.is_map(),
                 bounded: folder.manifest.steps.is_some(),

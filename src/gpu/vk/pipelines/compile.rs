@@ -55,7 +55,6 @@ impl Pipelines {
         }
         #[cfg(feature = "other-shaders")]
         if let Some(source) = &self.source {
-            let module = crate::shader::catalogued(module).unwrap_or(*module);
             if let Some(words) = source(module.entry.file(), &module.macros())? {
                 return Ok(words);
             }

@@ -6,6 +6,8 @@
 #include "core/pixel_ray.glsl"
 #include "search/quadric.glsl"
 
+#define SOLID_AT starts_within
+
 bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
 {
     hit = NO_HIT;
