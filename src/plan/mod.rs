@@ -194,40 +194,39 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let (kind, outside, draws) = match path {
-                Path::Tiles | Path::Crowd => continue,
+            let mut add = |kind, outside, draws: Vec<IndexedDraw>| {
+                let outside = u32::from(outside);
+                let variant = Variant {
+                    outside,
+                    ..variants[n]
+                }
+                .of_kind(kind);
+                let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
+                layers[layer].draws.extend(draws);
+            };
+            match path {
+                Path::Tiles | Path::Crowd => {}
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;
                     let outside = of.surface().is_some_and(|s| apart(s));
-                    (Kind::Boxes, outside, vec![draw(BOX_INDICES, 0)])
+                    add(Kind::Boxes, outside, vec![draw(BOX_INDICES, 0)]);
                 }
-                Path::Cells(frusta) => {
+                Path::Cells([cut, whole]) => {
                     let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
                     let of_run = |run: &Range<u32>| {
                         let first = BOX_INDICES + corners(run.start);
                         draw(corners(run.end - run.start), first)
                     };
                     self.parts[n][Part::Frusta as usize] = true;
-                    self.parts[n][Part::Tables as usize] = !of.is_whole();
-                    (
-                        Kind::Cells,
-                        of.is_whole(),
-                        frusta.iter().map(of_run).collect(),
-                    )
+                    self.parts[n][Part::Tables as usize] = !cut.is_empty();
+                    for (outside, runs) in [(false, cut), (true, whole)] {
+                        if !runs.is_empty() {
+                            add(Kind::Cells, outside, runs.iter().map(of_run).collect());
+                        }
+                    }
                 }
-            };
-            let variant = Variant {
-                outside: u32::from(outside),
-                ..variants[n]
-            };
-            let layer = Layer::of(
-                &mut layers,
-                objects,
-                n as u32,
-                (variant.of_kind(kind), kind),
-            );
-            layers[layer].draws.extend(draws);
+            }
         }
         for layer in layers {
             let first = self.draws.len() as u32;

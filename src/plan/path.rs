@@ -36,8 +36,8 @@ pub enum DrawPath {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Path {
     Box,
-    /// Runs of frusta that may be seen.
-    Cells(Vec<Range<u32>>),
+    /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
+    Cells([Vec<Range<u32>>; 2]),
     Tiles,
     /// Tiles that the device lists.
     Crowd,

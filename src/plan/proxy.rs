@@ -13,11 +13,14 @@ const CLEARANCE: f64 = 1e-3;
 /// True if the box shows no more than the boundary's patches: it cuts nothing of the solid and
 /// holds no replicas.
 pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
-    let radius = object.profile.radius;
+    object.repeat == [1; 3] && surface.extent()[0] <= uncut_radius(object, surface)
+}
+
+/// The radius up to which the box's sides cut nothing that is seen.
+fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
     let [x, y] = object.axis_offset();
-    let side_face = radius - x.abs().max(y.abs());
     // The part of a coarse level that bulges beyond the box may be seen.
-    object.repeat == [1; 3] && surface.extent()[0] <= side_face + surface.slack()
+    object.profile.radius - x.abs().max(y.abs()) + surface.slack()
 }
 
 /// True if the box's sides cut the solid, or may cut it under another offset.
@@ -67,8 +70,9 @@ pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
     surface.extent()[0] > Object::WIDEST * object.profile.radius
 }
 
-/// The frusta of `object`'s cells. Returns none unless they show all that the box shows from this
-/// camera: the eye is outside all shells, and the near plane cuts none.
+/// The frusta of `object`'s cells: of those that the box's sides cut, and of those that are whole.
+/// Returns none unless they show all that the box shows from this camera: the eye is outside all
+/// shells, and the near plane cuts none.
 /// Returns none also if the object is too small on the screen for its triangles to pay, or if it
 /// fills its box.
 pub(crate) fn frusta(
@@ -76,7 +80,7 @@ pub(crate) fn frusta(
     surface: &OffsetSurface,
     view: &View,
     least_pixels: u32,
-) -> Option<Vec<Range<u32>>> {
+) -> Option<[Vec<Range<u32>>; 2]> {
     let radius = object.profile.radius;
     if fills_box(object, surface) || surface.hull().touches {
         return None;
@@ -90,13 +94,15 @@ pub(crate) fn frusta(
         .map(|copy| seen_from(object, copy, view))
         .collect();
     let eyes: Vec<DVec2> = seen.iter().map(|&(eye, _)| flat(eye)).collect();
+    let (is_whole, uncut) = (is_whole(object, surface), uncut_radius(object, surface));
     // Parallel rays have no common eye, and a cut opens cavities.
-    let frusta = if view.parallel || !is_whole(object, surface) {
-        std::iter::once(0..hull.frusta.len() as u32).collect()
+    let frusta = if view.parallel || !is_whole {
+        let is_cut = |cell: usize| !is_whole && hull.reaches[cell] > uncut;
+        [hull.runs(is_cut), hull.runs(|cell| !is_cut(cell))]
     } else {
-        hull.seen_from(&eyes)
+        [Vec::new(), hull.seen_from(&eyes)]
     };
-    let drawn: usize = frusta.iter().map(ExactSizeIterator::len).sum();
+    let drawn: usize = frusta.iter().flatten().map(ExactSizeIterator::len).sum();
     let covered: u64 = (copies.iter())
         .map(|copy| covered_pixels(view, radius, copy))
         .sum();

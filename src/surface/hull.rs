@@ -71,6 +71,8 @@ pub struct ProxyHull {
     pub frusta: Vec<Frustum>,
     /// The extent of each cell's shell: `[r min, r max, z min, z max]`.
     pub extents: Vec<[f64; 4]>,
+    /// The largest radius of each cell's surface.
+    pub reaches: Vec<f64>,
     sight: CavityCulling,
 }
 
@@ -99,6 +101,8 @@ impl ProxyHull {
             let cell = &patches[first..first + count];
             let points = FrustaBuilder { options, widen }.of(cell);
             hull.push(&points, first, count);
+            hull.reaches
+                .push(cell.iter().fold(0.0, |most, p| most.max(p.r[1])));
             cells.push(first..first + count);
             first += count;
         }
@@ -110,11 +114,16 @@ impl ProxyHull {
     /// are left out, because drawing their shells has no effect.
     #[must_use]
     pub fn seen_from(&self, eyes: &[DVec2]) -> Vec<Range<u32>> {
-        let hidden = |cell: u32| eyes.iter().all(|&eye| self.sight.hides(cell as usize, eye));
-        let seen: Vec<bool> = (0..self.extents.len() as u32).map(|c| !hidden(c)).collect();
+        self.runs(|cell| !eyes.iter().all(|&eye| self.sight.hides(cell, eye)))
+    }
+
+    /// Runs of the frusta of cells for which `wanted` is true.
+    #[must_use]
+    pub fn runs(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<u32>> {
+        let wanted: Vec<bool> = (0..self.extents.len()).map(wanted).collect();
         let mut runs: Vec<Range<u32>> = Vec::new();
         for (frustum, number) in self.frusta.iter().zip(0..) {
-            if seen[frustum.cell as usize] {
+            if wanted[frustum.cell as usize] {
                 match runs.last_mut() {
                     Some(run) if run.end == number => run.end += 1,
                     _ => runs.push(number..number + 1),

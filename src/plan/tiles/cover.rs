@@ -48,17 +48,17 @@ pub(super) fn within([x, y]: [u32; 2], [x0, y0, x1, y1]: [u32; 4]) -> u64 {
     block([inside(x0, x), inside(y0, y), inside(x1, x), inside(y1, y)])
 }
 
-/// The bits of a square between the ends of each row. `top`: row of the first ends.
-pub(super) fn within_rows([x, y]: [u32; 2], ends: &[[f64; 2]], top: u32) -> u64 {
+/// The bits of a square in a span of each row: first pixel, end. `top`: row of the first span.
+pub(super) fn within_rows([x, y]: [u32; 2], spans: &[[i32; 2]], top: u32) -> u64 {
     let left = (x * SIDE) as i32;
     let place = |pixel: i32| pixel.clamp(left, left + SIDE as i32) - left;
     u64::from_le_bytes(std::array::from_fn(|k| {
         let row = (y * SIDE + k as u32).checked_sub(top);
-        row.and_then(|row| ends.get(row as usize))
-            .map_or(0, |&[low, high]| {
-                let [low, end] = [first_pixel(low), last_pixel(high).saturating_add(1)].map(place);
-                (0xffu32 << low & !(0xff << end)) as u8
-            })
+        let span = row.and_then(|row| spans.get(row as usize));
+        span.map_or(0, |span| {
+            let [low, end] = span.map(place);
+            (0xffu32 << low & !(0xff << end)) as u8
+        })
     }))
 }
 

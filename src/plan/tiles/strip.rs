@@ -2,7 +2,7 @@
 //! bottom. Copies are visited from the nearest to the farthest.
 
 use super::Batch;
-use super::bounds::{Projector, ScreenBounds};
+use super::bounds::{Projector, ScreenBounds, first_pixel, last_pixel};
 use super::cover::{Cover, within_rows};
 use super::deal::TileCopy;
 use super::outer::rows;
@@ -44,6 +44,8 @@ pub(super) struct Strip<'a> {
     cover: Cover,
     /// The ends of each row of the current copy.
     rows: Vec<[f64; 2]>,
+    /// The pixels between these ends: first, end.
+    spans: Vec<[i32; 2]>,
     /// The squares and pixels that may show it.
     open: Vec<([u32; 2], u64)>,
     /// Copies that may be farther than those of the next cluster.
@@ -100,6 +102,7 @@ impl<'a> Strip<'a> {
             tiles: vec![[NONE; 2]; columns.len() * down as usize],
             cover: Cover::new(columns, down, projector.margin),
             rows: Vec::new(),
+            spans: Vec::new(),
             open: Vec::new(),
             waiting: Vec::new(),
             copies: Vec::new(),
@@ -151,10 +154,16 @@ impl<'a> Strip<'a> {
             let within = top..bottom + 1;
             rows(outer, &axes, margin, within, bottom - top, &mut self.rows)
         });
+        if known {
+            let span =
+                |&[low, high]: &[f64; 2]| [first_pixel(low), last_pixel(high).saturating_add(1)];
+            self.spans.clear();
+            self.spans.extend(self.rows.iter().map(span));
+        }
         let mut shows = false;
         for &([x, y], mut pixels) in &self.open {
             if known {
-                pixels &= within_rows([x, y], &self.rows, top);
+                pixels &= within_rows([x, y], &self.spans, top);
             }
             if pixels != 0 {
                 shows = true;
