@@ -8,9 +8,6 @@ void main()
 {
     take_frame();
     take_only_object(pushed.object); // before any barrier: see take_frame()
-    share_record();
-    barrier();
-    take_shared_record();
     share_patches();
     barrier();
     take_shared_instance();

@@ -119,7 +119,7 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 /// 0.84 for 23,900 pixels of 400 copies.
 /// On lavapipe 25 they take 1.07 to 1.13 of it at 200 to 300 pixels for each patch, 0.95 to 1.0 at
 /// 360 to 600 and 0.79 to 0.93 beyond; on lavapipe 22 0.94, 0.73 to 0.86 and less.
-const LISTED_PIXELS: [u64; 2] = [150, 3];
+const LISTED_PIXELS: u64 = 2;
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
 pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
@@ -216,15 +216,9 @@ impl Conditions {
         of.takes_patches && !self.casts && of.object.repeat == [1; 3]
     }
 
-    /// True if a frame's lists save more time than the dispatches that make and read them take.
-    /// Without tiles there are no lists.
-    pub fn pays_to_list(&self, tiles: u64) -> bool {
-        tiles == 0 || pixels(tiles) >= LISTED_PIXELS[0] * u64::from(self.least_pixels)
-    }
-
-    /// True if so many tiles of objects with so many patches are drawn faster by lists.
+    /// True if so many tiles of objects with so many patches each are drawn faster by lists.
     pub fn gains_by_lists(&self, tiles: u64, patches: u64) -> bool {
-        let least = LISTED_PIXELS[1] * u64::from(self.least_pixels);
+        let least = LISTED_PIXELS * u64::from(self.least_pixels);
         pixels(tiles) >= least.saturating_mul(patches)
     }
 

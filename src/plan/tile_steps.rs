@@ -173,18 +173,14 @@ fn leave_out_lists(
     let layers_of_lists = layers.iter().zip(&mut *tiles);
     for (layer, tiles) in layers_of_lists.filter(|(_, tiles)| !tiles.listed.is_empty()) {
         let patches = |&n: &u32| objects[n as usize].listed_patches();
-        let patches = layer.objects.iter().map(patches).sum();
+        let mean = layer.objects.iter().map(patches).sum::<u64>() / layer.objects.len() as u64;
         let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
-        if !with.gains_by_lists(tiles_of_all, patches) {
+        if !with.gains_by_lists(tiles_of_all, mean) {
             tiles.unlist();
         }
     }
-    let sum = |of: fn(u32) -> u32| -> u64 {
-        let counted = |l: &LayerTiles| u64::from(of(l.listed.len() as u32));
-        tiles.iter().map(counted).sum()
-    };
-    let tiles_of_all = view.tiles_of_all_rows(sum(|count| count));
-    if sum(bin_words) > with.room() || !with.pays_to_list(tiles_of_all) {
+    let words = |l: &LayerTiles| u64::from(bin_words(l.listed.len() as u32));
+    if tiles.iter().map(words).sum::<u64>() > with.room() {
         tiles.iter_mut().for_each(LayerTiles::unlist);
     }
 }

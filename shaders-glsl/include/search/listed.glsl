@@ -11,27 +11,16 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
     uint instance_words[];
 };
 
-shared uint shared_record[4];
 shared uint shared_instance[INSTANCE_WORDS];
 shared float listed[8u * LONGEST_LIST];
 
-// Loads the record into shared memory; take_shared_record() reads it after a barrier.
-void share_record()
-{
-    if (gl_LocalInvocationIndex < 4u) {
-        shared_record[gl_LocalInvocationIndex] = bin_words[bin_records(pushed.bin) + 4u * gl_WorkGroupID.x + gl_LocalInvocationIndex];
-    }
-}
-
-void take_shared_record()
-{
-    tile_record = uvec4(shared_record[0], shared_record[1], shared_record[2], shared_record[3]);
-}
-
-// Loads the tile's instance and patches into shared memory.
+// Loads the record, and the tile's instance and patches into shared memory. take_shared_instance() reads the instance
+// after a barrier.
 void share_patches()
 {
     uint self = gl_LocalInvocationIndex;
+    uint record = bin_records(pushed.bin) + 4u * gl_WorkGroupID.x;
+    tile_record = uvec4(bin_words[record], bin_words[record + 1u], bin_words[record + 2u], 0u);
     if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
         shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
     }
