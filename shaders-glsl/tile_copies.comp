@@ -9,7 +9,7 @@ uvec2 this_pixel(out uint first, out uint count)
 {
     uint word;
     uint base = 0u;
-    if (MAY_BE_OF_DEVICE && pushed.heads != 0u) {
+    if (DEVICE_LISTS != 0u && pushed.heads != 0u) {
         // Pixels that the device wrote; the word at `heads` holds their number.
         uint number = 64u * (gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y) + gl_LocalInvocationIndex;
         word = pushed.records + 3u * number;

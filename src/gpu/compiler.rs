@@ -155,9 +155,14 @@ impl PipelineCompiler {
                 shape: shape_of(object, [0.0; 4]),
                 outline: None,
             };
+            let conditions = Conditions {
+                single_copy: object.placements().len() == 1,
+                ..conditions
+            };
             let one_object = Variant {
                 one_object: 1,
-                depths: u32::from(object.placements().len() > 1),
+                one_instance: u32::from(conditions.single_copy),
+                depths: u32::from(conditions.compares_depths()),
                 ..variant
             };
             for (v, kind) in conditions.reachable(&of, one_object) {
@@ -175,7 +180,11 @@ impl PipelineCompiler {
         }
         let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
         if crowds && variant.is_shaded() && variant.cells == 0 && object.clip != Clip::Box {
-            let of_kind = |kind| PipelineChoice(variant.of_kind(kind), kind);
+            let listed = Variant {
+                device_lists: 1,
+                ..variant
+            };
+            let of_kind = |kind| PipelineChoice(listed.of_kind(kind), kind);
             all.extend(conditions.crowd_kinds().map(of_kind));
         }
         all

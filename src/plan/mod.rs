@@ -98,11 +98,10 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
         paths: paths.iter().map(Path::public).collect(),
         copies: vec![None; objects.len()],
         parts: vec![[false; 3]; objects.len()],
+        compares_depths: with.compares_depths(),
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
-    plan.compares_depths =
-        with.host_depths || with.compute && variants.iter().any(|v| v.depths != 0);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), with);
     crowd::add(&mut plan, view, objects, (&paths, &variants), with);
@@ -137,16 +136,14 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
     for of in objects {
         *looks.entry((of.variant, of.textures)).or_insert(0u32) += 1;
     }
-    // The dispatches of a single copy, and of crowds of one look, draw no pixel twice.
-    let is_single = matches!(objects, [of] if of.object.placements().len() == 1);
-    let are_crowds = looks.len() == 1 && objects.iter().all(|of| with.is_crowd(of));
     let of_look = |of: &PlanObject| {
         let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
         Variant {
             one_object: u32::from(alone),
             one_instance: u32::from(alone && of.object.placements().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
-            depths: u32::from(with.host_depths || !is_single && !are_crowds),
+            device_lists: u32::from(with.lists_crowds),
+            depths: u32::from(with.compares_depths()),
             ..of.variant
         }
     };

@@ -95,6 +95,8 @@ pub(crate) struct Conditions {
     pub lists_crowds: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
+    /// True if all objects together, in any view, have one copy: then no pixel is drawn twice.
+    pub single_copy: bool,
 }
 
 /// Most copies of an object that are drawn by cells. With more copies, many are small or hidden,
@@ -114,11 +116,9 @@ const LEAST_SUBGROUP: u32 = 8;
 /// solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 
-/// Least pixels of listed tiles, in units of `proxy_min_pixels`: of a frame, and for each patch of the
-/// object. Lists take 1.07 to 1.5 of the tree's time for 16,000 pixels and fewer on lavapipe 22, and
-/// 0.84 for 23,900 pixels of 400 copies.
-/// On lavapipe 25 they take 1.07 to 1.13 of it at 200 to 300 pixels for each patch, 0.95 to 1.0 at
-/// 360 to 600 and 0.79 to 0.93 beyond; on lavapipe 22 0.94, 0.73 to 0.86 and less.
+/// Least pixels of listed tiles for each patch of a mean object, in units of `proxy_min_pixels`.
+/// Lists take 1.3 to 1.4 of the tree's time at 92 pixels for each patch, on lavapipe 22 and 25, 0.94
+/// and 0.97 at 250, and 0.68 and 0.71 at 960. At 253 pixels, of 100 copies, they take 1.1 and 0.87.
 const LISTED_PIXELS: u64 = 2;
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
@@ -146,7 +146,7 @@ impl Conditions {
     }
 
     /// True if the device lists the tiles of an object's copies.
-    pub fn is_crowd(&self, of: &PlanObject) -> bool {
+    fn is_crowd(&self, of: &PlanObject) -> bool {
         let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
         let many = of.object.placements().len() > MOST_PROXIES && of.object.repeat == [1; 3];
         self.lists_crowds && shows && many && of.is_whole()
@@ -216,6 +216,11 @@ impl Conditions {
         of.takes_patches && !self.casts && of.object.repeat == [1; 3]
     }
 
+    /// True if compute compares depths with those that are drawn already.
+    pub fn compares_depths(&self) -> bool {
+        self.host_depths || (self.compute && !self.single_copy)
+    }
+
     /// True if so many tiles of objects with so many patches each are drawn faster by lists.
     pub fn gains_by_lists(&self, tiles: u64, patches: u64) -> bool {
         let least = LISTED_PIXELS * u64::from(self.least_pixels);
@@ -243,19 +248,23 @@ impl Conditions {
         if self.takes_cells(of) {
             kinds.push((Kind::Cells, outside));
         }
-        if self.is_crowd(of) {
+        let is_crowd = self.is_crowd(of);
+        if is_crowd {
             kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
-        } else if self.takes_tiles(of) && !self.compute {
+        }
+        // The box may come to cut the copies of a crowd.
+        let takes_tiles = self.takes_tiles(of) && (!is_crowd || may_cut);
+        if takes_tiles && !self.compute {
             kinds.push((Kind::Quads, &[0, 1]));
             if Self::takes_queues(of) && variant.one_instance == 0 {
                 kinds.push((Kind::Tiles, &[0, 1]));
             }
-        } else if self.takes_tiles(of) {
+        } else if takes_tiles {
             if self.may_permit_lists(of) {
                 kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
             }
             kinds.push((Kind::TileTree, &[0, 1]));
-            if variant.depths != 0 {
+            if !self.single_copy {
                 kinds.push((Kind::TileCopies, &[0, 1]));
             }
         }

@@ -94,14 +94,14 @@ pub(crate) fn frusta(
         .map(|copy| seen_from(object, copy, view))
         .collect();
     let eyes: Vec<DVec2> = seen.iter().map(|&(eye, _)| flat(eye)).collect();
-    let (is_whole, uncut) = (is_whole(object, surface), uncut_radius(object, surface));
+    let uncut = uncut_radius(object, surface);
+    let cut = hull.runs(|cell| hull.reaches[cell] > uncut);
     // Parallel rays have no common eye, and a cut opens cavities.
-    let frusta = if view.parallel || !is_whole {
-        let is_cut = |cell: usize| !is_whole && hull.reaches[cell] > uncut;
-        [hull.runs(is_cut), hull.runs(|cell| !is_cut(cell))]
-    } else {
-        [Vec::new(), hull.seen_from(&eyes)]
+    let whole = match view.parallel || !cut.is_empty() {
+        true => hull.runs(|cell| hull.reaches[cell] <= uncut),
+        false => hull.seen_from(&eyes),
     };
+    let frusta = [cut, whole];
     let drawn: usize = frusta.iter().flatten().map(ExactSizeIterator::len).sum();
     let covered: u64 = (copies.iter())
         .map(|copy| covered_pixels(view, radius, copy))

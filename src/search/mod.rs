@@ -58,7 +58,7 @@ pub struct Search {
 pub struct Words(&'static (dyn Fn(&SearchModule) -> Result<Vec<u32>> + Send + Sync));
 
 impl Words {
-    /// `words` returns a module, or another that [serves](SearchModule::serves) as well.
+    /// `words` returns a module.
     ///
     /// # Safety
     /// The result must be valid SPIR-V, compiled from [`SearchModule::entry`] of this version of

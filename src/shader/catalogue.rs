@@ -95,7 +95,7 @@ pub enum Search {
     /// The search for live parameters.
     Live,
     /// Patches of quadrics in a tree. Fragments of cells solve their patches without the tree;
-    /// shadows on them use the tree.
+    /// rays that pass a side of the box use the tree.
     Quadric,
 }
 

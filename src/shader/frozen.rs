@@ -4,8 +4,8 @@
 use super::spirv::{HEADER, instructions, op};
 use std::collections::HashMap;
 
-/// The words of a module with plain constants in place of specialisation constants. `values`: by
-/// `constant_id`; other constants have their defaults. Operations on constants that are not in
+/// The words of a module with plain constants in place of specialisation constants of 32 bits.
+/// `values`: by `constant_id`; other constants have their defaults. Operations on constants that are not in
 /// [`folded`] stay as they are.
 #[must_use]
 pub fn frozen(words: &[u32], values: &HashMap<u32, u32>) -> Vec<u32> {

@@ -132,6 +132,8 @@ pub struct Variant {
     pub projection: u32,
     /// The search of another crate, for [`Search::External`].
     pub external: Option<External>,
+    /// 1 if the device may have listed the tiles of copies.
+    pub device_lists: u32,
     /// Compute stage: 0 if each pixel is drawn once, so no depth is compared or kept.
     pub depths: u32,
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
@@ -139,7 +141,7 @@ pub struct Variant {
     pub lights: u32,
     /// Patches that each pixel of a listed tile tests.
     pub list_length: u32,
-    /// 1 if the box cuts nothing of the solid and rays from the eye begin outside of it.
+    /// 1 if the box cuts nothing of the solid, or of these cells, and rays from the eye begin outside.
     pub outside: u32,
     /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
     pub own_tables: u32,
@@ -179,6 +181,7 @@ impl Variant {
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
         external: None,
+        device_lists: 0,
         depths: 1,
         lights: 3,
         list_length: 0,
@@ -334,6 +337,12 @@ impl Variant {
             one_object,
             one_instance: of(of_copy, self.one_instance & one_object),
             list_length: of(kind == Kind::TilePatches, self.list_length),
+            device_lists: of(
+                matches!(kind, Kind::TileCopies | Kind::Tiles)
+                    && self.search == Search::Quadric
+                    && self.is_single(),
+                self.device_lists,
+            ),
             depths: if compute { self.depths } else { 1 },
             ..self
         }
@@ -369,7 +378,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 17] {
+    pub fn constants(&self) -> [(u32, u32); 18] {
         let (form, known_steps) = self.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, self.cells),
@@ -378,6 +387,7 @@ impl Variant {
             (g::BUMP_ID, self.bump),
             (g::PROJECTION_ID, self.projection),
             (g::SEARCH_FORM_ID, form),
+            (g::DEVICE_LISTS_ID, self.device_lists),
             (g::DEPTHS_ID, self.depths),
             (g::LIGHTS_ID, self.lights),
             (g::LIST_LENGTH_ID, self.list_length),

@@ -59,8 +59,9 @@ layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches t
 layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the object's block
 #endif
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
+layout(constant_id = 7) const uint DEVICE_LISTS = 0u; // 1: the device may have listed the tiles of copies
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
-layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box does not cut the solid, and rays from the eye begin outside it
+layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box does not cut the solid or cell, and rays from the eye begin outside it
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
 layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it

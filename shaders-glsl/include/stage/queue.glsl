@@ -4,8 +4,6 @@
 #include "stage/tile_words.glsl"
 #include "core/replicas.glsl"
 
-const bool MAY_BE_OF_DEVICE = SEARCH == SEARCH_QUADRIC; // the device lists tiles of patches alone
-
 // Returns the copies of a block of a queue that pixel `bit` of the tile may show, one bit each.
 uint marks_of(uint block, uint bit)
 {
@@ -22,10 +20,10 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
     bool found = false;
     uint steps = 0u;
     bool exhausted = false;
-    bool marked = !MAY_BE_OF_DEVICE || (count & QUEUE_ALL) == 0u;
-    bool loose = MAY_BE_OF_DEVICE && (count & QUEUE_LOOSE) != 0u;
+    bool marked = DEVICE_LISTS == 0u || (count & QUEUE_ALL) == 0u;
+    bool loose = DEVICE_LISTS != 0u && (count & QUEUE_LOOSE) != 0u;
     uint layer = count >> QUEUE_LAYER_SHIFT & 127u;
-    uint end = first + QUEUE_WORDS * (MAY_BE_OF_DEVICE ? count & QUEUE_COUNT : count);
+    uint end = first + QUEUE_WORDS * (DEVICE_LISTS != 0u ? count & QUEUE_COUNT : count);
     float sense = frame.forward.w;
     uint nearest_word = first; // of the copy that was hit
     uint block = first;        // the next one

@@ -104,8 +104,14 @@ impl Content {
             level_pixels: self.settings.tolerance.pixels() / GRAZING,
             casts: self.casts(),
             lists_crowds: self.lists_crowds(),
+            single_copy: self.has_single_copy(),
             host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
         }
+    }
+
+    fn has_single_copy(&self) -> bool {
+        let copies = |(_, entry): (u32, &Entry)| entry.drawn().placements().len();
+        self.objects.len() == 1 && self.objects.ordered().map(copies).eq([1])
     }
 
     /// True if the device lists the tiles of crowds: it has doubles, and no plane needs where copies

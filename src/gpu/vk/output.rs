@@ -226,7 +226,7 @@ pub struct ComputeTarget {
     pub images: Vec<vk::ImageView>,
     /// True if depths count: compute compares with the depths in the buffer, and writes its own. If
     /// false, the depths may hold anything. Shaders then read and write them only to distinguish
-    /// objects ([`PreparedFrame::reads_depths`](crate::gpu::PreparedFrame::reads_depths)).
+    /// copies ([`PreparedFrame::reads_depths`](crate::gpu::PreparedFrame::reads_depths)).
     pub depths: bool,
 }
 
