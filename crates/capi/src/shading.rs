@@ -1,7 +1,7 @@
 //! A host's functions of shading.
 
 use crate::enums;
-use crate::fault::{Fault, Outcome, RevmapResult, enter};
+use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
 use crate::pointers::{list, put_bytes, text};
 use revmap::settings::DrawStage;
@@ -67,7 +67,7 @@ fn compiled(stage: DrawStage, files: &[(&str, &str)]) -> Outcome<Shading> {
 fn compiled(_: DrawStage, _: &[(&str, &str)]) -> Outcome<Shading> {
     let message = "this library was built without the feature `shaderc`, which compiles GLSL; \
                    write bytes with `revmap shading`";
-    Err(Fault::usage(message))
+    Err(crate::fault::Fault::usage(message))
 }
 
 /// Returns a shading's bytes for revmap_shading_from_bytes() of the same version of the library. With

@@ -54,10 +54,10 @@ impl Pipelines {
             return external.words(module);
         }
         #[cfg(feature = "other-shaders")]
-        if let Some(source) = &self.source {
-            if let Some(words) = source(module.entry.file(), &module.macros())? {
-                return Ok(words);
-            }
+        if let Some(source) = &self.source
+            && let Some(words) = source(module.entry.file(), &module.macros())?
+        {
+            return Ok(words);
         }
         let none = || Error::new(ErrorKind::Other, format!("no shader is {}", module.name()));
         words(module).ok_or_else(none)
