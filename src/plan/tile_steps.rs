@@ -25,10 +25,8 @@ impl FramePlan {
         if numbers.is_empty() {
             return;
         }
-        let is_single = |n: usize| objects[n].object.placements().len() == 1;
-        let hides = numbers.len() > 1 || !is_single(numbers[0]);
         let batches: Vec<Batch> = (numbers.iter())
-            .map(|&n| batch(&objects[n], hides, with))
+            .map(|&n| batch(&objects[n], with))
             .collect();
         let projector = projector(view, objects, with);
         let visible = Visible::new(view, &projector, &batches);
@@ -185,12 +183,13 @@ fn leave_out_lists(
     }
 }
 
-/// An object's copies, as input for finding tiles. `hides`: they may hide others.
-fn batch<'a>(of: &'a PlanObject<'a>, hides: bool, with: &Conditions) -> Batch<'a> {
+/// An object's copies, as input for finding tiles.
+fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
     let surface = of.surface().filter(|_| of.object.repeat == [1; 3]);
     let surface = surface.map(Arc::as_ref).filter(|s| s.is_of_patches());
     let culls = surface.filter(|_| with.occlusion_culling);
-    let inner = culls.filter(|_| hides && of.is_whole());
+    // A single copy hides no other.
+    let inner = culls.filter(|_| !with.single_copy && of.is_whole());
     let outlined = with.uses_outline(of) && of.object.repeat == [1; 3];
     let of_outline = of.outline.filter(|_| outlined && surface.is_none());
     let of_outline = of_outline.map(|(outline, away)| (outline.outer(), away));
