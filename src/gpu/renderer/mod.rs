@@ -187,11 +187,12 @@ impl Renderer {
     }
 
     /// With `true`, [`Renderer::prepare`] compiles no pipeline. Whatever needs one that is not
-    /// compiled stays hidden until [`Prewarm::compile`](crate::gpu::Prewarm::compile) has made it on
-    /// another thread; [`FrameStatistics::hidden`](crate::gpu::FrameStatistics::hidden) counts what
-    /// is left out. An object that several pipelines draw may show in part. Content that is added later may need pipelines that an earlier `Prewarm` does not
-    /// have: call [`Renderer::prewarm`] again. A hidden solid still hides copies behind it and still
-    /// casts shadows. Default: false.
+    /// compiled stays hidden until [`Prewarm::compile`](crate::gpu::Prewarm::compile) has made it
+    /// on another thread; [`FrameStatistics::hidden`](crate::gpu::FrameStatistics::hidden) counts
+    /// what is left out. An object that several pipelines draw may show in part. Content that is
+    /// added later may need pipelines that an earlier `Prewarm` does not have: call
+    /// [`Renderer::prewarm`] again. A hidden solid still hides copies behind it and still casts
+    /// shadows. Default: false.
     pub fn hide_until_compiled(&mut self, hides: bool) {
         self.hides = hides;
     }
