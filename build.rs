@@ -53,10 +53,7 @@ fn generate() -> Fallible<()> {
     let mut all: Vec<_> = catalogue::modules().into_iter().map(module).collect();
     // Tests read the layouts of blocks from these modules.
     let every_block = vec![("SEARCH", "SEARCH_LIVE"), ("OUTPUT", "OUTPUT_PLANES")];
-    let layouts = [
-        ("layouts", "tree.frag", every_block),
-        ("crowd_layouts", "crowd_copies.comp", vec![]),
-    ];
+    let layouts = [("layouts", "tree.frag", every_block)];
     all.extend(layouts.map(|(name, entry, macros)| modules::Module {
         name: name.to_owned(),
         entry,

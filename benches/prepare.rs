@@ -40,10 +40,6 @@ fn place(n: usize, frame: usize) -> Placement {
 
 impl Crowd {
     fn new() -> Self {
-        Self::with(&SearchSettings::exact())
-    }
-
-    fn with(settings: &SearchSettings) -> Self {
         let device = Device::open(None).unwrap();
         let begun = PassKind::Dynamic {
             color: vec![vk::Format::R8G8B8A8_SRGB],
@@ -51,7 +47,7 @@ impl Crowd {
             stencil: vk::Format::UNDEFINED,
         };
         let output = Output::Pass(PassFormats::new(begun, Planes::Color));
-        let mut renderer = Renderer::new(&device, output, settings, 2).unwrap();
+        let mut renderer = Renderer::new(&device, output, &SearchSettings::exact(), 2).unwrap();
         let profiles = [
             &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],
             &[
@@ -165,11 +161,8 @@ fn field(count: usize, frame: usize) -> Vec<Placement> {
 
 impl Crowd {
     /// Copies of one object.
-    fn of_copies(copies: Vec<Placement>, device_lists: bool) -> Self {
-        let mut crowd = Self::with(&SearchSettings {
-            device_lists,
-            ..SearchSettings::exact()
-        });
+    fn of_copies(copies: Vec<Placement>) -> Self {
+        let mut crowd = Self::new();
         for id in crowd.ids.split_off(1) {
             crowd.renderer.remove(id).unwrap();
         }
@@ -187,8 +180,8 @@ impl Crowd {
 }
 
 /// Frames in which the copies are those that `of` gives, which is not timed.
-fn copies(bencher: Bencher, device_lists: bool, of: impl Fn(usize) -> Vec<Placement>) {
-    let crowd = std::cell::RefCell::new(Crowd::of_copies(of(0), device_lists));
+fn copies(bencher: Bencher, of: impl Fn(usize) -> Vec<Placement>) {
+    let crowd = std::cell::RefCell::new(Crowd::of_copies(of(0)));
     bencher
         .with_inputs(|| {
             let mut crowd = crowd.borrow_mut();
@@ -204,13 +197,7 @@ fn copies(bencher: Bencher, device_lists: bool, of: impl Fn(usize) -> Vec<Placem
 
 #[divan::bench(args = [10_000, 100_000])]
 fn the_camera_moves_over_copies(bencher: Bencher, count: usize) {
-    new_views(bencher, Crowd::of_copies(field(count, 0), false));
-}
-
-/// The device lists the tiles of the copies.
-#[divan::bench(args = [10_000, 100_000, 1_000_000])]
-fn the_camera_moves_with_device_lists(bencher: Bencher, count: usize) {
-    new_views(bencher, Crowd::of_copies(field(count, 0), true));
+    new_views(bencher, Crowd::of_copies(field(count, 0)));
 }
 
 fn new_views(bencher: Bencher, mut crowd: Crowd) {
@@ -222,19 +209,14 @@ fn new_views(bencher: Bencher, mut crowd: Crowd) {
 }
 
 #[divan::bench(args = [10_000, 100_000])]
-fn all_copies_move_with_device_lists(bencher: Bencher, count: usize) {
-    copies(bencher, true, |frame| field(count, frame));
-}
-
-#[divan::bench(args = [10_000, 100_000])]
 fn all_copies_move(bencher: Bencher, count: usize) {
-    copies(bencher, false, |frame| field(count, frame));
+    copies(bencher, |frame| field(count, frame));
 }
 
 /// A thousand of the copies are gone in every other frame.
 #[divan::bench(args = [10_000, 100_000])]
 fn copies_come_and_go(bencher: Bencher, count: usize) {
-    copies(bencher, false, |frame| field(count - 1000 * (frame % 2), 0));
+    copies(bencher, |frame| field(count - 1000 * (frame % 2), 0));
 }
 
 #[divan::bench(sample_count = 20)]

@@ -7,26 +7,14 @@
 // Returns the pixel of this invocation, the first word of its queue and the number of copies in it.
 uvec2 this_pixel(out uint first, out uint count)
 {
-    uint word;
-    uint base = 0u;
-    if (DEVICE_LISTS != 0u && pushed.heads != 0u) {
-        // Pixels that the device wrote; the word at `heads` holds their number.
-        uint number = 64u * (gl_WorkGroupID.x * gl_NumWorkGroups.y + gl_WorkGroupID.y) + gl_LocalInvocationIndex;
-        word = pushed.records + 3u * number;
-        if (number >= bin_words[pushed.heads]) {
-            return uvec2(0xffffu);
-        }
-    } else {
-        uint at = 4u * (pushed.first + gl_WorkGroupID.x);
-        first = tile_words[at + 1u];
-        count = tile_words[at + 2u];
-        if (count != TILE_SPLIT) {
-            return tile_corner_of(tile_words[at]) + gl_LocalInvocationID.xy;
-        }
-        base = first;
-        word = first + 3u * gl_LocalInvocationIndex;
+    uint at = 4u * (pushed.first + gl_WorkGroupID.x);
+    first = tile_words[at + 1u];
+    count = tile_words[at + 2u];
+    if (count != TILE_SPLIT) {
+        return tile_corner_of(tile_words[at]) + gl_LocalInvocationID.xy;
     }
-    first = base + tile_words[word + 1u];
+    uint word = first + 3u * gl_LocalInvocationIndex;
+    first += tile_words[word + 1u];
     count = tile_words[word + 2u];
     return uvec2(tile_words[word] & 0xffffu, tile_words[word] >> 16);
 }

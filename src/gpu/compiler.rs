@@ -104,7 +104,6 @@ impl PipelineCompiler {
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,
                 occlusion_culling: true,
-                lists_crowds: chosen.lists_crowds(),
                 ..Conditions::default()
             },
             report: chosen.report,
@@ -177,15 +176,6 @@ impl PipelineCompiler {
                     all.push(choice);
                 }
             }
-        }
-        let crowds = solver == Solver::Exact && conditions.lists_crowds && !conditions.casts;
-        if crowds && variant.is_shaded() && variant.cells == 0 && object.clip != Clip::Box {
-            let listed = Variant {
-                device_lists: 1,
-                ..variant
-            };
-            let of_kind = |kind| PipelineChoice(listed.of_kind(kind), kind);
-            all.extend(conditions.crowd_kinds().map(of_kind));
         }
         all
     }

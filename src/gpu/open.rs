@@ -187,15 +187,6 @@ impl Device {
         &self.shared.chosen.report
     }
 
-    /// True if it can list the tiles of crowds, as [`Settings::device_lists`] asks. It needs
-    /// `shaderFloat64`.
-    ///
-    /// [`Settings::device_lists`]: crate::settings::Settings::device_lists
-    #[must_use]
-    pub fn lists_crowds(&self) -> bool {
-        self.shared.chosen.lists_crowds()
-    }
-
     /// The number of pipelines that were compiled on the device.
     #[must_use]
     pub fn pipelines_compiled(&self) -> u64 {

@@ -40,15 +40,8 @@ pub(crate) struct CopyLevels {
 const COPIES: f64 = 1.25;
 
 impl CopyLevels {
-    /// `height`: height of the box in units of the profile's. `at_once`: finds the finest level from
-    /// the bounds of all copies, whose time does not grow with their number; it may then be finer.
-    pub fn new(
-        object: &Object,
-        height: f64,
-        view: &View,
-        tolerance: Tolerance,
-        at_once: bool,
-    ) -> Self {
+    /// `height`: height of the box in units of the profile's.
+    pub fn new(object: &Object, height: f64, view: &View, tolerance: Tolerance) -> Self {
         let reach = (object.profile.radius * SQRT_2).hypot(0.5);
         let pixels = stretch(view) / (pixel_of(view) * height);
         let error = tolerance.pixels() / (COPIES * GRAZING);
@@ -56,11 +49,7 @@ impl CopyLevels {
         let limit = |level: u8| ((reach + bound(level) * pixels / error) * (1.0 + 1e-6)) as f32;
         let limits: [f32; 4] = std::array::from_fn(|n| limit(COPY_LEVELS[n + 1]));
         let depths = CopyDepths::new(object, view, false);
-        let least = if at_once {
-            depths.of_cluster(object.instances.whole())
-        } else {
-            depths.least(0.0) * (1.0 - 1e-6)
-        };
+        let least = depths.least(0.0) * (1.0 - 1e-6);
         Self {
             first: limits.iter().filter(|l| f64::from(**l) <= least).count(),
             limits,
@@ -69,7 +58,6 @@ impl CopyLevels {
     }
 
     /// Index of a copy's level. `depth`: depth of its box's middle; `scale`: its largest scale.
-    /// `crowd_copies.comp` has the same rule.
     pub fn of(&self, depth: f32, scale: f32) -> usize {
         let passes = |limit: &&f32| depth >= scale * **limit;
         self.limits.iter().filter(passes).count().max(self.first)
@@ -260,14 +248,13 @@ mod tests {
             object.placement.scale = scale;
             object.placement.position = -DVec3::X * 1e4 * part.powi(4);
             object.instances = vec![object.placement; 2].into();
-            let [levels, at_once] =
-                [false, true].map(|way| CopyLevels::new(&object, 1.0, &view, tolerance, way));
+            let levels = CopyLevels::new(&object, 1.0, &view, tolerance);
             let middle = object.placement.position + DVec3::new(0.0, 0.0, 0.5 * scale.z);
             let depth = (middle - view.eye).dot(view.forward);
             let found = levels.of(depth as f32, scale.max_element() as f32);
             let pixels = pixels_per_unit(&object, 1.0, &view, true);
             // The object's only copy decides.
-            assert!(found == levels.first && at_once.first <= found);
+            assert_eq!(found, levels.first);
             let error = |level: u8| bound(level) * pixels;
             assert!(
                 found == 0 || error(COPY_LEVELS[found]) <= allowed,

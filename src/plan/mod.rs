@@ -6,7 +6,6 @@
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod casters;
-pub(crate) mod crowd;
 pub(crate) mod levels;
 mod path;
 pub(crate) mod proxy;
@@ -51,8 +50,6 @@ pub(crate) struct FramePlan {
     pub parts: Vec<[bool; 3]>,
     /// True if compute compares depths.
     pub compares_depths: bool,
-    /// Crowds, whose tiles the device lists.
-    pub crowds: Option<crowd::Crowds>,
 }
 
 /// One draw or dispatch, or several draws that one command records.
@@ -79,8 +76,6 @@ pub(crate) enum Call {
     Indirect(u32, Pushed),
     /// Work groups along three axes.
     Groups([u32; 3], Pushed),
-    /// Tiles that the device recorded; the draw is at this word of the bins.
-    IndirectTiles(u32),
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
@@ -104,7 +99,6 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), with);
-    crowd::add(&mut plan, view, objects, (&paths, &variants), with);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
@@ -124,7 +118,7 @@ impl Path {
         match self {
             Self::Box => DrawPath::Box,
             Self::Cells(_) => DrawPath::Cells,
-            Self::Tiles | Self::Crowd => DrawPath::Tiles,
+            Self::Tiles => DrawPath::Tiles,
         }
     }
 }
@@ -142,7 +136,6 @@ pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant
             one_object: u32::from(alone),
             one_instance: u32::from(alone && of.object.placements().len() == 1),
             own_tables: u32::from(alone && with.holds_tables(of)),
-            device_lists: u32::from(with.lists_crowds),
             depths: u32::from(with.compares_depths()),
             ..of.variant
         }
@@ -202,7 +195,7 @@ impl FramePlan {
                 layers[layer].draws.extend(draws);
             };
             match path {
-                Path::Tiles | Path::Crowd => {}
+                Path::Tiles => {}
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;

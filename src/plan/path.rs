@@ -39,8 +39,6 @@ pub(crate) enum Path {
     /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
     Cells([Vec<Range<u32>>; 2]),
     Tiles,
-    /// Tiles that the device lists.
-    Crowd,
 }
 
 /// One object, as input of a plan.
@@ -91,8 +89,6 @@ pub(crate) struct Conditions {
     pub level_pixels: f64,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
-    /// True if the device lists the tiles of crowds.
-    pub lists_crowds: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
     /// True if all objects together, in any view, have one copy: then no pixel is drawn twice.
@@ -145,23 +141,6 @@ impl Conditions {
         of.variant.search == Search::Quadric && of.variant.is_single()
     }
 
-    /// True if the device lists the tiles of an object's copies.
-    fn is_crowd(&self, of: &PlanObject) -> bool {
-        let shows = of.variant.search == Search::Quadric && of.variant.is_shaded() && !self.casts;
-        let many = of.object.placements().len() > MOST_PROXIES && of.object.repeat == [1; 3];
-        self.lists_crowds && shows && many && of.is_whole()
-    }
-
-    /// The pipelines of crowds: those that list tiles, then the one that draws them.
-    pub fn crowd_kinds(&self) -> [Kind; 4] {
-        let draws = if self.compute {
-            Kind::TileCopies
-        } else {
-            Kind::Tiles
-        };
-        [Kind::CrowdCopies, Kind::CrowdTiles, Kind::CrowdOrder, draws]
-    }
-
     /// The path of an object in a view: cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
         let surface = of.surface().filter(|_| self.takes_cells(of));
@@ -171,7 +150,6 @@ impl Conditions {
         });
         match cells {
             Some(frusta) => Path::Cells(frusta),
-            _ if self.takes_tiles(of) && !view.parallel && self.is_crowd(of) => Path::Crowd,
             _ if self.takes_tiles(of) && !view.parallel && !self.prefers_box(of) => Path::Tiles,
             _ => Path::Box,
         }
@@ -248,12 +226,7 @@ impl Conditions {
         if self.takes_cells(of) {
             kinds.push((Kind::Cells, outside));
         }
-        let is_crowd = self.is_crowd(of);
-        if is_crowd {
-            kinds.extend(self.crowd_kinds().map(|kind| (kind, [0].as_slice())));
-        }
-        // The box may come to cut the copies of a crowd.
-        let takes_tiles = self.takes_tiles(of) && (!is_crowd || may_cut);
+        let takes_tiles = self.takes_tiles(of);
         if takes_tiles && !self.compute {
             kinds.push((Kind::Quads, &[0, 1]));
             if Self::takes_queues(of) && variant.one_instance == 0 {

@@ -1,7 +1,7 @@
 //! The placements of an object's copies, and data derived from them once for all views.
 
 use super::Placement;
-use super::clusters::{Cluster, Clusters};
+use super::clusters::Clusters;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
@@ -30,7 +30,6 @@ struct Known {
     /// Set once all were checked and found valid.
     checked: OnceLock<()>,
     clusters: OnceLock<Clusters>,
-    whole: OnceLock<Cluster>,
 }
 
 impl Copies {
@@ -43,11 +42,6 @@ impl Copies {
             let _ = known.set(Clusters::new(self));
         }
         known.get_or_init(|| Clusters::new(self))
-    }
-
-    /// The bounds of all copies, made on the first call after a change.
-    pub(crate) fn whole(&self) -> &Cluster {
-        self.0.whole.get_or_init(|| Cluster::of(0, self))
     }
 
     /// Checks all placements, unless they were found valid before.
@@ -111,7 +105,7 @@ impl Deref for Copies {
 impl DerefMut for Copies {
     fn deref_mut(&mut self) -> &mut Self::Target {
         let known = Arc::make_mut(&mut self.0);
-        (known.checked, known.clusters, known.whole) = Default::default();
+        (known.checked, known.clusters) = Default::default();
         &mut known.placements
     }
 }

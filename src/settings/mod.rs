@@ -266,11 +266,6 @@ pub struct Settings {
     /// True to skip copies that are proven to be hidden by others. Pixels differ by rounding at
     /// most; `false` exists to verify this.
     pub occlusion_culling: bool,
-    /// True to list the tiles of crowds on the device: objects with more than 64 copies, drawn by
-    /// patches, without replicas and shadows. The host's part of a new view then does not grow with
-    /// the number of copies. It needs `shaderFloat64`; without it, and with motion, the host lists.
-    /// Pixels are equal.
-    pub device_lists: bool,
     /// True to smooth silhouettes in frames that the crate `revmap-offscreen` reads back. Otherwise
     /// every colour is that of the ray through the pixel's middle. Embedded renderers do not
     /// smooth.
@@ -297,8 +292,6 @@ pub struct SearchSettings {
     pub tolerance: Tolerance,
     /// Same as [`Settings::occlusion_culling`].
     pub occlusion_culling: bool,
-    /// Same as [`Settings::device_lists`].
-    pub device_lists: bool,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -311,7 +304,6 @@ impl From<&Settings> for SearchSettings {
             map_format: settings.map_format,
             proxy_min_pixels: settings.proxy_min_pixels,
             occlusion_culling: settings.occlusion_culling,
-            device_lists: settings.device_lists,
             tolerance: settings.tolerance,
         }
     }
@@ -328,7 +320,6 @@ impl From<&SearchSettings> for Settings {
             map_format: search.map_format,
             proxy_min_pixels: search.proxy_min_pixels,
             occlusion_culling: search.occlusion_culling,
-            device_lists: search.device_lists,
             tolerance: search.tolerance,
             ..Self::default()
         }
@@ -392,7 +383,6 @@ impl Default for Settings {
             proxy_min_pixels: 150,
             tolerance: Tolerance::DEFAULT,
             occlusion_culling: true,
-            device_lists: false,
             antialias: false,
         }
     }

@@ -1,6 +1,6 @@
 //! Data that the CPU passes to the GPU. The GLSL documents the members; a test compares the layouts.
 
-use super::generated::{CROWD_PIECES, MAX_LIGHTS};
+use super::generated::MAX_LIGHTS;
 use bytemuck::{Pod, Zeroable};
 
 /// Structures of 32-bit words in the layout of the GLSL, with the offsets of their members.
@@ -82,39 +82,6 @@ blocks! {
         next: u32,
         half_size: [f32; 3],
         instance: u32,
-    }
-
-    /// `CrowdBlock` of `stage/crowd.glsl`, before its objects.
-    CrowdBlock {
-        eye: [u32; 8],
-        forward: [u32; 8],
-        dir_00: [u32; 8],
-        clip_x: [u32; 8],
-        clip_y: [u32; 8],
-        row_x: [f32; 4],
-        row_y: [f32; 4],
-        row_z: [f32; 4],
-        limits: [f32; 4],
-        picture: [u32; 4],
-        size: [u32; 4],
-        counts: [u32; 4],
-        lists: [u32; 4],
-        copies: [u32; 4],
-        tiles: [u32; 4],
-        steps: [u32; 4],
-        objects_of: [CrowdObject; 0],
-    }
-
-    /// `CrowdObject` of `stage/crowd.glsl`.
-    CrowdObject {
-        axis: [u32; 4],
-        shape: [f32; 4],
-        heights: [f32; 4],
-        copies: [u32; 4],
-        pieces: [u32; 4],
-        limits: [f32; 4],
-        outer: [[f32; 4]; CROWD_PIECES as usize],
-        inner: [[f32; 4]; CROWD_PIECES as usize],
     }
 }
 

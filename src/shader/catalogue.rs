@@ -17,12 +17,6 @@ pub enum Entry {
     Cells,
     /// Fragments of tiles.
     Tiles,
-    /// Records of the copies of crowds.
-    CrowdCopies,
-    /// Copies of crowds in tiles.
-    CrowdTiles,
-    /// Copies of crowds in order, and their records.
-    CrowdOrder,
     /// Fragments of boxes and quads, which walk the tree.
     Tree,
     /// Lists of the patches that rays of tiles may meet.
@@ -46,9 +40,6 @@ impl Entry {
             Self::TileVertex => "tiles.vert",
             Self::Cells => "cells.frag",
             Self::Tiles => "tiles.frag",
-            Self::CrowdCopies => "crowd_copies.comp",
-            Self::CrowdTiles => "crowd_tiles.comp",
-            Self::CrowdOrder => "crowd_order.comp",
             Self::Tree => "tree.frag",
             Self::TileLists => "tile_lists.comp",
             Self::TilePatches => "tile_patches.comp",
@@ -60,10 +51,7 @@ impl Entry {
     /// True if it lists what other entries draw.
     #[must_use]
     pub const fn makes_lists(self) -> bool {
-        matches!(
-            self,
-            Self::TileLists | Self::CrowdCopies | Self::CrowdTiles | Self::CrowdOrder
-        )
+        matches!(self, Self::TileLists)
     }
 
     /// True if its invocations shade hits. Build scripts do not call this.
@@ -199,9 +187,6 @@ pub fn modules() -> Vec<Module> {
     use Output::{Color, Depth, List, Planes};
     let plain = [
         Entry::TileLists,
-        Entry::CrowdCopies,
-        Entry::CrowdTiles,
-        Entry::CrowdOrder,
         Entry::BoxVertex,
         Entry::CellVertex,
         Entry::QuadVertex,

@@ -12,8 +12,7 @@ mod variant;
 mod view_index;
 
 pub use blocks::{
-    CasterNode, CrowdBlock, CrowdObject, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE,
-    ObjectBlock, Pushed,
+    CasterNode, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

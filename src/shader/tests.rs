@@ -8,9 +8,8 @@ use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Output, modules};
 use crate::shader::{
-    CasterNode, CrowdBlock, CrowdObject, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock,
-    Module, OBJECT_STRIDE, ObjectBlock, ShadowCasters, Variant, depth_less, generated as g,
-    instructions, op, words,
+    CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
+    ObjectBlock, ShadowCasters, Variant, depth_less, generated as g, instructions, op, words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
@@ -68,9 +67,7 @@ fn assert_layout(words: &[u32], name: &str, rust: &[(&str, usize)]) {
 
 #[test]
 fn blocks_have_the_same_layout_in_rust_and_glsl() {
-    let (all, crowds) = (layouts("layouts.spv.z"), layouts("crowd_layouts.spv.z"));
-    assert_layout(&crowds, "CrowdObject", CrowdObject::OFFSETS);
-    assert_layout(&crowds, "CrowdBlock", CrowdBlock::OFFSETS);
+    let all = layouts("layouts.spv.z");
     assert_layout(&all, "Frame", FrameBlock::OFFSETS);
     assert_layout(&all, "Light", LightBlock::OFFSETS);
     assert_layout(&all, "Object", ObjectBlock::OFFSETS);

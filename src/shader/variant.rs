@@ -33,12 +33,6 @@ pub enum Kind {
     TileTree,
     /// Compute: tiles and pixels with queues of copies.
     TileCopies,
-    /// Compute, for both stages: records of the copies of crowds.
-    CrowdCopies,
-    /// Compute, for both stages: copies of crowds in tiles.
-    CrowdTiles,
-    /// Compute, for both stages: copies of crowds in order, and their records.
-    CrowdOrder,
 }
 
 impl Kind {
@@ -50,9 +44,6 @@ impl Kind {
             Self::Boxes => c"revmap boxes",
             Self::Quads => c"revmap quads of tiles",
             Self::Tiles => c"revmap tiles",
-            Self::CrowdCopies => c"revmap copies of crowds",
-            Self::CrowdTiles => c"revmap copies in tiles",
-            Self::CrowdOrder => c"revmap copies in order",
             Self::TileLists => c"revmap lists of patches",
             Self::TilePatches => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
@@ -76,9 +67,6 @@ impl Kind {
             Self::TilePatches => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
             Self::TileCopies => Entry::TileCopies,
-            Self::CrowdCopies => Entry::CrowdCopies,
-            Self::CrowdTiles => Entry::CrowdTiles,
-            Self::CrowdOrder => Entry::CrowdOrder,
         }
     }
 
@@ -132,8 +120,6 @@ pub struct Variant {
     pub projection: u32,
     /// The search of another crate, for [`Search::External`].
     pub external: Option<External>,
-    /// 1 if the device may have listed the tiles of copies.
-    pub device_lists: u32,
     /// Compute stage: 0 if each pixel is drawn once, so no depth is compared or kept.
     pub depths: u32,
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
@@ -181,7 +167,6 @@ impl Variant {
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
         external: None,
-        device_lists: 0,
         depths: 1,
         lights: 3,
         list_length: 0,
@@ -337,12 +322,6 @@ impl Variant {
             one_object,
             one_instance: of(of_copy, self.one_instance & one_object),
             list_length: of(kind == Kind::TilePatches, self.list_length),
-            device_lists: of(
-                matches!(kind, Kind::TileCopies | Kind::Tiles)
-                    && self.search == Search::Quadric
-                    && self.is_single(),
-                self.device_lists,
-            ),
             depths: if compute { self.depths } else { 1 },
             ..self
         }
@@ -378,7 +357,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 18] {
+    pub fn constants(&self) -> [(u32, u32); 17] {
         let (form, known_steps) = self.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, self.cells),
@@ -387,7 +366,6 @@ impl Variant {
             (g::BUMP_ID, self.bump),
             (g::PROJECTION_ID, self.projection),
             (g::SEARCH_FORM_ID, form),
-            (g::DEVICE_LISTS_ID, self.device_lists),
             (g::DEPTHS_ID, self.depths),
             (g::LIGHTS_ID, self.lights),
             (g::LIST_LENGTH_ID, self.list_length),

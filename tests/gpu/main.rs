@@ -16,7 +16,6 @@ mod clip;
 mod commands;
 mod crowds;
 mod deferred_host;
-mod device_lists;
 mod embedding;
 mod embedding_bias;
 mod embedding_crowds;

@@ -139,17 +139,12 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Runs a test in both stages, with lists of the host and of the device, each renderer with the
-/// objects of [`scene`].
+/// Runs a test in both stages, each renderer with the objects of [`scene`].
 fn in_both_stages(test: impl Fn(&mut Drawn, &[ObjectId], &str)) {
     let host = open();
     let device = borrow(&host);
-    let ways = ["fragment", "compute"].map(|stage| [(stage, false), (stage, true)]);
-    for (stage, device_lists) in ways.into_iter().flatten() {
-        let settings = SearchSettings {
-            device_lists,
-            ..SearchSettings::exact()
-        };
+    for stage in ["fragment", "compute"] {
+        let settings = SearchSettings::exact();
         let mut drawn = Drawn::new(&host, &device, &settings, stage == "compute");
         let ids = add(&mut drawn.renderer, &scene());
         test(&mut drawn, &ids, stage);

@@ -46,10 +46,9 @@ fn means(frame: &Frame) -> [f64; 4] {
     [hits as f64 / count, channel(0), channel(1), channel(2)]
 }
 
-fn drawn(scene: &Scene, stage: DrawStage, finer: u32, tolerance: f64, device_lists: bool) -> Frame {
+fn drawn(scene: &Scene, stage: DrawStage, finer: u32, tolerance: f64) -> Frame {
     let settings = Settings {
         tolerance: Tolerance::new(tolerance).unwrap(),
-        device_lists,
         ..drawn_by((finer * SIZE.0, finer * SIZE.1), stage, Solver::DEFAULT)
     };
     next_frame(&mut Offscreen::new(device(), scene, &settings).unwrap())
@@ -59,7 +58,7 @@ fn drawn(scene: &Scene, stage: DrawStage, finer: u32, tolerance: f64, device_lis
 fn means_are_those_of_many_samples() {
     let scene = field(20_000);
     for stage in STAGES {
-        let wanted = means(&drawn(&scene, stage, FINER, 0.0, false));
+        let wanted = means(&drawn(&scene, stage, FINER, 0.0));
         // Each copy covers a sample or none: the variance of their number is below their number.
         let samples = wanted[0] * f64::from(SIZE.0 * SIZE.1);
         let most = 4.0 / samples.sqrt();
@@ -68,13 +67,12 @@ fn means_are_those_of_many_samples() {
             let ratios = found.iter().zip(wanted).map(|(f, w)| (f / w - 1.0).abs());
             ratios.fold(0.0, f64::max)
         };
-        for device_lists in [false, true] {
-            let found = means(&drawn(&scene, stage, 1, 0.25, device_lists));
-            println!("{stage:?}: {samples} samples, {wanted:?}, {found:?}");
-            assert!(apart(found) < most, "{stage:?}: {wanted:?}, {found:?}");
-        }
+        let found = means(&drawn(&scene, stage, 1, 0.25));
+        println!("{stage:?}: {samples} samples, {wanted:?}, {found:?}");
+        assert!(apart(found) < most, "{stage:?}: {wanted:?}, {found:?}");
+
         // A tenth of the copies is missed.
-        let fewer = means(&drawn(&field(18_000), stage, 1, 0.25, false));
+        let fewer = means(&drawn(&field(18_000), stage, 1, 0.25));
         assert!(apart(fewer) > most, "{stage:?}: {wanted:?}, {fewer:?}");
     }
     device().check().unwrap();

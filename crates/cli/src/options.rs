@@ -77,9 +77,6 @@ pub struct Drawing {
     /// .exr is written]
     #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
-    /// Lists the tiles of objects with many copies on the device, not on the host
-    #[arg(long)]
-    pub device_lists: bool,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
     /// before virtual before CPU]
     #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
@@ -116,7 +113,6 @@ impl Drawing {
             map_format: self.map_format,
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
-            device_lists: self.device_lists,
             edges: Edges::OneRay,
         }
     }
@@ -139,7 +135,6 @@ impl Drawing {
             ("--solver", self.solver != Method::DEFAULT),
             ("--tolerance", self.tolerance.is_some()),
             ("--device", self.device.is_some()),
-            ("--device-lists", self.device_lists),
         ];
         let (who, reads): (String, &[&str]) = match self.stage {
             Tracing::Reference => ("--stage reference".to_owned(), &[]),
@@ -241,7 +236,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
             &["--solver", "--device", "--max-steps", "--map-rows"]
         }
         _ if method.reads_own_table() => &["--solver", "--device", "--map-rows"],
-        Method::Search(_) => &["--solver", "--device", "--tolerance", "--device-lists"],
+        Method::Search(_) => &["--solver", "--device", "--tolerance"],
         Method::Floor => &["--solver", "--device", "--tolerance"],
         Method::Mesh { .. } | Method::MeshLevels => &["--solver", "--device"],
     }

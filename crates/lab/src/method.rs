@@ -259,8 +259,6 @@ pub struct MethodSettings {
     pub planes: Planes,
     /// Allowed error of searches on patches.
     pub tolerance: Tolerance,
-    /// Same as [`Settings::device_lists`](revmap::settings::Settings::device_lists).
-    pub device_lists: bool,
     /// How edges are treated.
     pub edges: Edges,
 }
@@ -306,7 +304,6 @@ impl Default for MethodSettings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            device_lists: false,
             edges: Edges::OneRay,
         }
     }
@@ -325,7 +322,6 @@ impl From<&MethodSettings> for Settings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             planes: settings.planes,
-            device_lists: settings.device_lists,
             tolerance: settings.tolerance,
             antialias: settings.edges == Edges::Silhouettes,
             ..Self::default()

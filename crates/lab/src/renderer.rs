@@ -32,11 +32,6 @@ impl MethodDevice {
         })
     }
 
-    /// As [`Device::lists_crowds`].
-    pub fn lists_crowds(&self) -> bool {
-        self.device.lists_crowds()
-    }
-
     /// Makes all ready to draw a scene.
     ///
     /// # Errors

@@ -45,7 +45,7 @@ struct Instance {
     vec4 rotation;    // unit quaternion, x y z w
     vec4 scale_depth; // scale along y and z; depth of the box's middle; clip x of the box's middle
     vec4 origin;      // ray origin of pixel (0, 0) (pixel_ray.glsl), object space; w: clip y of the box's middle
-    uvec4 object;     // index of its object; layer, in crowds; first vectors of its listed patches and of its table
+    uvec4 object;     // index of its object; unused; first vectors of its listed patches and of its table
 };
 
 // An object: the data that its instances share.

@@ -59,7 +59,6 @@ layout(constant_id = 5) const uint SEARCH_FORM = 0u; // distinguishes searches t
 layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0: the limit in the object's block
 #endif
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
-layout(constant_id = 7) const uint DEVICE_LISTS = 0u; // 1: the device may have listed the tiles of copies
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
 layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box does not cut the solid or cell, and rays from the eye begin outside it
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
@@ -115,27 +114,7 @@ const uint RECORD_HALVES_SHIFT = 26u; // then a bit for each half with pixels th
 const uint TILE_SPLIT = 2147483648u; // replaces a record's number of copies: its pixels come from several tiles
 const uint QUEUE_WORDS = 4u; // words of a copy in a queue, with those that mark its pixels
 const uint QUEUE_BLOCK = 16u; // copies of a block of a queue
-const uint QUEUE_COUNT = 8388607u; // bits of the number of copies of a queue; a layer's number follows
-const uint QUEUE_LAYER_SHIFT = 23u;
-const uint QUEUE_LOOSE = 1073741824u; // bit of that number: copies are in no exact order
-const uint QUEUE_ALL = 2147483648u; // bit of that number: the queue holds copies of all layers, without marks
 const uint MOST_GROUPS = 65535u; // work groups of a dispatch along one axis, on every device
-const uint GROUPS_ACROSS = 32768u; // work groups along the first axis of a dispatch over more copies than that
-const uint CROWD_RANGES = 16u; // ranges of depth, which are listed one after the other
-const uint CROWD_PIECES = 8u; // upper limit on cylinders within a copy, and on those around it
-const uint CROWD_STEPS = 512u; // steps of depth, from which the ranges are made: 16 for each doubling
-const uint CROWD_STEP_SHIFT = 19u; // bits of a depth (float bits) below its step
-const uint CROWD_HEAD = 604u; // words of a crowd's counts; those of each layer follow
-const uint LAYER_HEAD = 8u; // words of a layer's counts
-const uint VISIBLE_WORDS = 5u; // words of a copy that may show
-const uint ENTRY_WORDS = 6u; // words of a copy in a tile
-const uint COPY_BOUNDS = 0u; // passes of crowd_copies.comp
-const uint COPY_RECORDS = 1u;
-const uint ORDER_RANGES = 0u; // passes of crowd_order.comp
-const uint ORDER_COPIES = 1u;
-const uint ORDER_TILES = 2u;
-const uint ORDER_RECORDS = 3u;
-const uint ORDER_ENTRIES = 4u;
 const uint BOX_INDICES = 36u; // indices of a shape box
 
 #endif

@@ -20,10 +20,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
     bool found = false;
     uint steps = 0u;
     bool exhausted = false;
-    bool marked = DEVICE_LISTS == 0u || (count & QUEUE_ALL) == 0u;
-    bool loose = DEVICE_LISTS != 0u && (count & QUEUE_LOOSE) != 0u;
-    uint layer = count >> QUEUE_LAYER_SHIFT & 127u;
-    uint end = first + QUEUE_WORDS * (DEVICE_LISTS != 0u ? count & QUEUE_COUNT : count);
+    uint end = first + QUEUE_WORDS * count;
     float sense = frame.forward.w;
     uint nearest_word = first; // of the copy that was hit
     uint block = first;        // the next one
@@ -31,8 +28,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
     for (;;) {
         // Invocations meet behind this loop, each with the next copy of its own pixel.
         while (marks == 0u && block < end) {
-            uint all = (1u << min((end - block) / QUEUE_WORDS, QUEUE_BLOCK)) - 1u;
-            marks = marked ? marks_of(block, bit) : all;
+            marks = marks_of(block, bit);
             block += QUEUE_WORDS * QUEUE_BLOCK;
         }
         if (marks == 0u) {
@@ -40,18 +36,10 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         }
         uint word = block - QUEUE_WORDS * QUEUE_BLOCK + 2u * uint(findLSB(marks));
         marks &= marks - 1u;
-        uint near = tile_words[word + 1u];
-        if (sense * depth_of(max(uintBitsToFloat(near), 1e-30)) >= depth) {
-            if (!loose) {
-                break;
-            }
-            continue;
+        if (sense * depth_of(max(uintBitsToFloat(tile_words[word + 1u]), 1e-30)) >= depth) {
+            break;
         }
-        uint number = tile_words[word];
-        Instance i = instances[number];
-        if (!marked && i.object.y != layer) {
-            continue;
-        }
+        Instance i = instances[tile_words[word]];
         take_shape(i);
         PixelRays rays = pixel_rays(i);
         Hit hit;
@@ -59,12 +47,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
         float met_at = sense * depth_of(rays.base + hit.t);
-        bool is_tie = loose && found && met && met_at == depth;
-        if (is_tie) {
-            uvec2 other = uvec2(tile_words[nearest_word], tile_words[nearest_word + 1u]);
-            is_tie = near < other.y || near == other.y && number < other.x;
-        }
-        if (met && (met_at < depth || is_tie)) {
+        if (met && met_at < depth) {
             found = true;
             nearest_word = word;
             depth = met_at;

@@ -14,15 +14,12 @@
 // - GROUP_PIXELS^2 pixels from anywhere, so that no invocation is spent on empty pixels. The number of copies is
 //   TILE_SPLIT. Each pixel has three words, from the record's second word on: its position (x | y << 16), the start of
 //   its tile's queue relative to the record's first such word, and the queue's number of copies. Unused positions are
-//   0xffffffff, outside of any picture. The device writes such pixels in a row, without records (crowd_order.comp).
+//   0xffffffff, outside of any picture.
 #ifndef TILE_WORDS_GLSL
 #define TILE_WORDS_GLSL
 #include "core/variant.glsl"
 
-#ifndef TILE_ACCESS
-#define TILE_ACCESS readonly
-#endif
-layout(set = 2, binding = 1, std430) TILE_ACCESS buffer TileWords {
+layout(set = 2, binding = 1, std430) readonly buffer TileWords {
     uint tile_words[];
 };
 

@@ -103,7 +103,6 @@ impl Content {
             ray_spread: self.output.ray_spread(),
             level_pixels: self.settings.tolerance.pixels() / GRAZING,
             casts: self.casts(),
-            lists_crowds: self.lists_crowds(),
             single_copy: self.has_single_copy(),
             host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
         }
@@ -112,14 +111,6 @@ impl Content {
     fn has_single_copy(&self) -> bool {
         let copies = |(_, entry): (u32, &Entry)| entry.drawn().placements().len();
         self.objects.len() == 1 && self.objects.ordered().map(copies).eq([1])
-    }
-
-    /// True if the device lists the tiles of crowds: it has doubles, and no plane needs where copies
-    /// were.
-    fn lists_crowds(&self) -> bool {
-        self.settings.device_lists
-            && self.device.chosen.lists_crowds()
-            && !self.output.planes().has_motion()
     }
 
     /// Returns all objects that a view shows, with surfaces of the levels that it allows; of the
@@ -168,7 +159,7 @@ impl Content {
         match view {
             Some(view) if self.levels_copies(entry, derived) => {
                 let (object, height) = (entry.drawn(), entry.values.growth().height());
-                let levels = CopyLevels::new(object, height, view, tolerance, self.lists_crowds());
+                let levels = CopyLevels::new(object, height, view, tolerance);
                 planned.level = COPY_LEVELS[levels.first];
                 planned.levels = Some(levels);
             }

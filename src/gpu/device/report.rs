@@ -54,11 +54,6 @@ impl Candidate {
         filters.then_some(self.properties.limits.max_sampler_anisotropy)
     }
 
-    /// True if shaders have 64-bit numbers, in which the device makes the records of crowds.
-    pub fn lists_crowds(&self) -> bool {
-        self.features.shader_float64 == vk::TRUE
-    }
-
     /// Returns true if squares of up to eight pixels a side are drawn as points. A point takes one
     /// vertex in place of six. A point has no diagonal, along which blocks of pixels are searched
     /// twice.
@@ -127,7 +122,6 @@ impl Candidate {
             ("GPU timestamps", timestamps),
             flag("anisotropic filtering", self.anisotropy().is_some()),
             flag("quads of crowds as points", self.large_points()),
-            flag("tiles of crowds listed by device", self.lists_crowds()),
             ("largest map", format!("{side} texels a side")),
             ("largest picture", format!("{width} x {height}")),
         ]

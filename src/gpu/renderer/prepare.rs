@@ -98,9 +98,6 @@ impl Renderer {
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
-        // SAFETY: as the caller promised.
-        unsafe { self.record_lists(cmd, slot)? };
-        let to = &self.slots[slot];
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
             slot,
@@ -138,9 +135,8 @@ impl Renderer {
         let pipelines = &self.device.pipelines;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
-        let listed = frame.crowds.iter().flat_map(|crowds| &crowds.steps);
         let mut steps = Vec::with_capacity(frame.steps.len());
-        for (n, step) in frame.steps.iter().chain(listed).enumerate() {
+        for step in &frame.steps {
             let object = &plan.objects[step.object as usize];
             let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
             let (_, derived) = entry.resources().ok_or_else(gone)?;
@@ -155,10 +151,8 @@ impl Renderer {
                 variant.own_tables = u32::from(window.len() <= own_vectors);
                 begin = window.start;
             }
-            // What draws crowds needs their lists.
-            let hides = self.hides && n < frame.steps.len();
             steps.push(BoundStep {
-                pipeline: match hides {
+                pipeline: match self.hides {
                     true => pipelines.known(variant, step.kind, &self.owner)?,
                     false => Some(pipelines.get(variant, step.kind, &self.owner)?),
                 },
@@ -188,12 +182,10 @@ impl Renderer {
                 records * size_of::<InstanceBlock>() as u64,
             )?;
         to.write_plan(&plan.frame)?;
-        let members = plan.frame.crowds.iter().flat_map(|crowds| &crowds.members);
         let now = Written {
             view: *view,
             version: plan.version,
             instances: plan.instances,
-            crowds: members.map(|&n| plan.objects[n as usize].number).collect(),
         };
         let before = to.written.take();
         // Instance blocks depend on the view.
@@ -234,16 +226,6 @@ impl Renderer {
                 let last = |copy| last_block(entry, copy as usize, view);
                 to.write_instances(plan.instances + first, &shown, last)?;
             }
-        }
-        if let Some(crowds) = &plan.frame.crowds {
-            let objects = &self.content.objects;
-            let entries: Vec<_> = (now.crowds.iter()).filter_map(|n| objects.at(*n)).collect();
-            let placed = before.is_some_and(|before| {
-                let known = entries.iter().all(|entry| entry.version <= before.version);
-                known && before.crowds == now.crowds
-            });
-            let placements = entries.iter().flat_map(|entry| entry.drawn().placements());
-            to.write_crowds(crowds, (!placed).then_some(placements))?;
         }
         to.written = Some(now);
         if let Some(hierarchy) = hierarchy {

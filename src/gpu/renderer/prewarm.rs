@@ -157,7 +157,6 @@ impl Content {
                     one_object: variant.one_object,
                     one_instance: variant.one_instance,
                     depths: variant.depths,
-                    device_lists: variant.device_lists,
                     ..drawn_by(entry, FALLBACK)
                 };
                 let object = PlanObject {

@@ -90,44 +90,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the dispatches that list the crowds of a prepared slot.
-    ///
-    /// # Safety
-    /// As for [`Renderer::prepare`].
-    pub(super) unsafe fn record_lists(&self, cmd: vk::CommandBuffer, slot: usize) -> Result<()> {
-        let slot = &self.slots[slot];
-        let Some(bound) = &slot.bound else {
-            return Ok(());
-        };
-        let Some(crowds) = &bound.plan.frame.crowds else {
-            return Ok(());
-        };
-        let [first, words] = crowds.zeroed.map(|words| 4 * u64::from(words));
-        let bins = slot.buffer(SlotBuffer::Bins).raw;
-        // The slot may have been prepared in the same commands before.
-        self.wait_for_lists(cmd);
-        // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
-        unsafe { self.device.raw.cmd_fill_buffer(cmd, bins, first, words, 0) };
-        self.wait_for_lists(cmd);
-        let own = &bound.steps[bound.plan.frame.steps.len()..];
-        for (step, own) in crowds.steps.iter().zip(own) {
-            // SAFETY: as the caller promised.
-            unsafe { self.step(cmd, slot, bound, step, own)? };
-            self.wait_for_lists(cmd);
-        }
-        Ok(())
-    }
-
-    /// Records a barrier between two steps that list crowds, or between the last one and what draws
-    /// them.
-    fn wait_for_lists(&self, cmd: vk::CommandBuffer) {
-        use vk::{AccessFlags as A, PipelineStageFlags as S};
-        let from = A::SHADER_WRITE | A::TRANSFER_WRITE;
-        let to = from | A::SHADER_READ | A::INDIRECT_COMMAND_READ;
-        let draw = S::DRAW_INDIRECT | S::VERTEX_SHADER | S::FRAGMENT_SHADER;
-        self.wait(cmd, S::COMPUTE_SHADER | S::TRANSFER | draw, (from, to));
-    }
-
     /// Records a barrier between two dispatches. The second dispatch reads, or writes again, the
     /// results of the first.
     pub(super) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
@@ -188,9 +150,6 @@ impl Renderer {
                     let large_points = self.device.chosen.constants().large_points;
                     let points = step.kind == Kind::Quads && large_points;
                     corners(if points { 1 } else { 6 }, range);
-                }
-                Call::IndirectTiles(word) => {
-                    raw.cmd_draw_indirect(cmd, bins, 4 * u64::from(*word), 1, 0);
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);

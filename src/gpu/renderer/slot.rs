@@ -12,12 +12,8 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::plan::casters::Hierarchy;
-use crate::plan::crowd::{Crowds, placement_words};
 use crate::plan::{Call, DrawPath, FramePlan, View};
-use crate::scene::Placement;
-use crate::shader::{
-    CasterNode, CrowdBlock, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock,
-};
+use crate::shader::{CasterNode, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock};
 use ash::vk;
 use std::sync::Arc;
 
@@ -31,13 +27,10 @@ pub(crate) enum SlotBuffer {
     Tiles,
     Bins,
     Draws,
-    /// Placements of the copies of crowds.
-    Placements,
-    Crowds,
 }
 
 /// The use, the name and the least bytes of each [`SlotBuffer`], in order.
-const BUFFERS: [(Use, &str, usize); 9] = [
+const BUFFERS: [(Use, &str, usize); 7] = [
     (Use::Uniform, "frame block", size_of::<FrameBlock>()),
     (Use::Storage, "objects", OBJECT_STRIDE as usize),
     (Use::Storage, "instances", 0),
@@ -45,8 +38,6 @@ const BUFFERS: [(Use, &str, usize); 9] = [
     (Use::Storage, "tiles", 0),
     (Use::Bins, "bins of tiles", 0),
     (Use::Draws, "draws", 0),
-    (Use::Storage, "placements of crowds", 0),
-    (Use::Storage, "crowds", 0),
 ];
 
 /// The buffers and descriptor sets of one prepared frame.
@@ -78,14 +69,12 @@ pub(crate) struct Written {
     pub version: u64,
     /// [`ViewPlan::instances`].
     pub instances: u32,
-    /// The objects whose placements are in [`SlotBuffer::Placements`].
-    pub crowds: Vec<u32>,
 }
 
 /// A plan with all objects that its commands bind.
 pub(crate) struct BoundPlan {
     pub plan: Arc<ViewPlan>,
-    /// One per step, then one per step that lists crowds.
+    /// One per step.
     pub steps: Vec<BoundStep>,
     pub buffers: TableBuffers,
 }
@@ -202,10 +191,8 @@ impl FrameSlot {
                     all.tiles += groups;
                 }
                 Call::Indirect(..) => all.dispatches += 1,
-                Call::IndirectTiles(_) => all.draws += 1,
             }
         }
-        all.dispatches += frame.crowds.as_ref().map_or(0, |c| c.steps.len() as u32);
         all
     }
 
@@ -247,41 +234,11 @@ impl FrameSlot {
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
-        let crowds = plan.crowds.as_ref();
-        let [tiles, bins] = crowds.map_or([0; 2], |c| [c.tile_words, c.bin_words]);
-        let tiles = tiles.max(plan.words.len() as u32);
-        self.fit(SlotBuffer::Tiles, 4 * u64::from(tiles))?;
-        self.fit(SlotBuffer::Bins, 4 * u64::from(bins.max(plan.bin_words)))?;
+        self.fit(SlotBuffer::Tiles, size_of_val(plan.words.as_slice()) as u64)?;
+        self.fit(SlotBuffer::Bins, 4 * u64::from(plan.bin_words))?;
         self.fit(SlotBuffer::Draws, size_of_val(plan.draws.as_slice()) as u64)?;
         write_slice(self.buffer_mut(SlotBuffer::Tiles), &plan.words)?;
         write_slice(self.buffer_mut(SlotBuffer::Draws), &plan.draws)
-    }
-
-    /// Writes the blocks of a plan's crowds, and the placements of their copies if there are any.
-    pub fn write_crowds<'a>(
-        &mut self,
-        crowds: &Crowds,
-        placements: Option<impl Iterator<Item = &'a Placement>>,
-    ) -> Result<()> {
-        let objects: &[u8] = bytemuck::cast_slice(&crowds.objects);
-        self.fit(
-            SlotBuffer::Crowds,
-            (size_of::<CrowdBlock>() + objects.len()) as u64,
-        )?;
-        self.write(SlotBuffer::Crowds, 0, &crowds.block)?;
-        let to = self.buffer_mut(SlotBuffer::Crowds).mapped()?;
-        to[size_of::<CrowdBlock>()..][..objects.len()].copy_from_slice(objects);
-        let Some(placements) = placements else {
-            return Ok(());
-        };
-        const BYTES: usize = size_of::<[[u32; 2]; 10]>();
-        let bytes = u64::from(crowds.block.counts[0]) * BYTES as u64;
-        self.fit(SlotBuffer::Placements, bytes)?;
-        let to = self.buffer_mut(SlotBuffer::Placements).mapped()?;
-        for (to, placement) in to.chunks_exact_mut(BYTES).zip(placements) {
-            to.copy_from_slice(bytemuck::cast_slice(&placement_words(placement)));
-        }
-        Ok(())
     }
 
     /// Points the sets to their buffers, if those have changed.
@@ -304,12 +261,7 @@ impl FrameSlot {
             Resource::Buffer(self.buffer(SlotBuffer::Objects).raw, object),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![
-            (1, own(SlotBuffer::Tiles)),
-            (6, own(SlotBuffer::Bins)),
-            (7, own(SlotBuffer::Placements)),
-            (8, own(SlotBuffer::Crowds)),
-        ];
+        let mut of_target = vec![(1, own(SlotBuffer::Tiles)), (6, own(SlotBuffer::Bins))];
         if let Some(target) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));

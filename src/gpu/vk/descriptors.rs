@@ -66,8 +66,6 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         PLANE,
         PLANE,
         one(Kind::STORAGE_BUFFER, COMPUTE), // bins of tiles
-        one(Kind::STORAGE_BUFFER, COMPUTE), // placements of crowds
-        one(Kind::STORAGE_BUFFER, COMPUTE), // crowds
     ],
 ];
 

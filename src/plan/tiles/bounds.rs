@@ -110,16 +110,6 @@ impl Projector {
         [tiles(self.high.x), tiles(self.high.y)]
     }
 
-    /// The rows and limits of `CrowdBlock`.
-    pub fn for_crowds(&self) -> ([[f32; 4]; 3], [f32; 4]) {
-        let row = |n: usize, w: f64| self.rows.row(n).extend(w).as_vec4().to_array();
-        let (low, high) = (self.low - self.margin, self.high + self.margin);
-        (
-            [row(0, self.margin), row(1, low.x), row(2, low.y)],
-            [high.x, high.y, 1.0 - self.depth_slack, 0.0].map(|v| v as f32),
-        )
-    }
-
     pub fn axes(&self, copy: &Placement, axis: DVec2) -> ProjectedAxes {
         let turn = DMat3::from_quat(copy.rotation);
         let from_eye = copy.position - self.eye;

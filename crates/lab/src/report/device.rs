@@ -78,7 +78,6 @@ impl Bench for DeviceBench {
             Edges::Rays(count) => Drawer::Rays(self.device.renderer(scene, settings)?, count),
             Edges::Silhouettes => {
                 let plain = MethodSettings {
-                    device_lists: false,
                     edges: Edges::OneRay,
                     ..*settings
                 };

@@ -38,19 +38,8 @@ pub struct FlightTimes {
     pub errors: Vec<(usize, PixelErrors)>,
 }
 
-/// Flies through an army. `None` if the device cannot list the tiles of crowds, as the plan says.
-pub fn fly(
-    device: &MethodDevice,
-    settings: &MethodSettings,
-    plan: &Flight,
-) -> Result<Option<FlightTimes>> {
-    if plan.device_lists && !device.lists_crowds() {
-        return Ok(None);
-    }
-    let settings = &MethodSettings {
-        device_lists: plan.device_lists,
-        ..*settings
-    };
+/// Flies through an army.
+pub fn fly(device: &MethodDevice, settings: &MethodSettings, plan: &Flight) -> Result<FlightTimes> {
     let still = army(plan.copies)?.scene;
     let mut scene = still.clone();
     let at = |scene: &mut Scene, frame: usize| match plan.copies_move {
@@ -90,12 +79,12 @@ pub fn fly(
             pixel_errors(&scene, &exact, &picture(settings.tolerance)?)?,
         ));
     }
-    Ok(Some(FlightTimes {
+    Ok(FlightTimes {
         settings: *settings,
         plan: plan.clone(),
         times,
         errors,
-    }))
+    })
 }
 
 /// Moves all copies up and down, each by a tenth of its height and at a time of its own.
@@ -156,10 +145,9 @@ impl FlightTimes {
     /// A name for its file.
     #[must_use]
     pub fn name(&self) -> String {
-        let lists = ["", "-device-lists"][usize::from(self.plan.device_lists)];
         let moving = ["", "-copies-move"][usize::from(self.plan.copies_move)];
         let stage = self.settings.stage.name();
-        format!("flight-{}-{stage}{lists}{moving}", self.plan.copies)
+        format!("flight-{}-{stage}{moving}", self.plan.copies)
     }
 
     /// Every frame.
@@ -194,9 +182,6 @@ pub fn table(flights: &[FlightTimes], rows: &[&Row]) -> Table {
             ("stage", &|f| f.settings.stage.name().to_owned()),
             ("moves", &|f| {
                 ["camera", "copies"][usize::from(f.plan.copies_move)].to_owned()
-            }),
-            ("lists by", &|f| {
-                ["CPU", "device"][usize::from(f.plan.device_lists)].to_owned()
             }),
             ("frames", &|f| text(f.times.len() as f64)),
             ("median (ms)", &|f| text(f.frame_ms()[0])),

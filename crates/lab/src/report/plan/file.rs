@@ -79,9 +79,6 @@ pub struct Flight {
     /// Each of so many pictures is compared with an exact one.
     #[serde(default = "tenth")]
     pub compared: usize,
-    /// The device lists the tiles of crowds.
-    #[serde(default)]
-    pub device_lists: bool,
     /// All copies move in each frame, and the camera stands still.
     #[serde(default)]
     pub copies_move: bool,
