@@ -270,6 +270,15 @@ impl Drop for Texture<'_> {
 
 /// Records commands, submits them and waits.
 pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
+    recorded(host, record, true);
+}
+
+/// Records commands and drops them.
+pub fn never(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
+    recorded(host, record, false);
+}
+
+fn recorded(host: &Host, record: impl FnOnce(vk::CommandBuffer), submits: bool) {
     let device = &host.device;
     // SAFETY: everything is created here, waited for, then destroyed.
     unsafe {
@@ -284,12 +293,14 @@ pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
             .unwrap();
         record(cmd);
         device.end_command_buffer(cmd).unwrap();
-        let all = [cmd];
-        let submit = vk::SubmitInfo::default().command_buffers(&all);
-        device
-            .queue_submit(host.queue, &[submit], vk::Fence::null())
-            .unwrap();
-        device.queue_wait_idle(host.queue).unwrap();
+        if submits {
+            let all = [cmd];
+            let submit = vk::SubmitInfo::default().command_buffers(&all);
+            device
+                .queue_submit(host.queue, &[submit], vk::Fence::null())
+                .unwrap();
+            device.queue_wait_idle(host.queue).unwrap();
+        }
         device.destroy_command_pool(pool, None);
     }
 }

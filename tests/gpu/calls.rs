@@ -262,6 +262,8 @@ pub struct Mask {
     pub format: Option<vk::Format>,
     /// Another number of invocations in a subgroup; 0 keeps the device's own.
     pub subgroup: u32,
+    /// Bytes of the largest storage buffer, if not 0.
+    pub storage: u32,
 }
 
 static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
@@ -313,6 +315,9 @@ queries! {
         if mask.varyings {
             limits.max_fragment_input_components = 64;
             limits.max_vertex_output_components = 64;
+        }
+        if mask.storage > 0 {
+            limits.max_storage_buffer_range = mask.storage;
         }
     }
     1 properties2: PFN_vkGetPhysicalDeviceProperties2(

@@ -43,6 +43,7 @@ mod offsets;
 #[allow(unsafe_code)]
 mod plans;
 mod proxy_hulls;
+mod ranges;
 mod refusals;
 mod replicas;
 mod rounding;
@@ -57,4 +58,5 @@ mod submissions;
 mod texturing;
 mod tolerance;
 mod trouble;
+mod unsubmitted;
 mod updates;

@@ -16,17 +16,24 @@ layout(location = 4) flat VARYING vec4 ray_dir_y;
 layout(location = 0) flat VARYING vec4 look_rotation;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;
-layout(location = 7) flat VARYING vec4 look_ambient; // w: the instance's index
+layout(location = 7) flat VARYING vec4 look_ambient; // w: bits of the instance's index, with INDEX_BITS
 layout(location = 8) flat VARYING vec4 look_light_0; // xyz: direction to the light; w: red of its colour
 layout(location = 9) flat VARYING vec4 look_light_1; // like look_light_0
 layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both lights
 
+const uint INDEX_BITS = 0x40000000u; // make an index below 2^29 a normal float; a device may flush others to zero
+
 #ifndef VERTEX_GLSL
+uint varying_instance()
+{
+    return floatBitsToUint(look_ambient.w) & ~INDEX_BITS;
+}
+
 // Loads the frame and the object. Fragments call this first.
 void take_over()
 {
     take_frame();
-    take_object(instances[uint(look_ambient.w)]);
+    take_object(instances[varying_instance()]);
     frame.dir_00.w = ray_dir_00.w;
     frame.dir_x.w = ray_dir_x.w;
     frame.dir_y.w = ray_dir_y.w;
@@ -48,7 +55,7 @@ Look varying_look()
     look.light_0.color.rgb = vec3(look_light_0.w, look_colors.xy);
     look.light_1.towards.xyz = look_light_1.xyz;
     look.light_1.color.rgb = vec3(look_light_1.w, look_colors.zw);
-    look.instance = uint(look_ambient.w);
+    look.instance = varying_instance();
     look.position = instances[look.instance].position_sx.xyz;
     return look;
 }

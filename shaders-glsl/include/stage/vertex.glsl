@@ -33,7 +33,7 @@ void hand_over(Instance i, float scale)
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
-    look_ambient = vec4(look.ambient, float(instance_number));
+    look_ambient = vec4(look.ambient, uintBitsToFloat(instance_number | INDEX_BITS));
     look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
     look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);

@@ -16,7 +16,7 @@ use crate::gpu::resources::textures::{ObjectImages, Textures};
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, Variant};
+use crate::shader::{HostLook, InstanceBlock, Variant};
 use objects::Objects;
 use refresh::{Common, Wanted};
 use std::collections::BTreeSet;
@@ -29,8 +29,6 @@ pub(super) struct Content {
     pub textures: Textures,
     pub geometry: Arc<Mutex<Geometry>>,
     pub lighting: Lighting,
-    /// The lights of the last refresh that succeeded.
-    pub lit: Lighting,
     /// Values that were set since the last refresh.
     pub wanted: Wanted,
     pub common: Common,
@@ -62,11 +60,10 @@ impl Content {
         settings: &SearchSettings,
     ) -> Result<Self> {
         Ok(Self {
-            objects: Objects::new(),
+            objects: Objects::new(most_instances(device, &output)),
             textures: Textures::new(device, settings.map_format)?,
             geometry,
             lighting: Lighting::default(),
-            lit: Lighting::default(),
             wanted: Wanted::new(),
             common: Common::default(),
             moved: BTreeSet::new(),
@@ -116,4 +113,12 @@ impl Content {
     pub fn is_parallel(&self) -> bool {
         self.output.planes() == Planes::Depth { parallel: true }
     }
+}
+
+/// Upper limit on instances: their records are in one storage buffer, with those of the last frame
+/// if motion is drawn.
+fn most_instances(device: &Shared, output: &Output) -> u32 {
+    let records = if output.planes().has_motion() { 2 } else { 1 };
+    let bytes = records * size_of::<InstanceBlock>() as u32;
+    device.limits().max_storage_buffer_range / bytes
 }

@@ -20,6 +20,9 @@ const RENDERER_BITS: u32 = 20;
 const GENERATION_BITS: u32 = 20;
 const NUMBER_BITS: u32 = 24;
 
+/// Instances of a new renderer.
+const FIRST_INSTANCES: u32 = 64;
+
 /// Upper limit on entries of a renderer.
 const MOST_NUMBERS: usize = 1 << NUMBER_BITS;
 
@@ -67,6 +70,10 @@ pub(crate) struct Objects {
     /// The number of dead ones in `order`.
     dead: usize,
     instances: RangeAllocator<u32>,
+    /// The number of copies of all objects.
+    copies: u32,
+    /// Upper limit on instances.
+    most_instances: u32,
 }
 
 /// An entry, and the last object that used it.
@@ -76,8 +83,8 @@ struct Numbered {
 }
 
 impl Objects {
-    /// No objects, for a new renderer.
-    pub fn new() -> Self {
+    /// No objects, for a new renderer. `most_instances`: limit of the device, at least 64.
+    pub fn new(most_instances: u32) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         Self {
             renderer: COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1,
@@ -85,7 +92,9 @@ impl Objects {
             free: Vec::new(),
             order: Vec::new(),
             dead: 0,
-            instances: RangeAllocator::new(0..64),
+            instances: RangeAllocator::new(0..FIRST_INSTANCES),
+            copies: 0,
+            most_instances,
         }
     }
 
@@ -144,7 +153,7 @@ impl Objects {
             let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
-        let instances = self.allocate(object.placements().len())?;
+        let instances = self.allocate(object.placements().len(), version)?;
         let number = self.free.pop().unwrap_or_else(|| {
             let number = self.numbered.len() as u32;
             let id = ObjectId::first(self.renderer, number);
@@ -159,12 +168,13 @@ impl Objects {
 
     pub fn remove(&mut self, id: ObjectId) {
         let numbered = &mut self.numbered[id.number() as usize];
-        if let Some(entry) = numbered.entry.take() {
-            self.instances.free_range(entry.instances);
-        }
+        let entry = numbered.entry.take();
         if let Some(next) = id.next() {
             numbered.id = next;
             self.free.push(id.number());
+        }
+        if let Some(entry) = entry {
+            self.free_instances(entry.instances);
         }
         self.dead += 1;
         if self.dead > self.order.len() / 2 {
@@ -174,26 +184,83 @@ impl Objects {
         }
     }
 
-    fn allocate(&mut self, count: usize) -> Result<Range<u32>> {
-        let many = || Error::new(ErrorKind::TooLarge, "more than 2^31 instances");
-        let count = u32::try_from(count).map_err(|_| many())?;
-        if let Ok(range) = self.instances.allocate_range(count) {
-            return Ok(range);
-        }
+    /// A free range of instances. Ranges of other objects move if there is room, but not in one
+    /// piece; they get the version `version` then.
+    fn allocate(&mut self, count: usize, version: u64) -> Result<Range<u32>> {
+        let most = self.most_instances;
+        let all = u32::try_from(count)
+            .ok()
+            .and_then(|n| self.copies.checked_add(n));
+        let Some(all) = all.filter(|all| *all <= most) else {
+            let message = format!(
+                "{count} copies beside {} others; the device takes {most} at once: draw fewer",
+                self.copies
+            );
+            return Err(Error::new(ErrorKind::TooLarge, message));
+        };
+        let count = all - self.copies;
         let end = self.instances();
-        let bigger = end.checked_add(end.max(count)).filter(|e| *e < 1 << 31);
-        self.instances.grow_to(bigger.ok_or_else(many)?);
-        self.instances.allocate_range(count).map_err(|_| many())
+        let mut range = self.instances.allocate_range(count);
+        if range.is_err() && end < most {
+            self.instances
+                .grow_to(most.min(end.saturating_add(end.max(count))));
+            range = self.instances.allocate_range(count);
+        }
+        if range.is_err() {
+            self.compact(most, version);
+            range = self.instances.allocate_range(count);
+        }
+        self.copies = all;
+        let none = |_| Error::new(ErrorKind::Other, "instances have gaps that no copy fits in");
+        range.map_err(none)
+    }
+
+    fn free_instances(&mut self, range: Range<u32>) {
+        self.copies -= range.len() as u32;
+        self.instances.free_range(range);
+    }
+
+    /// Gives back the memory of instances if few of them are left. Returns true if ranges moved,
+    /// which then have the version `version`.
+    pub fn shrink(&mut self, version: u64) -> bool {
+        let wanted = self.copies.saturating_mul(2).max(FIRST_INSTANCES);
+        let shrinks = self.instances() / 8 >= wanted;
+        if shrinks {
+            self.compact(wanted, version);
+        }
+        shrinks
+    }
+
+    /// Moves all ranges to the front of `room` instances.
+    fn compact(&mut self, room: u32, version: u64) {
+        self.instances = RangeAllocator::new(0..room);
+        let entries = self.numbered.iter_mut().filter_map(|n| n.entry.as_mut());
+        for entry in entries.filter(|entry| !entry.instances.is_empty()) {
+            // All ranges fit, one after the other.
+            if let Ok(range) = self.instances.allocate_range(entry.instances.len() as u32) {
+                (entry.instances, entry.version) = (range, version);
+            }
+        }
     }
 
     /// Gives an object another range of instances.
-    pub fn resize(&mut self, number: u32, count: usize) -> Result<()> {
-        let new = self.allocate(count)?;
+    pub fn resize(&mut self, number: u32, count: usize, version: u64) -> Result<()> {
+        let Some(entry) = self.at_mut(number) else {
+            return Ok(());
+        };
+        // The old range may be a part of the new one.
+        let old = std::mem::take(&mut entry.instances);
+        let kept = old.len();
+        self.free_instances(old);
+        let new = self.allocate(count, version);
+        let (range, result) = match new {
+            Ok(range) => (range, Ok(())),
+            Err(error) => (self.allocate(kept, version)?, Err(error)),
+        };
         if let Some(entry) = self.at_mut(number) {
-            let old = std::mem::replace(&mut entry.instances, new);
-            self.instances.free_range(old);
+            (entry.instances, entry.version) = (range, version);
         }
-        Ok(())
+        result
     }
 }
 
@@ -247,8 +314,8 @@ impl Content {
     /// Gives an object room for exactly this many copies.
     pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
         if self.entry(id)?.instances.len() != count {
-            self.objects.resize(id.number(), count)?;
             self.change(id)?;
+            self.objects.resize(id.number(), count, self.version)?;
         }
         Ok(())
     }
@@ -274,7 +341,7 @@ mod tests {
         assert!(second > first && ObjectId::from_bits(second.to_bits()) == second);
         let last = ObjectId(u64::MAX);
         assert_eq!((last.number(), last.next()), (number, None));
-        assert_ne!(ObjectId::first(Objects::new().renderer, 0).to_bits(), 0);
-        assert_ne!(Objects::new().renderer, Objects::new().renderer);
+        assert_ne!(ObjectId::first(Objects::new(64).renderer, 0).to_bits(), 0);
+        assert_ne!(Objects::new(64).renderer, Objects::new(64).renderer);
     }
 }

@@ -36,37 +36,26 @@ pub(in crate::gpu) struct Common {
 }
 
 impl Content {
-    /// Applies the values that were added and set since the last call. After an error, objects
-    /// added since that call are left out until they are set again. Lights and all other values but
-    /// placements and copies are again those of that call.
+    /// Applies the values that were added and set since the last call that succeeded, all or none.
+    /// After an error they stay wanted, and the next call tries them again.
     pub fn refresh(&mut self) -> Result<()> {
         if self.wanted.is_empty() {
             return Ok(());
         }
         let mut wanted = std::mem::take(&mut self.wanted);
         let before = self.common.clone();
-        let result = self.make_all(&mut wanted);
-        if result.is_ok() {
-            self.lit.clone_from(&self.lighting);
-        } else {
-            self.lighting.clone_from(&self.lit);
-            self.common = before;
+        if let Err(error) = self.make_all(&mut wanted) {
+            (self.wanted, self.common) = (wanted, before);
+            return Err(error);
         }
         self.version += 1;
         for (number, values) in wanted {
-            let Some(entry) = self.objects.at_mut(number) else {
-                continue;
-            };
-            entry.version = self.version;
-            if result.is_ok() {
+            if let Some(entry) = self.objects.at_mut(number) {
+                entry.version = self.version;
                 entry.values = values;
             }
-            let count = entry.values.object.placements().len();
-            if entry.instances.len() != count {
-                self.objects.resize(number, count)?;
-            }
         }
-        result
+        Ok(())
     }
 
     /// Makes the resources of all values that are wanted. Adds the values of all other objects if

@@ -64,6 +64,9 @@ impl Content {
     /// the view's slot, is of this view and version.
     pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
         self.refresh()?;
+        if self.objects.shrink(self.version + 1) {
+            self.version += 1;
+        }
         let same = |p: &&Arc<ViewPlan>| p.version == self.version && p.view == *view;
         let mut plans = self.plan.iter().chain(known);
         if let Some(plan) = plans.find(same).cloned() {

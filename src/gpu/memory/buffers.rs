@@ -3,7 +3,8 @@
 //! | use | the host | the device | memory |
 //! |---|---|---|---|
 //! | [`Bins`](Use::Bins) | never touches it | writes and reads it | of the device |
-//! | [`Upload`](Use::Upload) | writes it once | copies from it once | of the host |
+//! | [`Upload`](Use::Upload) | writes it once | copies from it | of the host |
+//! | [`Mark`](Use::Mark) | reads it every frame | writes it | of the host |
 //! | others | writes it every frame | reads it | of the device, seen by the host |
 //!
 //! Device memory replaces host memory, and the reverse, on a device that has no other. Memory that
@@ -151,8 +152,10 @@ pub(crate) enum Use {
     Indices,
     /// Bins of tiles, which the device fills and counts.
     Bins,
-    /// Bytes that are copied to the device once.
+    /// Bytes that are copied to the device.
     Upload,
+    /// A word that commands write, by which the host learns that they have run.
+    Mark,
 }
 
 impl Use {
@@ -164,12 +167,14 @@ impl Use {
             Self::Indices => B::INDEX_BUFFER,
             Self::Bins => B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST,
             Self::Upload => B::TRANSFER_SRC,
+            Self::Mark => B::TRANSFER_DST,
         }
     }
 
     fn location(self) -> MemoryLocation {
         match self {
             Self::Bins => MemoryLocation::GpuOnly,
+            Self::Mark => MemoryLocation::GpuToCpu,
             _ => MemoryLocation::CpuToGpu,
         }
     }

@@ -1,5 +1,6 @@
 //! Images with their memory, and uploads to them: bytes are written to staging buffers at once, and
-//! copied by the next commands that are prepared.
+//! copied by every frame that is prepared until one of these frames has run. A host may drop a
+//! prepared frame, and the library does not see submissions.
 
 use super::buffers::{Buffer, Use};
 use super::{allocate, bound, free};
@@ -11,6 +12,7 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The parameters of an image; always 2D, one layer.
 #[derive(Clone, Copy, Debug)]
@@ -136,9 +138,9 @@ fn extent(width: u32, height: u32) -> vk::Extent3D {
     }
 }
 
-/// Copies that wait for a renderer's commands.
+/// Copies of a renderer that no frame is known to have run.
 pub(crate) struct Uploads {
-    waiting: Vec<Upload>,
+    waiting: Vec<Arc<Upload>>,
     device: Arc<Shared>,
 }
 
@@ -147,6 +149,47 @@ pub(crate) struct Upload {
     staging: Buffer,
     image: Arc<Image>,
     regions: Vec<vk::BufferImageCopy>,
+    has_run: AtomicBool,
+}
+
+/// The copies in the commands of a slot's frames. They live until those commands have run.
+#[derive(Default)]
+pub(crate) struct RecordedUploads(Vec<RecordedUpload>);
+
+struct RecordedUpload {
+    upload: Arc<Upload>,
+    /// Numbers of the first and last frame of the slot whose commands have the copy. All frames
+    /// between have it too.
+    frames: [u64; 2],
+}
+
+impl RecordedUploads {
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Notes that frame `frame` of the slot has run. Earlier frames have run, too, or never will:
+    /// frames are submitted in the order in which they were prepared.
+    pub fn run(&mut self, frame: u64) {
+        self.0.retain(|one| {
+            let [first, last] = one.frames;
+            if first <= frame && frame <= last {
+                one.upload.has_run.store(true, Ordering::Relaxed);
+            }
+            frame < last
+        });
+    }
+
+    fn add(&mut self, upload: &Arc<Upload>, frame: u64) {
+        let same = |one: &&mut RecordedUpload| Arc::ptr_eq(&one.upload, upload);
+        match self.0.iter_mut().find(same) {
+            Some(one) => one.frames[1] = frame,
+            None => self.0.push(RecordedUpload {
+                upload: upload.clone(),
+                frames: [frame; 2],
+            }),
+        }
+    }
 }
 
 impl Uploads {
@@ -200,20 +243,26 @@ impl Uploads {
             regions.push(region);
             at += bytes.len().next_multiple_of(16);
         }
-        self.waiting.push(Upload {
+        self.waiting.push(Arc::new(Upload {
             staging,
             image: image.clone(),
             regions,
-        });
+            has_run: AtomicBool::new(false),
+        }));
         Ok(image)
     }
 
-    /// Records all copies. The returned values must live until the copies have run.
-    #[must_use]
-    pub fn record(&mut self, cmd: vk::CommandBuffer) -> Vec<Upload> {
+    /// Records all copies that no frame is known to have run, for frame `frame` of a slot.
+    pub fn record(&mut self, cmd: vk::CommandBuffer, to: &mut RecordedUploads, frame: u64) {
+        // Nothing reads an image that only its copy holds.
+        let is_due = |upload: &Arc<Upload>| {
+            !upload.has_run.load(Ordering::Relaxed) && Arc::strong_count(&upload.image) > 1
+        };
+        self.waiting.retain(is_due);
         for upload in &self.waiting {
             let image = &upload.image;
-            image.barrier(cmd, Usage::Nothing, Usage::TransferWrite);
+            // An earlier frame that has the copy too may still sample the image.
+            image.barrier(cmd, Usage::Discarded, Usage::TransferWrite);
             // SAFETY: `cmd` is recording, outside a render pass; the regions are within buffer and
             // image.
             unsafe {
@@ -226,7 +275,7 @@ impl Uploads {
                 );
             }
             image.barrier(cmd, Usage::TransferWrite, Usage::Sampled);
+            to.add(upload, frame);
         }
-        std::mem::take(&mut self.waiting)
     }
 }

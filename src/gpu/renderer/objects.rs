@@ -12,7 +12,9 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
-    /// [`TooLarge`](crate::error::ErrorKind::TooLarge) for more than 2^31 instances or 2^24 objects.
+    /// [`TooLarge`](crate::error::ErrorKind::TooLarge) for more copies than the device takes (its
+    /// `maxStorageBufferRange` over [`INSTANCE_BYTES`](crate::gpu::INSTANCE_BYTES), over twice as many
+    /// bytes with motion) or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
         self.content.version += 1;
@@ -193,9 +195,6 @@ impl Renderer {
         if codes(lighting) != codes(&self.content.lighting) {
             self.content.objects.add_drawn(&mut self.content.wanted);
             self.content.version += 1;
-        }
-        if codes(lighting) == codes(&self.content.lit) {
-            self.content.lit = lighting.clone();
         }
         self.content.lighting = lighting.clone();
         Ok(())

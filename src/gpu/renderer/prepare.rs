@@ -56,9 +56,17 @@ impl Renderer {
     /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
     /// changed, and records copies of new textures. Call it outside of a render pass.
     ///
+    /// The frame may be recorded once, several times or never, and its commands may be dropped.
+    /// Copies of a texture are recorded in every prepared frame until one of these frames has run,
+    /// which the slot reads from a word that its commands write. So no texture is lost with a frame
+    /// that was never submitted. A frame in flight beside others repeats their copies.
+    ///
+    /// A failed call records nothing, and the values that were set stay set: the next call tries
+    /// them again.
+    ///
     /// # Errors
     /// [`ErrorKind::Content`] for content that cannot be drawn, with the key `object.N...`; N
-    /// counts objects in order. Everything then stays as it was before that content was set.
+    /// counts objects in order. The error repeats until that content is mended or removed.
     /// [`ErrorKind::Usage`] for a missing slot, a view of the other depth order, or a missing
     /// target. Errors of Vulkan calls.
     ///
@@ -68,8 +76,11 @@ impl Renderer {
     ///
     /// The caller must ensure that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
-    /// * earlier commands that were recorded for `slot` have run, or were never submitted;
-    /// * command buffers of prepared frames are submitted in the order of their `prepare`.
+    /// * commands that [`Renderer::record`] or [`Renderer::record_compute`] recorded for earlier frames
+    ///   of `slot` have run, or will never be submitted. Commands that earlier calls of `prepare`
+    ///   recorded for `slot` have run, or are in `cmd`, or will never be submitted;
+    /// * command buffers of prepared frames are submitted to one queue, in the order of their
+    ///   `prepare`.
     pub unsafe fn prepare(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -80,7 +91,7 @@ impl Renderer {
         let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
         let plan = self.content.plan(view, known)?;
         let to = &mut self.slots[slot];
-        to.staging = self.content.textures.uploads.record(cmd);
+        to.end_uploads()?;
         let stale = |bound: &BoundPlan| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0;
         if to.bound.as_ref().is_none_or(stale) {
             to.bound = None;
@@ -98,6 +109,8 @@ impl Renderer {
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
+        // Last, so that a failed call records nothing.
+        to.record_uploads(cmd, &mut self.content.textures.uploads);
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
             slot,
@@ -176,11 +189,9 @@ impl Renderer {
         let to = &mut self.slots[slot];
         let records = u64::from(plan.instances) * if motion { 2 } else { 1 };
         let bytes = self.content.objects.number_count() as u64 * u64::from(OBJECT_STRIDE);
-        let grown = to.fit(SlotBuffer::Objects, bytes)?
-            | to.fit(
-                SlotBuffer::Instances,
-                records * size_of::<InstanceBlock>() as u64,
-            )?;
+        to.fit(SlotBuffer::Objects, bytes)?;
+        let bytes = records * size_of::<InstanceBlock>() as u64;
+        to.fit(SlotBuffer::Instances, bytes)?;
         to.write_plan(&plan.frame)?;
         let now = Written {
             view: *view,
@@ -189,7 +200,7 @@ impl Renderer {
         };
         let before = to.written.take();
         // Instance blocks depend on the view.
-        let same = |b: &&Written| !grown && (b.view, b.instances) == (now.view, now.instances);
+        let same = |b: &&Written| (b.view, b.instances) == (now.view, now.instances);
         let known = before
             .as_ref()
             .filter(same)

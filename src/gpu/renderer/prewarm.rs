@@ -13,6 +13,7 @@ use crate::plan::levels::CopyLevels;
 use crate::plan::{PlanObject, variants};
 use crate::shader::{Kind, Pushed, Variant};
 use ash::vk;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
@@ -61,7 +62,7 @@ impl Renderer {
         self.content.with_surfaces(view.as_ref())?;
         let reachable = self.content.reachable();
         Ok(Prewarm {
-            wanted: reachable.into_iter().map(|(key, _)| key).collect(),
+            wanted: reachable,
             owner: self.owner.clone(),
             device: self.device.clone(),
         })
@@ -88,6 +89,11 @@ impl Renderer {
         let (slot, _) = self.frame(frame)?;
         let pipelines = &self.device.pipelines;
         let raw = &self.device.raw;
+        // No set of an object: nothing keeps those alive until the commands have run.
+        let blank = &self.content.textures.blank_set;
+        let textures = blank
+            .as_ref()
+            .map_or_else(Default::default, |blank| blank.set);
         let (compute, point) = match self.content.is_compute() {
             true => (true, vk::PipelineBindPoint::COMPUTE),
             false => (false, vk::PipelineBindPoint::GRAPHICS),
@@ -96,7 +102,7 @@ impl Renderer {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for ((variant, kind), textures) in self.content.reachable() {
+        for (variant, kind) in self.content.reachable() {
             if !compute && kind.makes_lists() {
                 continue;
             }
@@ -119,8 +125,8 @@ impl Renderer {
 }
 
 impl Content {
-    /// Pipelines, each with a set of textures that may be bound with it.
-    fn reachable(&self) -> Vec<((Variant, Kind), vk::DescriptorSet)> {
+    /// The pipelines that objects may need.
+    fn reachable(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(), self.settings.solver);
         let planned = self.objects.ordered().filter_map(|(number, entry)| {
             let (boundary, derived) = entry.resources()?;
@@ -135,22 +141,23 @@ impl Content {
                     .collect(),
                 levels: (self.levels_copies(entry, derived)).then(CopyLevels::default),
             };
-            Some((entry, derived.textures.set, planned))
+            Some((entry, planned))
         });
         let planned: Vec<_> = planned.collect();
         let drawn_by =
             |entry: &Entry, solver| self.variant(solver, entry.drawn(), &entry.values.images);
         // The list includes objects that fall back, because their contour may close again.
-        let own = planned.iter().filter_map(|(entry, _, planned)| {
+        let own = planned.iter().filter_map(|(entry, planned)| {
             Some(PlanObject {
                 variant: drawn_by(entry, solver),
                 ..entry.plan_object(planned)?
             })
         });
         let own: Vec<_> = own.collect();
-        let mut all: Vec<((Variant, Kind), vk::DescriptorSet)> = Vec::new();
+        let mut all = Vec::new();
+        let mut known = HashSet::new();
         let objects = own.iter().zip(variants(&own, &with));
-        for ((entry, set, _), (object, variant)) in planned.iter().zip(objects) {
+        for ((entry, _), (object, variant)) in planned.iter().zip(objects) {
             let mut reachable = with.reachable(object, variant);
             if solver.follows_tolerance() {
                 let fallback = Variant {
@@ -170,8 +177,8 @@ impl Content {
                 reachable.extend(general.filter(|(v, _)| v.beveled != 0));
             }
             for key in reachable {
-                if !all.iter().any(|(known, _)| *known == key) {
-                    all.push((key, *set));
+                if known.insert(key) {
+                    all.push(key);
                 }
             }
         }

@@ -70,6 +70,8 @@ impl Renderer {
         let bins = slot.buffer(SlotBuffer::Bins);
         if plan.bin_head_words > 0 {
             let bytes = 4 * u64::from(plan.bin_head_words);
+            // The frame may have been recorded before.
+            bins.barrier(cmd, Usage::TileRead, Usage::TransferWrite);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
             unsafe { self.device.raw.cmd_fill_buffer(cmd, bins.raw, 0, bytes, 0) };
             bins.barrier(cmd, Usage::TransferWrite, Usage::ComputeWrite);

@@ -6,15 +6,17 @@ use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Buffer;
 use crate::gpu::memory::buffers::{Use, write, write_slice};
-use crate::gpu::memory::images::Upload;
+use crate::gpu::memory::images::{RecordedUploads, Uploads};
 use crate::gpu::resources::geometry::TableBuffers;
 use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
+use crate::gpu::vk::usage::Usage;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{Call, DrawPath, FramePlan, View};
 use crate::shader::{CasterNode, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock};
 use ash::vk;
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// A buffer of a slot.
@@ -27,18 +29,26 @@ pub(crate) enum SlotBuffer {
     Tiles,
     Bins,
     Draws,
+    /// The lower word of the number of the last frame with uploads that has run.
+    Mark,
 }
 
 /// The use, the name and the least bytes of each [`SlotBuffer`], in order.
-const BUFFERS: [(Use, &str, usize); 7] = [
+const BUFFERS: [(Use, &str, usize); 8] = [
     (Use::Uniform, "frame block", size_of::<FrameBlock>()),
     (Use::Storage, "objects", OBJECT_STRIDE as usize),
-    (Use::Storage, "instances", 0),
+    (Use::Storage, "instances", size_of::<InstanceBlock>()),
     (Use::Storage, "casters", size_of::<CasterNode>()),
     (Use::Storage, "tiles", 0),
     (Use::Bins, "bins of tiles", 0),
     (Use::Draws, "draws", 0),
+    (Use::Mark, "mark of uploads", 4),
 ];
+
+/// Buffers that are this many times as large as their contents are made anew, with less memory.
+const SPARE: u64 = 8;
+/// Bytes of contents below which buffers keep their memory.
+const LEAST_SPARE: u64 = 1 << 12;
 
 /// The buffers and descriptor sets of one prepared frame.
 pub(crate) struct FrameSlot {
@@ -50,12 +60,11 @@ pub(crate) struct FrameSlot {
     pub bound: Option<BoundPlan>,
     /// `None` if all must be written.
     pub written: Option<Written>,
-    /// Counts the slot's frames. A token of an earlier frame records nothing.
+    /// The number of the slot's frame. A token of an earlier frame records nothing.
     pub serial: u64,
     /// The copies in [`SlotBuffer::Casters`].
     pub hierarchy: Option<Arc<Hierarchy>>,
-    /// Copies that the frame's commands make.
-    pub staging: Vec<Upload>,
+    uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
     pub named: Option<Arc<Buffer>>,
     pool: vk::DescriptorPool,
@@ -118,7 +127,11 @@ pub struct FrameStatistics {
 impl FrameSlot {
     pub fn new(device: &Arc<Shared>) -> Result<Self> {
         let buffer = |&(to, name, bytes): &_| Buffer::for_use(device, to, name, bytes as u64);
-        let buffers = BUFFERS.iter().map(buffer).collect::<Result<_>>()?;
+        let mut buffers: Vec<_> = BUFFERS.iter().map(buffer).collect::<Result<_>>()?;
+        // No frame has run yet.
+        write(&mut buffers[SlotBuffer::Mark as usize], 0, &0u32)?;
+        let instance = InstanceBlock::zeroed();
+        write(&mut buffers[SlotBuffer::Instances as usize], 0, &instance)?;
         let layouts = &device.pipelines.set_layouts;
         let sets = [FRAME_SET, TARGET_SET];
         let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
@@ -130,7 +143,7 @@ impl FrameSlot {
             written: None,
             serial: 0,
             hierarchy: None,
-            staging: Vec::new(),
+            uploads: RecordedUploads::default(),
             named: None,
             pool,
             device: device.clone(),
@@ -145,11 +158,13 @@ impl FrameSlot {
         &mut self.buffers[buffer as usize]
     }
 
-    /// Makes room for this many bytes. Returns true if the buffer is another one, without contents.
-    /// The caller must ensure that no frame reads the buffer.
-    pub fn fit(&mut self, buffer: SlotBuffer, bytes: u64) -> Result<bool> {
-        if self.buffer(buffer).bytes >= bytes {
-            return Ok(false);
+    /// Makes room for this many bytes, and gives back memory that is needed no more. The
+    /// buffer may be another one then, without contents. The caller must ensure that no frame reads
+    /// it.
+    pub fn fit(&mut self, buffer: SlotBuffer, bytes: u64) -> Result<()> {
+        let room = self.buffer(buffer).bytes;
+        if room >= bytes && room <= SPARE * bytes.max(LEAST_SPARE) {
+            return Ok(());
         }
         // Half as much again to spare, because moving objects grow buffers in small steps.
         let limit = u64::from(self.device.limits().max_storage_buffer_range);
@@ -157,7 +172,42 @@ impl FrameSlot {
         let (to, name, _) = BUFFERS[buffer as usize];
         *self.buffer_mut(buffer) = Buffer::for_use(&self.device, to, name, bytes)?;
         self.named = None;
-        Ok(true)
+        if matches!(buffer, SlotBuffer::Instances) {
+            self.written = None;
+            // Pipelines that are warmed up read an instance, though they draw no pixel.
+            self.write(buffer, 0, &InstanceBlock::zeroed())?;
+        }
+        Ok(())
+    }
+
+    /// Drops uploads whose commands have run, by the mark that those commands left.
+    pub fn end_uploads(&mut self) -> Result<()> {
+        if self.uploads.is_empty() {
+            return Ok(());
+        }
+        let serial = self.serial;
+        let mark: u32 =
+            bytemuck::pod_read_unaligned(&self.buffer_mut(SlotBuffer::Mark).mapped()?[..4]);
+        #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
+        let behind = (serial as u32).wrapping_sub(mark);
+        self.uploads.run(serial.saturating_sub(u64::from(behind)));
+        Ok(())
+    }
+
+    /// Records the uploads that wait, and a mark after them, into the commands of frame `serial`.
+    pub fn record_uploads(&mut self, cmd: vk::CommandBuffer, waiting: &mut Uploads) {
+        waiting.record(cmd, &mut self.uploads, self.serial);
+        if self.uploads.is_empty() {
+            return;
+        }
+        let mark = self.buffer(SlotBuffer::Mark);
+        // An earlier frame of these commands may have written the mark.
+        mark.barrier(cmd, Usage::TransferWrite, Usage::TransferWrite);
+        #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
+        let word = self.serial as u32;
+        // SAFETY: `cmd` is recording outside of a pass, and the buffer holds the word.
+        unsafe { self.device.raw.cmd_fill_buffer(cmd, mark.raw, 0, 4, word) };
+        mark.barrier(cmd, Usage::TransferWrite, Usage::HostRead);
     }
 
     /// Bytes of all buffers of the slot.

@@ -117,11 +117,15 @@ impl Geometry {
         Ok(())
     }
 
-    /// Makes at least twice the room. Everything that lives keeps its position.
+    /// Makes twice the room, or as much as the device takes. Everything that lives keeps its
+    /// position.
     fn grow(&mut self, more: u32) -> Result<()> {
         let end = lock(&self.ranges)?.initial_range().end;
-        let wanted = end.checked_mul(2).ok_or_else(full)?;
-        let wanted = wanted.max(end.checked_add(more).ok_or_else(full)?);
+        let limit = self.device.limits().max_storage_buffer_range / 16;
+        let most = limit.saturating_sub(self.device.chosen.constants().own_vectors);
+        let most = most - most % self.unit;
+        let least = end.checked_add(more).filter(|least| *least <= most);
+        let wanted = least.ok_or_else(full)?.max(end.saturating_mul(2)).min(most);
         self.buffers.tables = table_buffer(&self.device, wanted)?;
         lock(&self.ranges)?.grow_to(wanted);
         for surface in self.solids.surfaces()? {

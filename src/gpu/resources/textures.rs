@@ -107,12 +107,15 @@ pub(crate) struct Textures {
     sets: Kept<Key, TextureSet>,
     /// The texture that is bound if an object has none of a kind.
     blank: Arc<Image>,
+    /// A set of blank textures, for pipelines that draw no pixel.
+    pub blank_set: Option<Arc<TextureSet>>,
     pool: Arc<SetPool>,
     /// Copies to new images, which wait for commands.
     pub uploads: Uploads,
 }
 
 /// The textures that an object binds, besides its colour and displacement maps.
+#[derive(Default)]
 pub(crate) struct BoundTextures {
     pub images: ObjectImages,
     pub shape: Option<Arc<ShapeTexture>>,
@@ -124,15 +127,18 @@ impl Textures {
     pub fn new(device: &Arc<Shared>, format: MapFormat) -> Result<Self> {
         let mut uploads = Uploads::new(device);
         let texel = vk::Format::R32_SFLOAT;
-        Ok(Self {
+        let mut all = Self {
             shapes: Kept::default(),
             arcs: Kept::default(),
             coverings: Kept::default(),
             sets: Kept::default(),
             blank: uploads.image("blank", texel, (1, 1), &[&[0; 4]])?,
+            blank_set: None,
             pool: Arc::new(SetPool::new(device, format)?),
             uploads,
-        })
+        };
+        all.blank_set = Some(all.set(&Texturing::default(), BoundTextures::default())?);
+        Ok(all)
     }
 
     /// The shape map of a profile. A new map is baked, and its upload is queued.

@@ -6,8 +6,8 @@ use ash::vk;
 /// A use of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Usage {
-    /// Contents do not matter.
-    Nothing,
+    /// Sampled, or copied into, by earlier commands; contents no longer matter.
+    Discarded,
     /// Copied or cleared into.
     TransferWrite,
     /// Sampled by any shader.
@@ -16,14 +16,17 @@ pub(crate) enum Usage {
     ComputeWrite,
     /// Read by compute shaders and as the groups of an indirect dispatch.
     TileRead,
+    /// Read by the host, after the commands have run.
+    HostRead,
 }
 
 impl Usage {
     pub fn stages(self) -> vk::PipelineStageFlags {
         use vk::PipelineStageFlags as S;
         match self {
-            Self::Nothing => S::TOP_OF_PIPE,
+            Self::Discarded => S::FRAGMENT_SHADER | S::COMPUTE_SHADER | S::TRANSFER,
             Self::TransferWrite => S::TRANSFER,
+            Self::HostRead => S::HOST,
             Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::ComputeWrite => S::COMPUTE_SHADER,
             Self::TileRead => S::COMPUTE_SHADER | S::DRAW_INDIRECT,
@@ -33,8 +36,8 @@ impl Usage {
     pub fn access(self) -> vk::AccessFlags {
         use vk::AccessFlags as A;
         match self {
-            Self::Nothing => A::empty(),
-            Self::TransferWrite => A::TRANSFER_WRITE,
+            Self::Discarded | Self::TransferWrite => A::TRANSFER_WRITE,
+            Self::HostRead => A::HOST_READ,
             Self::Sampled => A::SHADER_READ,
             Self::ComputeWrite => A::SHADER_READ | A::SHADER_WRITE,
             Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
@@ -44,10 +47,10 @@ impl Usage {
     pub fn layout(self) -> vk::ImageLayout {
         use vk::ImageLayout as L;
         match self {
-            Self::Nothing => L::UNDEFINED,
+            Self::Discarded => L::UNDEFINED,
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite | Self::TileRead => L::GENERAL,
+            Self::ComputeWrite | Self::TileRead | Self::HostRead => L::GENERAL,
         }
     }
 }

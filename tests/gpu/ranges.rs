@@ -1,0 +1,195 @@
+//! Ranges of instances and of tables on a device of small storage buffers: everything that fits is
+//! drawn, what does not is refused, and memory is used again.
+#![allow(unsafe_code)]
+
+use crate::calls::{Layer, Mask};
+use crate::common::host::{Checked, HostBuffer, add, borrow_through, once, open, target, view_of};
+use crate::embedding::{options, three};
+use ash::vk;
+use glam::DVec3;
+use revmap::error::ErrorKind;
+use revmap::gpu::{Device, FrameStatistics, INSTANCE_BYTES, Output, Renderer};
+use revmap::profile::Profile;
+use revmap::scene::{Object, Placement, Scene};
+use revmap::settings::{Planes, SearchSettings};
+use std::sync::Arc;
+
+/// Bytes of the device's largest storage buffer.
+const STORAGE: u32 = 1 << 20;
+const MOST: usize = STORAGE as usize / INSTANCE_BYTES as usize;
+
+/// The layer, the host and the device of small buffers.
+fn small() -> (Layer, Checked, Device) {
+    let (layer, host) = (Layer::take(), open());
+    let mask = Mask {
+        storage: STORAGE,
+        ..Mask::default()
+    };
+    let instance = layer.instance(&host.entry, &host.instance, mask);
+    let device = borrow_through(&host, &instance, &host.device).unwrap();
+    (layer, host, device)
+}
+
+fn renderer(device: &Device, scene: &Scene) -> Renderer {
+    let output = Output::Compute(Planes::Color);
+    let mut made = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
+    add(&mut made, scene);
+    made
+}
+
+/// Words of a frame, and its statistics.
+fn draw(host: &Checked, renderer: &mut Renderer) -> revmap::Result<(Vec<u8>, FrameStatistics)> {
+    let pixels = (options().width * options().height) as usize;
+    let words = [vec![1.0f32; pixels], vec![0.0; pixels]].concat();
+    let words = HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
+    // SAFETY: the buffer has two words per pixel, and the next frame gets another one.
+    unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
+    let mut result = Ok(FrameStatistics::default());
+    once(host, |cmd| {
+        // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
+        result = unsafe {
+            renderer
+                .prepare(cmd, 0, &view_of(&three(), &options()))
+                .and_then(|frame| {
+                    renderer.record_compute(cmd, &frame)?;
+                    Ok(frame.statistics())
+                })
+        };
+    });
+    Ok((words.bytes(), result?))
+}
+
+/// Small copies beside the three solids.
+fn copies(count: usize) -> Vec<Placement> {
+    let place = |n: usize| Placement {
+        position: DVec3::new(
+            -0.02 * (n / 100) as f64 - 1.0,
+            0.03 * (n % 100) as f64 - 1.5,
+            0.0,
+        ),
+        scale: DVec3::splat(0.02),
+        ..Placement::default()
+    };
+    (0..count).map(place).collect()
+}
+
+fn crowd(count: usize) -> Object {
+    let mut object = three().objects[1].clone();
+    object.instances = copies(count).into();
+    object
+}
+
+#[test]
+fn a_renderer_recovers_from_too_many_copies() {
+    let (_layer, host, device) = small();
+    let mut drawn = renderer(&device, &three());
+    let (wanted, before) = draw(&host, &mut drawn).unwrap();
+    let refused = |result: revmap::Result<()>| {
+        let error = result.unwrap_err();
+        assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
+        assert!(error.to_string().contains(&MOST.to_string()), "{error}");
+    };
+    refused(drawn.add(crowd(MOST - 2)).map(|_| ()));
+    let id = drawn.add(crowd(9)).unwrap();
+    refused(drawn.set_instances(id, copies(MOST - 2)));
+    refused(drawn.set(id, crowd(4 * MOST)));
+    assert_eq!(drawn.object(id).unwrap().placements().len(), 9);
+    // As many as there is room for, then the picture without them, in as little memory.
+    drawn.set_instances(id, copies(MOST - 3)).unwrap();
+    let (full, most) = draw(&host, &mut drawn).unwrap();
+    assert!(full != wanted && most.slot_bytes > 10 * before.slot_bytes);
+    drawn.set_instances(id, copies(9)).unwrap();
+    let mut fresh = renderer(&device, &three());
+    fresh.add(crowd(9)).unwrap();
+    assert!(draw(&host, &mut drawn).unwrap().0 == draw(&host, &mut fresh).unwrap().0);
+    drawn.remove(id).unwrap();
+    let (found, after) = draw(&host, &mut drawn).unwrap();
+    assert!(found == wanted);
+    assert!(
+        after.slot_bytes < 8 * before.slot_bytes,
+        "{after:?}, {before:?}"
+    );
+}
+
+#[test]
+fn objects_are_added_beside_a_large_crowd() {
+    let (_layer, host, device) = small();
+    let mut drawn = renderer(&device, &three());
+    drawn.add(crowd(MOST - 503)).unwrap();
+    draw(&host, &mut drawn).unwrap();
+    let profile = three().objects[0].profile.clone();
+    let small = |n: usize| {
+        let mut object = Object::new(format!("small {n}"), profile.clone());
+        object.placement = copies(n + 1)[n];
+        object
+    };
+    let ids: Vec<_> = (0..500).map(|n| drawn.add(small(n)).unwrap()).collect();
+    assert!(drawn.add(small(500)).is_err());
+    draw(&host, &mut drawn).unwrap();
+    // Every other one goes: the rest is no single range, and crowds fit nevertheless.
+    for id in ids.iter().step_by(2) {
+        drawn.remove(*id).unwrap();
+    }
+    for _ in 0..5 {
+        drawn.add(crowd(50)).unwrap();
+    }
+    assert!(drawn.add(small(500)).is_err());
+    let mut fresh = renderer(&device, &three());
+    fresh.add(crowd(MOST - 503)).unwrap();
+    for n in (1..500).step_by(2) {
+        fresh.add(small(n)).unwrap();
+    }
+    for _ in 0..5 {
+        fresh.add(crowd(50)).unwrap();
+    }
+    assert!(draw(&host, &mut drawn).unwrap().0 == draw(&host, &mut fresh).unwrap().0);
+}
+
+/// Tables fill nine tenths of the buffer before one is refused, and the place of those that are gone
+/// is used again.
+#[test]
+fn tables_fill_their_buffer() {
+    let (_layer, host, device) = small();
+    let mut drawn = renderer(&device, &three());
+    let other = |n: usize| {
+        let side = 0.2 + 0.3 / (n + 1) as f64;
+        let points = [
+            [0.0, 0.0],
+            [side, 0.2],
+            [0.5 * side, 0.6],
+            [side, 0.8],
+            [0.0, 1.0],
+        ];
+        let mut object = Object::new("other", Arc::new(Profile::polygon(&points, 0.5).unwrap()));
+        object.placement = copies(n + 1)[n];
+        object
+    };
+    let mut ids = Vec::new();
+    let mut refused = None;
+    for n in 0..2000 {
+        ids.push(drawn.add(other(n)).unwrap());
+        if n % 20 == 19
+            && let Err(error) = draw(&host, &mut drawn)
+        {
+            refused = Some(error);
+            break;
+        }
+    }
+    let error = refused.expect("tables beyond the limit");
+    assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
+    // Those of the last frame that was drawn, each alone.
+    let tables: u64 = drawn
+        .object_costs()
+        .iter()
+        .map(|cost| cost.table_bytes)
+        .sum();
+    println!("{} objects, {tables} bytes of tables", ids.len());
+    assert!(tables > u64::from(STORAGE) * 17 / 20, "{tables}");
+    for id in ids.drain(40..) {
+        drawn.remove(id).unwrap();
+    }
+    for n in 0..100 {
+        ids.push(drawn.add(other(3000 + n)).unwrap());
+    }
+    draw(&host, &mut drawn).unwrap();
+}

@@ -1,0 +1,387 @@
+//! What a host may do with a prepared frame: submit it never, prepare its slot twice in one command
+//! buffer, retry after a failure, record it twice. No texture and no object is lost.
+#![allow(unsafe_code)]
+
+use crate::calls::Layer;
+use crate::common::host::{
+    Attachments, COLOR, Host, HostBuffer, add, barrier, borrow, borrow_through, color_pass, never,
+    once, open, renderer_of, target, view_of,
+};
+use crate::embedding::{options, three};
+use ash::vk;
+use revmap::gpu::{Device, ObjectId, Output, Renderer, View};
+use revmap::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
+use revmap::scene::{Object, Scene};
+use revmap::settings::{DrawStage, Planes, SearchSettings, Solver};
+use std::sync::Arc;
+
+const SIZE: u32 = 16;
+const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
+const CLEAR: vk::ClearColorValue = vk::ClearColorValue { float32: [0.0; 4] };
+
+/// The three solids, with a colour map and a displacement map on the first.
+fn textured() -> Scene {
+    let mut scene = three();
+    scene.objects[0] = with_maps(scene.objects[0].clone(), 0);
+    scene
+}
+
+fn with_maps(mut object: Object, seed: u32) -> Object {
+    let pixels = 0..SIZE * SIZE;
+    let texel = |n: u32| [(37 * (n + seed)) as u8, 255 - (91 * n) as u8, 40, 255];
+    let colors = ColorMap::from_texels(SIZE, SIZE, pixels.clone().map(texel).collect());
+    let heights: Vec<f32> = pixels.map(|n| (n * 29 % 64) as f32 / 64.0).collect();
+    let slopes = DisplacementMap::from_heights(SIZE, SIZE, &heights, SlopeFilter::Scharr);
+    object.texturing.color_map = Some(Arc::new(colors.unwrap()));
+    object.texturing.displacement_map = Some(Arc::new(slopes.unwrap()));
+    object.texturing.bump = 0.02;
+    object
+}
+
+fn higher(mut object: Object) -> Object {
+    object.placement.position.z += 0.3;
+    object
+}
+
+/// A renderer with its target: an attachment, or words of compute.
+struct Drawn<'a> {
+    renderer: Renderer,
+    ids: Vec<ObjectId>,
+    view: View,
+    into: Into<'a>,
+    host: &'a Host,
+}
+
+enum Into<'a> {
+    Pass(Box<Attachments<'a>>),
+    Words(HostBuffer<'a>),
+}
+
+impl<'a> Drawn<'a> {
+    /// A renderer of two slots; `live` shows every object by its map, which is a texture too.
+    fn new(host: &'a Host, device: &Device, stage: DrawStage, scene: &Scene) -> Self {
+        let (options, search) = (
+            options(),
+            SearchSettings {
+                solver: Solver::Live,
+                map_rows: Some(64),
+                ..SearchSettings::exact()
+            },
+        );
+        let compute = stage == DrawStage::Compute;
+        let output = match compute {
+            true => Output::Compute(Planes::Color),
+            false => Output::Pass(color_pass()),
+        };
+        let mut renderer = Renderer::new(device, output, &search, 2).unwrap();
+        let ids = add(&mut renderer, scene);
+        let mut drawn = Self {
+            renderer,
+            ids,
+            view: view_of(scene, &options),
+            into: match compute {
+                true => Into::Words(cleared(host)),
+                false => Into::Pass(
+                    Attachments::new(host, options, &[(COLOR, 4)])
+                        .unwrap()
+                        .into(),
+                ),
+            },
+            host,
+        };
+        drawn.clear();
+        drawn
+    }
+
+    /// Prepares a frame in `slot` and records it as often as `times` says.
+    fn record(&mut self, cmd: vk::CommandBuffer, slot: usize, times: usize) -> revmap::Result<()> {
+        // SAFETY: `cmd` is recording, and no frame is in flight.
+        let frame = unsafe { self.renderer.prepare(cmd, slot, &self.view) }?;
+        for _ in 0..times {
+            // SAFETY: the frame was just prepared, and the target has the output's formats.
+            unsafe {
+                match &self.into {
+                    Into::Pass(into) => {
+                        let record = || self.renderer.record(cmd, &frame).unwrap();
+                        into.draw(cmd, &[CLEAR], false, record);
+                        into.copy(cmd);
+                    }
+                    Into::Words(_) => {
+                        self.renderer.record_compute(cmd, &frame)?;
+                        barrier(self.host, cmd, &[]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The picture of a frame that is submitted.
+    fn picture(&mut self, slot: usize) -> Vec<u8> {
+        self.clear();
+        let host = self.host;
+        once(host, |cmd| self.record(cmd, slot, 1).unwrap());
+        self.read()
+    }
+
+    fn clear(&mut self) {
+        if let Into::Words(words) = &mut self.into {
+            *words = cleared(self.host);
+            // SAFETY: the buffer has two words per pixel and lives until the next one is set.
+            unsafe { self.renderer.set_compute_target(target(words)) }.unwrap();
+        }
+    }
+
+    fn read(&self) -> Vec<u8> {
+        match &self.into {
+            Into::Pass(into) => into.color(0),
+            Into::Words(words) => words.bytes(),
+        }
+    }
+}
+
+/// Words of depths, all far, then words of colours, all 0.
+fn cleared(host: &Host) -> HostBuffer<'_> {
+    let pixels = (options().width * options().height) as usize;
+    let words = [vec![1.0f32; pixels], vec![0.0; pixels]].concat();
+    HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap()
+}
+
+/// The number of pixels that differ, of four bytes each.
+fn differ(a: &[u8], b: &[u8]) -> usize {
+    let pairs = a.chunks_exact(4).zip(b.chunks_exact(4));
+    pairs.filter(|(a, b)| a != b).count()
+}
+
+/// Runs a test in both stages with the picture that a fresh renderer draws.
+fn in_both_stages(test: impl Fn(Drawn, &[u8], &str)) {
+    let host = open();
+    let device = borrow(&host);
+    let (scene, plain) = (textured(), three());
+    for stage in STAGES {
+        let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
+        let bare = Drawn::new(&host, &device, stage, &plain).picture(0);
+        let shown = differ(&wanted, &bare);
+        assert!(shown > 3000, "{stage:?}: textures show in {shown} pixels");
+        let drawn = Drawn::new(&host, &device, stage, &scene);
+        test(drawn, &wanted, &format!("{stage:?}"));
+    }
+}
+
+#[test]
+fn frames_that_are_never_submitted_lose_no_texture() {
+    in_both_stages(|mut drawn, wanted, stage| {
+        let host = drawn.host;
+        for dropped in [0, 1, 0, 0] {
+            never(host, |cmd| drawn.record(cmd, dropped, 1).unwrap());
+        }
+        for slot in [1, 0, 1] {
+            let found = drawn.picture(slot);
+            assert_eq!(differ(&found, wanted), 0, "{stage}, slot {slot}");
+        }
+    });
+}
+
+/// A frame is dropped after another one is in flight, and new textures come in between.
+#[test]
+fn a_dropped_frame_between_frames_in_flight_loses_no_texture() {
+    in_both_stages(|mut drawn, wanted, stage| {
+        let host = drawn.host;
+        assert_eq!(differ(&drawn.picture(0), wanted), 0, "{stage}");
+        let ids: Vec<_> = add(
+            &mut drawn.renderer,
+            &Scene {
+                objects: vec![higher(with_maps(three().objects[1].clone(), 5))],
+                ..three()
+            },
+        );
+        never(host, |cmd| drawn.record(cmd, 1, 1).unwrap());
+        let shown = drawn.picture(0);
+        assert!(differ(&shown, wanted) > 500, "{stage}");
+        never(host, |cmd| drawn.record(cmd, 0, 0).unwrap());
+        assert_eq!(differ(&drawn.picture(1), &shown), 0, "{stage}");
+        drawn.renderer.remove(ids[0]).unwrap();
+        assert_eq!(differ(&drawn.picture(0), wanted), 0, "{stage}");
+    });
+}
+
+/// A host plans, changes its mind and plans again before it submits.
+#[test]
+fn a_slot_is_prepared_again_in_the_same_commands() {
+    in_both_stages(|mut drawn, wanted, stage| {
+        let host = drawn.host;
+        drawn.clear();
+        once(host, |cmd| {
+            drawn.record(cmd, 0, 0).unwrap();
+            // Other textures, more objects, then those of before.
+            let more = (0..40).map(|n| with_maps(three().objects[1].clone(), n));
+            let objects = more.collect();
+            let ids = add(&mut drawn.renderer, &Scene { objects, ..three() });
+            drawn.record(cmd, 0, 0).unwrap();
+            for id in ids {
+                drawn.renderer.remove(id).unwrap();
+            }
+            drawn.record(cmd, 0, 1).unwrap();
+        });
+        assert_eq!(differ(&drawn.read(), wanted), 0, "{stage}");
+        for slot in [1, 0] {
+            assert_eq!(
+                differ(&drawn.picture(slot), wanted),
+                0,
+                "{stage}, slot {slot}"
+            );
+        }
+    });
+}
+
+/// Each Vulkan call that fails in the first `prepare` is an error; the retry draws everything. The
+/// commands of the failed call are dropped or submitted.
+#[test]
+fn a_retry_after_a_failed_call_draws_everything() {
+    let (layer, host) = (Layer::take(), open());
+    let raw = layer.device(&host.instance, &host.device);
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
+    let scene = textured();
+    for stage in STAGES {
+        let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
+        let mut failures = 0;
+        for n in 0.. {
+            let mut drawn = Drawn::new(&host, &device, stage, &scene);
+            let mut failed = false;
+            let fail = |cmd| {
+                layer.fail_at(n);
+                failed = drawn.record(cmd, 0, 0).is_err();
+                layer.fail_at(usize::MAX);
+            };
+            match n % 2 {
+                0 => never(&host, fail),
+                _ => once(&host, fail),
+            }
+            // A `set` with equal values changes nothing.
+            let object = drawn.renderer.object(drawn.ids[0]).unwrap().clone();
+            drawn.renderer.set(drawn.ids[0], object).unwrap();
+            for slot in [0, 1] {
+                let found = drawn.picture(slot);
+                assert_eq!(
+                    differ(&found, &wanted),
+                    0,
+                    "{stage:?}, call {n}, slot {slot}"
+                );
+            }
+            if !failed {
+                break;
+            }
+            failures += 1;
+        }
+        assert!(failures > 8, "{stage:?}: {failures}");
+    }
+}
+
+/// The budget of memory refuses a frame. Once there is memory, everything is drawn.
+#[test]
+fn a_retry_after_a_refusal_of_memory_draws_everything() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = textured();
+    for stage in STAGES {
+        let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
+        let mut drawn = Drawn::new(&host, &device, stage, &scene);
+        let mut refused = 0;
+        for more in 0..20 {
+            let used = device.memory_use().total();
+            device.set_memory_budget(Some(used + 2000 * more));
+            never(&host, |cmd| {
+                refused += u32::from(drawn.record(cmd, 0, 0).is_err())
+            });
+        }
+        device.set_memory_budget(None);
+        assert!(refused > 2, "{stage:?}: {refused}");
+        assert_eq!(differ(&drawn.picture(0), &wanted), 0, "{stage:?}");
+    }
+}
+
+/// An object that cannot be drawn is named in each frame until it is mended or removed; the others
+/// are drawn then, without being set again.
+#[test]
+fn one_wrong_object_hides_no_other() {
+    let host = open();
+    let device = borrow(&host);
+    let search = SearchSettings {
+        solver: Solver::Live,
+        map_format: MapFormat::Rgba8,
+        ..SearchSettings::exact()
+    };
+    let output = Output::Compute(Planes::Color);
+    let mut renderer = Renderer::new(&device, output, &search, 1).unwrap();
+    let words = cleared(&host);
+    // SAFETY: the buffer has two words per pixel and outlives the renderer's frames.
+    unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
+    let mut scene = three();
+    scene.objects[2].offset.extend = 0.01;
+    let view = view_of(&scene, &options());
+    let mut wrong = scene.objects[1].clone();
+    wrong.offset.extend = -0.02;
+    let ids = add(
+        &mut renderer,
+        &Scene {
+            objects: vec![scene.objects[0].clone(), wrong, scene.objects[2].clone()],
+            ..scene.clone()
+        },
+    );
+    let shown = |renderer: &mut Renderer| {
+        let mut result = Ok(0);
+        once(&host, |cmd| {
+            // SAFETY: `cmd` is recording, and no frame is in flight.
+            result = unsafe { renderer.prepare(cmd, 0, &view) }.map(|f| f.statistics().objects);
+        });
+        result
+    };
+    for _ in 0..2 {
+        let error = shown(&mut renderer).unwrap_err();
+        assert!(error.to_string().contains("object.1.extend"), "{error}");
+    }
+    renderer.set(ids[1], scene.objects[1].clone()).unwrap();
+    assert_eq!(shown(&mut renderer).unwrap(), 3);
+    let mut wrong = scene.objects[1].clone();
+    wrong.offset.extend = -0.02;
+    let last = renderer.add(wrong).unwrap();
+    let good = renderer.add(scene.objects[0].clone()).unwrap();
+    assert!(shown(&mut renderer).is_err());
+    renderer.remove(last).unwrap();
+    assert_eq!(shown(&mut renderer).unwrap(), 4);
+    assert!(renderer.object(good).is_ok());
+}
+
+/// A frame of compute is recorded twice, with the documented barrier between.
+#[test]
+fn a_frame_is_recorded_twice() {
+    in_both_stages(|mut drawn, wanted, stage| {
+        let host = drawn.host;
+        drawn.clear();
+        once(host, |cmd| drawn.record(cmd, 0, 2).unwrap());
+        assert_eq!(differ(&drawn.read(), wanted), 0, "{stage}");
+    });
+    // Lists of patches are counted in bins, which the second recording clears again.
+    let host = open();
+    let device = borrow(&host);
+    let search = SearchSettings {
+        proxy_min_pixels: 0,
+        ..SearchSettings::exact()
+    };
+    let mut drawn = Drawn::new(&host, &device, DrawStage::Compute, &three());
+    drawn.renderer = renderer_of(
+        &device,
+        Output::Compute(Planes::Color),
+        &search,
+        2,
+        &three(),
+    );
+    if let Into::Words(words) = &drawn.into {
+        // SAFETY: as in `Drawn::new`.
+        unsafe { drawn.renderer.set_compute_target(target(words)) }.unwrap();
+    }
+    let wanted = drawn.picture(0);
+    drawn.clear();
+    once(&host, |cmd| drawn.record(cmd, 1, 2).unwrap());
+    assert_eq!(differ(&drawn.read(), &wanted), 0);
+}
