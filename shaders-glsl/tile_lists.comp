@@ -67,7 +67,7 @@ void main()
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);
-    if (OUTSIDE == 0u) {
+    if (!is_outside()) {
         vec4 wider = beam.width * vec4(-1.0, -1.0, 1.0, 1.0);
         outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
         inner = between_sides(beam.o, beam.v, sides_of_box() - wider);

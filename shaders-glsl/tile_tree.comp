@@ -11,7 +11,7 @@ void main()
     take_one_of_objects(tile_instance);
     begin_tile();
     // Records of the last bin contain the span. Records in tile order do not.
-    vec2 span = reads_bin() && OUTSIDE != 0u ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
+    vec2 span = reads_bin() && is_outside() ? uintBitsToFloat(tile_record.zw) : EVERYWHERE;
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;
     bool found = trace(ray_origin(tile_rays, pixel), ray_direction(tile_rays, pixel), tile_rays.base, span, hit);

@@ -13,10 +13,10 @@ use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
-use crate::plan::{Conditions, PlanObject, shape_of};
-use crate::scene::{Clip, Lighting, Object, Placement, Shadow};
+use crate::plan::{Conditions, LIST_LENGTHS};
+use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, Kind, ShadowCasters, Variant};
+use crate::shader::{HostLook, Kind, ShadowCasters, Speciality, Technique, Variant};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -42,9 +42,13 @@ impl PipelineChoice {
     #[must_use]
     pub fn path(&self) -> String {
         let Self(variant, kind) = self;
-        match kind {
-            Kind::TilePatches => format!("tiles of {} patches", variant.list_length),
+        let path = match kind {
+            Kind::TilePatches => format!("tiles of {} patches", variant.speciality.list_length),
             _ => kind.label().to_string_lossy().replace("revmap ", ""),
+        };
+        match *variant == variant.general_of_kind(*kind) {
+            true => format!("{path}, general"),
+            false => path,
         }
     }
 }
@@ -132,50 +136,45 @@ impl PipelineCompiler {
         };
         let (lighting, object, planes) = (&look.lighting, &look.object, look.planes);
         let (casters, host) = (ShadowCasters::default(), HostLook::default());
-        let variant = Variant::new(&settings, planes, solver, lighting, object, casters, host);
+        let technique = Technique::new(&settings, planes, solver, lighting, object, casters, host);
         let conditions = Conditions {
             compute: stage == DrawStage::Compute,
+            takes_patches: settings.takes_patches(),
             casts: lighting.shadow != Shadow::Off,
             ..self.conditions
         };
         let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
-        let (mut copies, mut all) = (object.clone(), Vec::new());
-        copies.instances = vec![Placement::default(); 2].into();
-        for object in [object, &copies] {
-            let of = PlanObject {
-                object,
-                number: 0,
-                first_instance: 0,
-                variant,
-                textures: 0,
-                surfaces: &[],
-                takes_patches: solver == Solver::Exact,
-                levels: None,
-                shape: shape_of(object, [0.0; 4]),
-                outline: None,
-            };
-            let conditions = Conditions {
-                single_copy: object.placements().len() == 1,
-                ..conditions
-            };
-            let one_object = Variant {
-                one_object: 1,
-                one_instance: u32::from(conditions.single_copy),
-                depths: u32::from(conditions.compares_depths()),
-                ..variant
-            };
-            for (v, kind) in conditions.reachable(&of, one_object) {
-                // Pipelines for other values of the parameters belong to another look. Pipelines
-                // for tables that are too large, and for many solids, do so too.
-                let own = variant.of_kind(kind);
-                let look_of = |v: &Variant| (v.lights, v.beveled, v.external);
-                // A box that may cut leaves some solids whole.
-                let seen = may_cut || Variant { outside: 1, ..v }.of_kind(kind) == v;
-                let choice = PipelineChoice(v, kind);
-                if look_of(&own) == look_of(&v) && seen && !all.contains(&choice) {
+        let mut all = Vec::new();
+        for kind in conditions.kinds(&technique) {
+            let general = Variant::general(technique);
+            let mut add = |variant: Variant| {
+                let choice = PipelineChoice(variant.of_kind(kind), kind);
+                if !all.contains(&choice) {
                     all.push(choice);
                 }
+            };
+            for one_instance in [1, 0] {
+                for outside in if may_cut { [1, 0] } else { [1, 1] } {
+                    for list_length in LIST_LENGTHS {
+                        add(Variant {
+                            speciality: Speciality {
+                                lights: match conditions.casts {
+                                    true => 3,
+                                    false => lighting.lights.len().clamp(1, 3) as u32,
+                                },
+                                list_length,
+                                outside,
+                                own_tables: 1,
+                                one_object: 1,
+                                one_instance,
+                                depths: 1 - one_instance,
+                            },
+                            ..general
+                        });
+                    }
+                }
             }
+            add(general);
         }
         all
     }
@@ -227,7 +226,7 @@ impl PipelineCompiler {
             };
             shaders.push(Executable {
                 shader: stage_name(&text(executable.name_as_c_str())),
-                module: match variant.external {
+                module: match variant.technique.external {
                     Some(external) if !vertices => external.name(&module),
                     _ => module.name(),
                 },

@@ -14,13 +14,13 @@ pub(crate) mod tiles;
 mod view;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, LIST_LENGTHS, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
-use crate::shader::{Kind, Pushed, Variant};
+use crate::shader::{Kind, Pushed, Speciality, Variant};
 use crate::solid::offset_surface::Part;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -48,8 +48,6 @@ pub(crate) struct FramePlan {
     pub copies: Vec<Option<Vec<u32>>>,
     /// For each object, whether each [`Part`] of its surfaces is read.
     pub parts: Vec<[bool; 3]>,
-    /// True if compute compares depths.
-    pub compares_depths: bool,
 }
 
 /// One draw or dispatch, or several draws that one command records.
@@ -59,8 +57,7 @@ pub(crate) struct Step {
     pub phase: u32,
     pub variant: Variant,
     pub kind: Kind,
-    /// Index of the object whose textures are bound and, with `variant.own_tables`, whose tables
-    /// are bound.
+    /// Index of the object whose textures are bound and, with `own_tables`, whose tables are bound.
     pub object: u32,
     pub call: Call,
 }
@@ -93,7 +90,6 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
         paths: paths.iter().map(Path::public).collect(),
         copies: vec![None; objects.len()],
         parts: vec![[false; 3]; objects.len()],
-        compares_depths: with.compares_depths(),
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
@@ -123,21 +119,25 @@ impl Path {
     }
 }
 
-/// The variant of each object. The result depends on whether another object has the same variant
-/// and textures. The view has no influence, so a moving camera needs no other pipelines.
-pub(crate) fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
+/// The variant of each object: its technique, and what its draws promise. A promise may depend on
+/// the other objects of the plan.
+fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
     let mut looks = HashMap::new();
     for of in objects {
-        *looks.entry((of.variant, of.textures)).or_insert(0u32) += 1;
+        *looks.entry((of.technique, of.textures)).or_insert(0u32) += 1;
     }
     let of_look = |of: &PlanObject| {
-        let alone = looks.get(&(of.variant, of.textures)) == Some(&1);
+        let alone = looks.get(&(of.technique, of.textures)) == Some(&1);
         Variant {
-            one_object: u32::from(alone),
-            one_instance: u32::from(alone && of.object.placements().len() == 1),
-            own_tables: u32::from(alone && with.holds_tables(of)),
-            depths: u32::from(with.compares_depths()),
-            ..of.variant
+            technique: of.technique,
+            speciality: Speciality {
+                lights: with.lights,
+                one_object: u32::from(alone),
+                one_instance: u32::from(alone && of.object.placements().len() == 1),
+                own_tables: u32::from(alone && with.holds_tables(of)),
+                depths: u32::from(with.compares_depths()),
+                ..Speciality::GENERAL
+            },
         }
     };
     objects.iter().map(of_look).collect()
@@ -185,12 +185,9 @@ impl FramePlan {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
             let mut add = |kind, outside, draws: Vec<IndexedDraw>| {
-                let outside = u32::from(outside);
-                let variant = Variant {
-                    outside,
-                    ..variants[n]
-                }
-                .of_kind(kind);
+                let mut variant = variants[n];
+                variant.speciality.outside = u32::from(outside);
+                let variant = variant.of_kind(kind);
                 let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
                 layers[layer].draws.extend(draws);
             };

@@ -8,7 +8,7 @@ use crate::scene::Object;
 use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
-use crate::shader::{Kind, Search, Variant};
+use crate::shader::{Kind, Search, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
 use glam::DVec2;
@@ -48,13 +48,11 @@ pub(crate) struct PlanObject<'a> {
     pub number: u32,
     /// The number of its first copy among all instances.
     pub first_instance: u32,
-    pub variant: Variant,
+    pub technique: Technique,
     /// Identifies a set of textures.
     pub textures: usize,
     /// The surfaces that its search walks, from the finest level on.
     pub surfaces: &'a [Arc<OffsetSurface>],
-    /// True if cells and lists may replace the tree.
-    pub takes_patches: bool,
     /// The choice of each copy's level, if copies have levels of their own.
     pub levels: Option<&'a CopyLevels>,
     pub shape: Cylinder,
@@ -87,6 +85,10 @@ pub(crate) struct Conditions {
     pub ray_spread: f64,
     /// Largest distance of a copy's surface on the screen from the finest level, pixels.
     pub level_pixels: f64,
+    /// True if cells and lists of patches may replace the tree.
+    pub takes_patches: bool,
+    /// Upper limit of lights: 1, 2, or 3 for any number.
+    pub lights: u32,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.
@@ -132,13 +134,13 @@ impl Conditions {
     /// outline is not used.
     fn takes_tiles(&self, of: &PlanObject) -> bool {
         let pays = of.object.placements().len() > 1 || self.uses_outline(of);
-        self.compute || (of.variant.is_shaded() && pays)
+        self.compute || (of.technique.is_shaded() && pays)
     }
 
-    /// True if fragments may search the queues of an object's tiles: it has the library's patches, no
+    /// True if fragments may search the queues of tiles by a technique: it has the library's patches, no
     /// replicas and no shadows.
-    pub fn takes_queues(of: &PlanObject) -> bool {
-        of.variant.search == Search::Quadric && of.variant.is_single()
+    pub fn searches_queues(technique: &Technique) -> bool {
+        technique.search == Search::Quadric && technique.is_single()
     }
 
     /// The path of an object in a view: cells, else tiles, else boxes.
@@ -164,7 +166,7 @@ impl Conditions {
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
     /// the box, as published.
     pub fn uses_outline(&self, of: &PlanObject) -> bool {
-        self.occlusion_culling && of.variant.search != Search::External
+        self.occlusion_culling && of.technique.search != Search::External
     }
 
     /// Least pixels of the box per frustum at which cells are cheaper.
@@ -179,19 +181,21 @@ impl Conditions {
 
     /// True if patches may be listed for tiles of an object.
     pub fn permits_lists(&self, of: &PlanObject) -> bool {
-        self.may_permit_lists(of) && of.surface().is_some_and(|s| !s.listed().is_empty())
+        let lists = self.shows_patches(of) && self.compute && self.lists_patches();
+        lists && of.surface().is_some_and(|s| !s.listed().is_empty())
     }
 
-    /// True if patches may be listed for tiles of an object under some offset.
-    fn may_permit_lists(&self, of: &PlanObject) -> bool {
-        self.shows_patches(of) && self.compute && self.subgroup_size >= LEAST_SUBGROUP
+    /// True if the device gains by lists of patches.
+    fn lists_patches(&self) -> bool {
+        self.subgroup_size >= LEAST_SUBGROUP
     }
 
     /// True if pixels may be solved from a few patches. With shadows the search is a small part of
     /// a pixel. Pixels of cells, which are shaded before their depth is tested, take 1.6 to 2.0 of
     /// the time of tiles then, and lists 1.0 to 1.2 of that of the tree.
     fn shows_patches(&self, of: &PlanObject) -> bool {
-        of.takes_patches && !self.casts && of.object.repeat == [1; 3]
+        let patches = self.takes_patches && of.technique.search == Search::Quadric;
+        patches && of.surface().is_some() && !self.casts && of.object.repeat == [1; 3]
     }
 
     /// True if compute compares depths with those that are drawn already.
@@ -216,69 +220,29 @@ impl Conditions {
             .is_some_and(|surface| surface.tables().vectors.len() <= self.own_vectors)
     }
 
-    /// Every pipeline that an object may need while parameters, lights, camera and placements
-    /// change: the pipelines of all its paths. `variant`: the result of
-    /// [`variants`](super::variants) for the object.
-    pub fn reachable(&self, of: &PlanObject, variant: Variant) -> Vec<(Variant, Kind)> {
-        let mut kinds: Vec<(Kind, &[u32])> = Vec::new();
-        let may_cut = proxy::may_be_cut(of.object);
-        let outside: &[u32] = if may_cut { &[0, 1] } else { &[1] };
-        if self.takes_cells(of) {
-            kinds.push((Kind::Cells, outside));
-        }
-        let takes_tiles = self.takes_tiles(of);
-        if takes_tiles && !self.compute {
-            kinds.push((Kind::Quads, &[0, 1]));
-            if Self::takes_queues(of) && variant.one_instance == 0 {
-                kinds.push((Kind::Tiles, &[0, 1]));
-            }
-        } else if takes_tiles {
-            if self.may_permit_lists(of) {
-                kinds.extend([(Kind::TileLists, outside), (Kind::TilePatches, outside)]);
-            }
-            kinds.push((Kind::TileTree, &[0, 1]));
-            if !self.single_copy {
-                kinds.push((Kind::TileCopies, &[0, 1]));
-            }
-        }
-        if !self.compute {
-            kinds.push((Kind::Boxes, &[0, 1]));
-        }
-        let counts: &[u32] = if self.casts { &[3] } else { &[1, 2, 3] };
-        // An offset may move the size of the tables across the limit, and levels may lie apart.
-        let large =
-            (of.surface()).is_some_and(|s| 4 * s.tables().vectors.len() > 3 * self.own_vectors);
-        let large = large || of.levels.is_some();
-        let own: &[u32] = match (variant.one_object == 0, large) {
-            (true, _) => &[0],
-            (false, false) => &[1],
-            (false, true) => &[0, 1],
-        };
-        type Axis<'a> = (&'a [u32], fn(&mut Variant) -> &mut u32);
-        let axes: [Axis; 3] = [
-            (counts, |v| &mut v.lights),
-            (own, |v| &mut v.own_tables),
-            (&LIST_LENGTHS, |v| &mut v.list_length),
+    /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the
+    /// other objects are.
+    pub fn kinds(&self, technique: &Technique) -> Vec<Kind> {
+        let patches = technique.search == Search::Quadric && self.takes_patches;
+        let patches = patches && technique.is_single() && !self.casts;
+        let of_pass = [
+            (Kind::Boxes, true),
+            (Kind::Quads, technique.is_shaded()),
+            (
+                Kind::Tiles,
+                technique.is_shaded() && Self::searches_queues(technique),
+            ),
+            (Kind::Cells, patches && self.passes_cells),
         ];
-        let along = |all: Vec<Variant>, (values, member): Axis| -> Vec<Variant> {
-            let with = |mut v: Variant, value| {
-                *member(&mut v) = value;
-                v
-            };
-            let of = |v| values.iter().map(move |&value| with(v, value));
-            all.into_iter().flat_map(of).collect()
-        };
-        let mut all = Vec::new();
-        for (kind, outside) in kinds {
-            let first: Axis = (outside, |v| &mut v.outside);
-            for v in [first].into_iter().chain(axes).fold(variant.forms(), along) {
-                let key = (v.of_kind(kind), kind);
-                if !all.contains(&key) {
-                    all.push(key);
-                }
-            }
-        }
-        all
+        let of_compute = [
+            (Kind::TileTree, true),
+            (Kind::TileCopies, true),
+            (Kind::TileLists, patches && self.lists_patches()),
+            (Kind::TilePatches, patches && self.lists_patches()),
+        ];
+        let all = if self.compute { of_compute } else { of_pass };
+        let taken = all.into_iter().filter(|(_, is)| *is);
+        taken.map(|(kind, _)| kind).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Selection of the objects that can be drawn by proxies of cells.
 
 use super::view::View;
-use crate::scene::{Clip, Object, Placement};
+use crate::scene::{Object, Placement};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::ProxyHull;
 use glam::{DVec2, DVec3};
@@ -21,12 +21,6 @@ fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
     let [x, y] = object.axis_offset();
     // The part of a coarse level that bulges beyond the box may be seen.
     object.profile.radius - x.abs().max(y.abs()) + surface.slack()
-}
-
-/// True if the box's sides cut the solid, or may cut it under another offset.
-pub(crate) fn may_be_cut(object: &Object) -> bool {
-    let widest = object.profile.outline.bounds().map_or(0.0, |b| b.r_max);
-    object.clip == Clip::Box || object.axis_offset() != [0.0; 2] || widest > object.profile.radius
 }
 
 /// True if rays to all of an object's copies begin outside of the solid, and the box cuts nothing

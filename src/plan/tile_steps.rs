@@ -45,17 +45,15 @@ impl FramePlan {
                 layer_of.push(u32::MAX);
                 continue;
             }
-            let variant = Variant {
-                outside: u32::from(of.is_whole() && visible.is_apart(batch)),
-                ..variants[n]
-            };
+            let mut variant = variants[n];
+            variant.speciality.outside = u32::from(of.is_whole() && visible.is_apart(batch));
             let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
             layer_of.push(layer as u32);
         }
         let queues = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].object.placements().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
-            enough && Conditions::takes_queues(&objects[layer.objects[0] as usize])
+            enough && Conditions::searches_queues(&layer.variant.technique)
         };
         let queues: Vec<bool> = layers.iter().map(queues).collect();
         let mut dealt = visible.deal(with.compute, &layer_of, &queues);
@@ -125,16 +123,15 @@ impl FramePlan {
                     bin,
                     object,
                     instance,
+                    outside: base.speciality.outside,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Groups([groups, 1, 1], pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
                 let call = |bin| Call::Indirect(head + 4 * bin, pushed(bin));
                 for (bin, list_length) in (0..).zip(LIST_LENGTHS) {
-                    let variant = Variant {
-                        list_length,
-                        ..base
-                    };
+                    let mut variant = base;
+                    variant.speciality.list_length = list_length;
                     later.push(step(1, Kind::TilePatches, variant, call(bin)));
                 }
                 later.push(step(1, Kind::TileTree, base, call(TREE_BIN)));
@@ -148,6 +145,7 @@ impl FramePlan {
                     first: records.start,
                     object,
                     instance,
+                    outside: base.speciality.outside,
                     ..Pushed::default()
                 };
                 let call = Call::Groups([records.len() as u32, 1, 1], pushed);

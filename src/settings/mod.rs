@@ -327,6 +327,11 @@ impl From<&SearchSettings> for Settings {
 }
 
 impl SearchSettings {
+    /// True if cells and lists of patches may replace the tree.
+    pub(crate) fn takes_patches(&self) -> bool {
+        self.solver == Solver::Exact && self.proxy_min_pixels != u32::MAX
+    }
+
     /// Fails if the search does not support these settings.
     pub(crate) fn check(&self) -> Result<()> {
         let solver = self.solver;

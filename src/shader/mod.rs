@@ -8,6 +8,7 @@ mod frozen;
 mod module;
 mod outputs;
 mod spirv;
+mod technique;
 mod variant;
 mod view_index;
 
@@ -23,8 +24,9 @@ pub use frozen::frozen;
 pub use module::words;
 pub use outputs::{with_locations, with_outputs_for};
 pub use spirv::{depth_less, instructions, op};
-pub(crate) use variant::is_beveled;
-pub use variant::{HostLook, Kind, ShadowCasters, Variant};
+pub(crate) use technique::is_beveled;
+pub use technique::{HostLook, ShadowCasters, Technique};
+pub use variant::{Kind, Speciality, Variant};
 pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.

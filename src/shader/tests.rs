@@ -9,7 +9,8 @@ use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Output, modules};
 use crate::shader::{
     CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
-    ObjectBlock, ShadowCasters, Variant, depth_less, generated as g, instructions, op, words,
+    ObjectBlock, ShadowCasters, Technique, Variant, depth_less, generated as g, instructions, op,
+    words,
 };
 use crate::surface::{ROWS, Tables};
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +18,7 @@ use std::mem::size_of;
 use std::sync::Arc;
 
 /// The number of modules.
-const MODULES: usize = 33;
+const MODULES: usize = 30;
 
 const NAME: u32 = 5;
 const MEMBER_NAME: u32 = 6;
@@ -85,7 +86,7 @@ fn a_moved_member_is_noticed() {
     assert_layout(&layouts("layouts.spv.z"), "Light", &moved);
 }
 
-fn any(solver: Solver, planes: Planes) -> Variant {
+fn any(solver: Solver, planes: Planes) -> Technique {
     let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
     let object = Object::new("any", Arc::new(profile));
     let settings = SearchSettings {
@@ -93,7 +94,7 @@ fn any(solver: Solver, planes: Planes) -> Variant {
         ..SearchSettings::exact()
     };
     let lighting = Lighting::default();
-    Variant::new(
+    Technique::new(
         &settings,
         planes,
         solver,
@@ -114,7 +115,7 @@ fn constants_of(words: &[u32]) -> BTreeSet<u32> {
 
 #[test]
 fn a_variant_sets_every_specialisation_constant() {
-    let set: BTreeSet<u32> = any(Solver::Exact, Planes::Color)
+    let set: BTreeSet<u32> = Variant::general(any(Solver::Exact, Planes::Color))
         .constants()
         .iter()
         .map(|(id, _)| *id)
@@ -184,7 +185,7 @@ fn reachable_variants_have_modules() {
             let patches = matches!(solver, Solver::Exact);
             let has = |k: &Kind| patches || (k.walks() && *k != Kind::Tiles);
             for kind in kinds.into_iter().filter(has) {
-                let variant = any(solver, planes);
+                let variant = Variant::general(any(solver, planes));
                 assert!(words(&variant.module(kind)).is_some(), "{variant:?}");
                 assert!(variant.vertices(kind).is_none_or(|v| words(&v).is_some()));
             }
@@ -203,7 +204,7 @@ fn depth_is_promised_greater_or_less() {
             .filter(|mode| [op::DEPTH_GREATER, op::DEPTH_LESS].contains(mode))
             .collect()
     };
-    let cells = any(Solver::Exact, Planes::Color).module(Kind::Cells);
+    let cells = Variant::general(any(Solver::Exact, Planes::Color)).module(Kind::Cells);
     let cells = words(&cells).unwrap();
     let less = depth_less(&cells);
     assert_eq!(promises(&cells), [op::DEPTH_GREATER]);
@@ -249,6 +250,6 @@ fn kept_spirv_is_what_the_sources_give() {
     }
     let files = std::fs::read_dir(format!("{}/shaders-spirv", env!("CARGO_MANIFEST_DIR")));
     let files = files.unwrap().count();
-    // Two layouts, and the hash of the sources.
-    assert_eq!(files, modules().len() + 3, "files that nothing reads");
+    // The layouts, and the hash of the sources.
+    assert_eq!(files, modules().len() + 2, "files that nothing reads");
 }

@@ -11,7 +11,7 @@ use revmap_searches::CONE;
 use std::sync::Arc;
 
 /// Two cylinders, one inside the other, each with its own loop: the middle is solid twice.
-fn crossing() -> Profile {
+pub fn crossing() -> Profile {
     let rectangle = |r0: f64, r1: f64, z1: f64| {
         [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
             .map(DVec2::from)

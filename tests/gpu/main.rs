@@ -42,6 +42,7 @@ mod memory_types;
 mod offsets;
 #[allow(unsafe_code)]
 mod plans;
+mod prewarmed;
 mod proxy_hulls;
 mod ranges;
 mod refusals;

@@ -5,7 +5,7 @@
 use crate::calls::Layer;
 use crate::common::host::{
     Attachments, COLOR, Host, HostBuffer, add, barrier, borrow, borrow_through, color_pass, never,
-    once, open, renderer_of, target, view_of,
+    once, open, target, view_of,
 };
 use crate::embedding::{options, three};
 use ash::vk;
@@ -44,15 +44,15 @@ fn higher(mut object: Object) -> Object {
 }
 
 /// A renderer with its target: an attachment, or words of compute.
-struct Drawn<'a> {
-    renderer: Renderer,
-    ids: Vec<ObjectId>,
-    view: View,
+pub struct Drawn<'a> {
+    pub renderer: Renderer,
+    pub ids: Vec<ObjectId>,
+    pub view: View,
     into: Into<'a>,
     host: &'a Host,
 }
 
-enum Into<'a> {
+pub enum Into<'a> {
     Pass(Box<Attachments<'a>>),
     Words(HostBuffer<'a>),
 }
@@ -60,20 +60,29 @@ enum Into<'a> {
 impl<'a> Drawn<'a> {
     /// A renderer of two slots; `live` shows every object by its map, which is a texture too.
     fn new(host: &'a Host, device: &Device, stage: DrawStage, scene: &Scene) -> Self {
-        let (options, search) = (
-            options(),
-            SearchSettings {
-                solver: Solver::Live,
-                map_rows: Some(64),
-                ..SearchSettings::exact()
-            },
-        );
+        let search = SearchSettings {
+            solver: Solver::Live,
+            map_rows: Some(64),
+            ..SearchSettings::exact()
+        };
+        Self::by(host, device, stage, scene, &search)
+    }
+
+    /// A renderer of two slots.
+    pub fn by(
+        host: &'a Host,
+        device: &Device,
+        stage: DrawStage,
+        scene: &Scene,
+        search: &SearchSettings,
+    ) -> Self {
+        let options = options();
         let compute = stage == DrawStage::Compute;
         let output = match compute {
             true => Output::Compute(Planes::Color),
             false => Output::Pass(color_pass()),
         };
-        let mut renderer = Renderer::new(device, output, &search, 2).unwrap();
+        let mut renderer = Renderer::new(device, output, search, 2).unwrap();
         let ids = add(&mut renderer, scene);
         let mut drawn = Self {
             renderer,
@@ -94,7 +103,12 @@ impl<'a> Drawn<'a> {
     }
 
     /// Prepares a frame in `slot` and records it as often as `times` says.
-    fn record(&mut self, cmd: vk::CommandBuffer, slot: usize, times: usize) -> revmap::Result<()> {
+    pub fn record(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        slot: usize,
+        times: usize,
+    ) -> revmap::Result<()> {
         // SAFETY: `cmd` is recording, and no frame is in flight.
         let frame = unsafe { self.renderer.prepare(cmd, slot, &self.view) }?;
         for _ in 0..times {
@@ -117,7 +131,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The picture of a frame that is submitted.
-    fn picture(&mut self, slot: usize) -> Vec<u8> {
+    pub fn picture(&mut self, slot: usize) -> Vec<u8> {
         self.clear();
         let host = self.host;
         once(host, |cmd| self.record(cmd, slot, 1).unwrap());
@@ -148,7 +162,7 @@ fn cleared(host: &Host) -> HostBuffer<'_> {
 }
 
 /// The number of pixels that differ, of four bytes each.
-fn differ(a: &[u8], b: &[u8]) -> usize {
+pub fn differ(a: &[u8], b: &[u8]) -> usize {
     let pairs = a.chunks_exact(4).zip(b.chunks_exact(4));
     pairs.filter(|(a, b)| a != b).count()
 }
@@ -368,18 +382,7 @@ fn a_frame_is_recorded_twice() {
         proxy_min_pixels: 0,
         ..SearchSettings::exact()
     };
-    let mut drawn = Drawn::new(&host, &device, DrawStage::Compute, &three());
-    drawn.renderer = renderer_of(
-        &device,
-        Output::Compute(Planes::Color),
-        &search,
-        2,
-        &three(),
-    );
-    if let Into::Words(words) = &drawn.into {
-        // SAFETY: as in `Drawn::new`.
-        unsafe { drawn.renderer.set_compute_target(target(words)) }.unwrap();
-    }
+    let mut drawn = Drawn::by(&host, &device, DrawStage::Compute, &three(), &search);
     let wanted = drawn.picture(0);
     drawn.clear();
     once(&host, |cmd| drawn.record(cmd, 1, 2).unwrap());

@@ -6,12 +6,12 @@ use crate::common::{
     device, draw, drawn_by, eye, next_frame, placement, scene_of, shapes, updated,
 };
 use revmap::error::ErrorKind;
-use revmap::gpu::{Device, DrawPath};
+use revmap::gpu::DrawPath;
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Object, Scene};
+use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_offscreen::Offscreen;
-use revmap_searches::{CIRCLE, CONE};
+use revmap_searches::CONE;
 
 fn settings(stage: DrawStage) -> Settings {
     Settings {
@@ -217,126 +217,4 @@ fn only_what_has_changed_is_cut() {
         assert!((0..frame.pixels()).all(|i| !frame.hits(i)));
     }
     device().check().unwrap();
-}
-
-/// Parameters, lights and the eye move; every pipeline that they need exists from the start.
-#[test]
-fn no_update_compiles_a_pipeline() {
-    // A separate device, because other tests compile on theirs.
-    let device = Device::open_validated(None).unwrap();
-    type Move = (&'static str, fn(&mut Scene));
-    let moves: [Move; 10] = [
-        ("extend", |s| s.objects[0].offset.extend = 0.01),
-        ("extend more", |s| s.objects[0].offset.extend = 0.02),
-        ("bevel", |s| s.objects[0].offset.bevel = 0.05),
-        ("chamfer", |s| s.objects[0].offset.chamfer = 0.4),
-        ("no bevel", |s| s.objects[0].offset.bevel = 0.0),
-        ("two lights", |s| s.lights.push(s.lights[0])),
-        ("five lights", |s| s.lights = vec![s.lights[0]; 5]),
-        ("no light", |s| s.lights.clear()),
-        ("far", |s| s.camera.eye *= 9.0),
-        ("the eye in the solid", |s| {
-            s.camera.eye = glam::DVec3::new(0.05, 0.0, 0.5);
-        }),
-    ];
-    for stage in STAGES {
-        for solver in [Solver::Exact, Solver::Quadric, Solver::Live, CIRCLE] {
-            let settings = Settings {
-                solver,
-                proxy_min_pixels: 150,
-                ..settings(stage)
-            };
-            let mut scene = vase();
-            let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
-            renderer.prewarm().unwrap();
-            let compiled = device.pipelines_compiled();
-            assert!(compiled > 0);
-            for (name, change) in moves {
-                change(&mut scene);
-                renderer.update(&scene).unwrap();
-                renderer.draw().unwrap();
-                let now = device.pipelines_compiled();
-                assert_eq!(now, compiled, "{stage:?} {solver}: {name}");
-            }
-        }
-    }
-    device.check().unwrap();
-}
-
-/// An offset that moves a solid past the sides of its box compiles no pipeline, although the box
-/// then cuts the solid.
-#[test]
-fn no_cut_compiles_a_pipeline() {
-    let device = Device::open_validated(None).unwrap();
-    for (stage, path) in STAGES.into_iter().zip([DrawPath::Cells, DrawPath::Tiles]) {
-        let mut scene = vase();
-        scene.objects[0].clip = Clip::Box;
-        let settings = Settings {
-            solver: Solver::Exact,
-            proxy_min_pixels: 0,
-            ..settings(stage)
-        };
-        let mut renderer = Offscreen::new(&device, &scene, &settings).unwrap();
-        renderer.prewarm().unwrap();
-        let compiled = device.pipelines_compiled();
-        scene.lights = vec![scene.lights[0]; 5];
-        for extend in [0.0, 0.01, 0.2, 0.3] {
-            scene.objects[0].offset.extend = extend;
-            renderer.update(&scene).unwrap();
-            assert_eq!(renderer.renderer().draw_paths(), [path], "{extend}");
-            renderer.draw().unwrap();
-            let now = device.pipelines_compiled();
-            assert_eq!(now, compiled, "{stage:?}: {extend}");
-        }
-    }
-    device.check().unwrap();
-}
-
-/// Tables near the limit of a uniform buffer have pipelines for sizes below and above it.
-#[test]
-fn pipelines_of_large_tables_are_compiled() {
-    let device = Device::open_validated(None).unwrap();
-    // Larger than any uniform buffer in use: 1,700 patches of two and a half vectors.
-    let groove = |n: u32| [0.3 + 0.002 * f64::from(n % 2), f64::from(n) / 1700.0];
-    let mut points = vec![[0.0, 0.0]];
-    points.extend((0..=1700).map(groove));
-    points.push([0.0, 1.0]);
-    let screw = std::sync::Arc::new(Profile::polygon(&points, 0.5).unwrap());
-    let goblet = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/goblet.toml");
-    let goblet = revmap_files::scene(goblet).unwrap();
-    let mut large = goblet.clone();
-    large.objects = vec![Object::new("screw", screw)];
-    for (scene, least, stage) in STAGES
-        .into_iter()
-        .flat_map(|stage| [(&goblet, 16_384, stage), (&large, 65_536, stage)])
-    {
-        let settings = Settings {
-            solver: Solver::Exact,
-            tolerance: revmap::settings::Tolerance::EXACT,
-            ..settings(stage)
-        };
-        let mut renderer = Offscreen::new(&device, scene, &settings).unwrap();
-        renderer.prewarm().unwrap();
-        let compiled = device.pipelines_compiled();
-        renderer.draw().unwrap();
-        assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}");
-        assert!(renderer.renderer().object_costs()[0].table_bytes > least);
-        // Many copies use other pipelines, which also depend on the size of tables.
-        let mut crowd = scene.clone();
-        crowd.objects[0].instances = (0..70)
-            .map(f64::from)
-            .map(|n| placement([-n, 0.3 * (n % 7.0), 0.0], [0.0; 3], [1.0; 3]))
-            .collect();
-        let mut renderer = Offscreen::new(&device, &crowd, &settings).unwrap();
-        renderer.prewarm().unwrap();
-        let compiled = device.pipelines_compiled();
-        renderer.draw().unwrap();
-        assert_eq!(
-            renderer.renderer().draw_paths(),
-            [DrawPath::Tiles],
-            "{stage:?}"
-        );
-        assert_eq!(device.pipelines_compiled(), compiled, "{stage:?}, copies");
-    }
-    device.check().unwrap();
 }

@@ -1193,11 +1193,17 @@ RevmapResult revmap_renderer_record_compute(struct RevmapRenderer *renderer,
                                             VkCommandBuffer command_buffer,
                                             uint32_t slot);
 
-/// Lists every pipeline that the objects can reach while parameters, lights, placements and the
-/// view change. Other techniques make others necessary: textures where there were none, replicas,
-/// shadows; in compute also more objects or copies than one. Nothing is compiled yet.
+/// Lists the general form of every pipeline that the objects may need. Once these are compiled,
+/// revmap_renderer_prepare() compiles and hides nothing while parameters, lights, masks, placements,
+/// the view, and the numbers of objects and copies change. Other techniques make others necessary:
+/// textures where there were none, replicas, shadows. Nothing is compiled yet.
 RevmapResult revmap_renderer_prewarm(struct RevmapRenderer *renderer,
                                      struct RevmapPrewarm **prewarm);
+
+/// Lists the pipelines that would draw the frames of all slots faster. Once they are compiled, the next
+/// revmap_renderer_prepare() takes them. The list is empty once nothing is faster.
+RevmapResult revmap_renderer_special_forms(struct RevmapRenderer *renderer,
+                                           struct RevmapPrewarm **prewarm);
 
 /// Compiles those that are not compiled yet. The renderer must live until this returns.
 ///

@@ -3,6 +3,7 @@
 use crate::offscreen::Offscreen;
 use ash::vk;
 use revmap::error::Result;
+use revmap::gpu::{PreparedFrame, Renderer, View};
 use std::ops::Range;
 
 /// The times of one frame.
@@ -42,33 +43,16 @@ pub trait Guest {
 }
 
 impl Offscreen {
-    /// Compiles every pipeline that updates may need while no object's technique changes, as
-    /// [`Renderer::prewarm`](revmap::gpu::Renderer::prewarm) does. Then runs each pipeline on
-    /// nothing, because some drivers compile only then: see
-    /// [`Renderer::record_prewarm`](revmap::gpu::Renderer::record_prewarm).
+    /// Compiles the pipelines of the present frame, and keeps compilation out of the times from now
+    /// on: a frame that needs other pipelines is drawn twice, and the second time counts. Some
+    /// drivers, including all software drivers, compile shaders at the first draw.
     ///
     /// # Errors
     /// Errors of Vulkan calls; [`Usage`](revmap::error::ErrorKind::Usage) after an update that failed
     /// half way.
     pub fn prewarm(&mut self) -> Result<()> {
-        self.check_whole()?;
-        self.renderer.prewarm()?.compile()?;
-        let (renderer, target) = (&mut self.renderer, &self.target);
-        let background = self.scene.background;
-        self.commands.run(|cmd| {
-            // SAFETY: as in `draw_rows`.
-            unsafe {
-                let frame = renderer.prepare(cmd, 0, &self.view)?;
-                target.clear(cmd, background, frame.reads_depths());
-                if target.is_compute() {
-                    return renderer.record_prewarm(cmd, &frame);
-                }
-                target.begin(cmd, background, &(0..self.settings.height));
-                renderer.record_prewarm(cmd, &frame)?;
-                self.device.raw().cmd_end_render_pass(cmd);
-            }
-            Ok(())
-        })?;
+        self.warm = true;
+        self.draw()?;
         Ok(())
     }
 
@@ -93,7 +77,11 @@ impl Offscreen {
         while row < size[1] {
             let rows = self.bands.next(row, size);
             row = rows.end;
-            let times = self.draw_rows(guest, &rows)?;
+            let compiled = self.device.pipelines_compiled();
+            let mut times = self.draw_rows(guest, &rows)?;
+            if self.warm && self.device.pipelines_compiled() != compiled {
+                times = self.draw_rows(guest, &rows)?;
+            }
             // The clock of the device leaves out the work of others.
             let ms = times.gpu_ms.unwrap_or(times.frame_ms);
             self.bands.record(&rows, ms, row == size[1]);
@@ -125,7 +113,7 @@ impl Offscreen {
         let compute = target.is_compute();
         let times = commands.run(|cmd| {
             // SAFETY: `cmd` is recording, and the previous submission was waited for.
-            let frame = unsafe { renderer.prepare(cmd, 0, &view)? };
+            let frame = unsafe { prepare(renderer, cmd, &view)? };
             if let (Some(guest), true, false) = (guest, begins, compute) {
                 // SAFETY: `cmd` is recording outside of a pass, and is waited for before this
                 // returns.
@@ -158,4 +146,27 @@ impl Offscreen {
         let gpu_ms = commands.gpu_ms()?;
         Ok(Times { gpu_ms, ..times })
     }
+}
+
+/// Prepares a frame by the special forms of all pipelines, compiled now if they are new. General
+/// forms would only be in the way: off screen nothing waits for a frame.
+///
+/// # Safety
+/// The duties of [`Renderer::prepare`], for the first slot.
+unsafe fn prepare(
+    renderer: &mut Renderer,
+    cmd: vk::CommandBuffer,
+    view: &View,
+) -> Result<PreparedFrame> {
+    renderer.hide_until_compiled(true);
+    // SAFETY: as the caller promised.
+    let mut frame = unsafe { renderer.prepare(cmd, 0, view) };
+    let special = renderer.special_forms();
+    if frame.is_ok() && !special.is_empty() {
+        special.compile()?;
+        // SAFETY: as the caller promised; nothing of the first frame is recorded.
+        frame = unsafe { renderer.prepare(cmd, 0, view) };
+    }
+    renderer.hide_until_compiled(false);
+    frame
 }

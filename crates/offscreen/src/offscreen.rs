@@ -24,6 +24,8 @@ pub struct Offscreen {
     pub(crate) view: View,
     ids: Vec<ObjectId>,
     pub(crate) settings: Settings,
+    /// True if times leave out the compilation of pipelines.
+    pub(crate) warm: bool,
     /// True if a guest draws the scene's objects.
     guests_only: bool,
     /// The solids whose silhouettes were smoothed last.
@@ -133,6 +135,7 @@ impl Offscreen {
             view,
             ids: Vec::new(),
             settings,
+            warm: false,
             guests_only,
             solids: Solids::default(),
             whole: false,

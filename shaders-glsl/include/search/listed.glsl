@@ -64,7 +64,7 @@ bool search_listed(uvec2 pixel, out Hit hit)
 {
     PatchRow row = begin_row(tile_rays, pixel);
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
-    if (OUTSIDE == 0u) {
+    if (!is_outside()) {
         clip_to_sides(row);
     }
     [[unroll]] for (uint k = 0u; k < LIST_LENGTH; ++k) {

@@ -6,7 +6,7 @@ use crate::gpu::resources::textures::{ObjectImages, TextureSet};
 use crate::plan::levels::COPY_LEVELS;
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
-use crate::shader::{ObjectBlock, Variant, is_beveled};
+use crate::shader::{ObjectBlock, Technique, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
 use crate::solid::farthest_corner;
 use crate::solid::offset_surface::{OffsetSurface, Part};
@@ -68,14 +68,12 @@ pub(in crate::gpu) struct Derived {
     pub solver: Solver,
     /// The bound on its steps, 1 if there is none.
     pub steps: u32,
-    /// True if cells and lists of patches may replace the tree.
-    pub takes_patches: bool,
     pub facts: MapFacts,
     pub arc: Option<Arc<ArcTexture>>,
     /// The number of the object's map among the maps that shadows read.
     pub shadow_map: u32,
     pub textures: Arc<TextureSet>,
-    pub variant: Variant,
+    pub technique: Technique,
 }
 
 /// An object's values of the last frame.

@@ -16,7 +16,7 @@ use crate::gpu::resources::textures::{ObjectImages, Textures};
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, InstanceBlock, Variant};
+use crate::shader::{HostLook, InstanceBlock, Technique};
 use objects::Objects;
 use refresh::{Common, Wanted};
 use std::collections::BTreeSet;
@@ -90,15 +90,15 @@ impl Content {
         self.lighting.shadow != Shadow::Off
     }
 
-    /// The variant that draws an object with these images by this search.
-    pub fn variant(&self, solver: Solver, object: &Object, images: &ObjectImages) -> Variant {
+    /// The technique that draws an object with these images by this search.
+    pub fn technique(&self, solver: Solver, object: &Object, images: &ObjectImages) -> Technique {
         let host = HostLook {
             shading: self.host_shades,
             colors: images.color.is_some(),
             relief: images.relief.is_some(),
             heights: images.relief.is_some() && images.heights,
         };
-        Variant::new(
+        Technique::new(
             &self.settings,
             self.output.planes(),
             solver,

@@ -248,12 +248,11 @@ impl Content {
         values.derived = Some(Derived {
             solver,
             steps: steps.max(1),
-            takes_patches: solver == Solver::Exact && self.settings.proxy_min_pixels != u32::MAX,
             facts,
             arc,
             shadow_map: shadow_map.unwrap_or(0),
             textures,
-            variant: self.variant(solver, object, &values.images),
+            technique: self.technique(solver, object, &values.images),
         });
         Ok(())
     }

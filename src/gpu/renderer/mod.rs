@@ -41,7 +41,7 @@ use std::sync::Arc;
 /// begin_rendering(cmd); renderer.record(cmd, &frame)?; .. // inside
 /// ```
 ///
-/// Neither call submits, waits, or compiles a pipeline that was prewarmed. Memory is allocated
+/// Neither call submits or waits, or compiles a pipeline once [`Renderer::prewarm`] was compiled. Memory is allocated
 /// while buffers still grow. A renderer must live until the frames that it recorded are done.
 pub struct Renderer {
     pub(super) content: Content,

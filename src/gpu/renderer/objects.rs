@@ -191,9 +191,11 @@ impl Renderer {
             return Err(Error::new(ErrorKind::Usage, message).at_key("shadow"));
         }
         check_lights(lighting)?;
-        let codes = |l: &Lighting| (l.lights.len(), l.shadow);
-        if codes(lighting) != codes(&self.content.lighting) {
+        let before = &self.content.lighting;
+        if lighting.shadow != before.shadow {
             self.content.objects.add_drawn(&mut self.content.wanted);
+        }
+        if (lighting.shadow, lighting.lights.len()) != (before.shadow, before.lights.len()) {
             self.content.version += 1;
         }
         self.content.lighting = lighting.clone();

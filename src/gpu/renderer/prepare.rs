@@ -14,6 +14,7 @@ use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
 use std::borrow::Cow;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// A frame that was prepared in a slot; the argument of [`Renderer::record`]. Preparing the slot
 /// again makes the frame invalid.
@@ -92,7 +93,11 @@ impl Renderer {
         let plan = self.content.plan(view, known)?;
         let to = &mut self.slots[slot];
         to.end_uploads()?;
-        let stale = |bound: &BoundPlan| !Arc::ptr_eq(&bound.plan, &plan) || bound.hidden() > 0;
+        let compiled = self.device.pipelines.compiled.load(Ordering::Relaxed);
+        let stale = |bound: &BoundPlan| {
+            let may_be_faster = !bound.faster.is_empty() && bound.compiled != compiled;
+            !Arc::ptr_eq(&bound.plan, &plan) || may_be_faster
+        };
         if to.bound.as_ref().is_none_or(stale) {
             to.bound = None;
             let bound = self.bind(&plan)?;
@@ -115,7 +120,7 @@ impl Renderer {
             renderer: self.content.objects.renderer,
             slot,
             serial: to.serial,
-            reads_depths: plan.frame.compares_depths,
+            reads_depths: to.compares_depths(),
             statistics: to.statistics(),
         })
     }
@@ -138,7 +143,8 @@ impl Renderer {
         Err(Error::new(ErrorKind::Usage, message))
     }
 
-    /// Stores the tables of a plan, and finds the bindings of its steps.
+    /// Stores the tables of a plan, and finds the bindings of its steps. A step takes the special
+    /// form of its pipeline if that is compiled, else the general one.
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
@@ -148,7 +154,9 @@ impl Renderer {
         let pipelines = &self.device.pipelines;
         let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
+        let compiled = pipelines.compiled.load(Ordering::Relaxed);
         let mut steps = Vec::with_capacity(frame.steps.len());
+        let mut faster = Vec::new();
         for step in &frame.steps {
             let object = &plan.objects[step.object as usize];
             let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
@@ -157,18 +165,31 @@ impl Renderer {
                 Kind::TileLists | Kind::TilePatches => Part::Patches,
                 _ => Part::Tables,
             };
-            let mut variant = step.variant;
+            let (mut variant, kind) = (step.variant, step.kind);
             let mut begin = 0;
-            if variant.own_tables != 0 {
+            if variant.speciality.own_tables != 0 {
                 let window = object.window(part);
-                variant.own_tables = u32::from(window.len() <= own_vectors);
+                variant.speciality.own_tables = u32::from(window.len() <= own_vectors);
                 begin = window.start;
             }
+            let mut pipeline = pipelines.known(variant, kind, &self.owner)?;
+            if pipeline.is_none() {
+                let general = variant.general_of_kind(kind);
+                pipeline = match self.hides {
+                    true => pipelines.known(general, kind, &self.owner)?,
+                    false => Some(pipelines.get(general, kind, &self.owner)?),
+                };
+                let is_faster = variant != general || pipeline.is_none();
+                if is_faster && !faster.contains(&(variant, kind)) {
+                    faster.push((variant, kind));
+                }
+                variant = general;
+            }
             steps.push(BoundStep {
-                pipeline: match self.hides {
-                    true => pipelines.known(variant, step.kind, &self.owner)?,
-                    false => Some(pipelines.get(variant, step.kind, &self.owner)?),
-                },
+                compares_depths: pipeline.is_some()
+                    && kind.is_compute()
+                    && variant.speciality.depths != 0,
+                pipeline,
                 textures: derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
@@ -176,6 +197,8 @@ impl Renderer {
         Ok(BoundPlan {
             plan: plan.clone(),
             steps,
+            faster,
+            compiled,
             buffers,
         })
     }

@@ -4,13 +4,9 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
-use crate::gpu::content::entry::Entry;
 use crate::gpu::content::refresh::FALLBACK;
-use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::plan::levels::CopyLevels;
-use crate::plan::{PlanObject, variants};
 use crate::shader::{Kind, Pushed, Variant};
 use ash::vk;
 use std::collections::HashSet;
@@ -50,22 +46,37 @@ impl Prewarm {
 }
 
 impl Renderer {
-    /// Returns every pipeline that the objects can reach while parameters, lights, placements and
-    /// the view change. A change of technique makes others necessary: textures where there were
-    /// none, replicas, shadows, a box that cuts, copies of a single object.
+    /// Returns the general form of every pipeline that the objects may need. Once these are compiled,
+    /// [`Renderer::prepare`] compiles nothing and hides nothing while parameters, lights, masks,
+    /// placements, the view, and the numbers of objects and copies change. A change of technique
+    /// makes others necessary: a search, textures where there were none, a projection, replicas,
+    /// shadows.
     ///
     /// # Errors
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
-        let view = self.content.plan.as_ref().map(|p| p.view);
         self.content.refresh()?;
-        self.content.with_surfaces(view.as_ref())?;
-        let reachable = self.content.reachable();
-        Ok(Prewarm {
-            wanted: reachable,
+        Ok(self.forms(self.content.general_forms()))
+    }
+
+    /// Returns the pipelines that would draw the frames of all slots faster: special forms for one
+    /// object, few lights, a solid that nothing cuts. Compile them on any thread at any time; the next
+    /// [`Renderer::prepare`] takes them. It is empty once nothing is faster.
+    #[must_use]
+    pub fn special_forms(&self) -> Prewarm {
+        let bound = self.slots.iter().filter_map(|slot| slot.bound.as_ref());
+        let mut all: Vec<_> = bound.flat_map(|bound| &bound.faster).copied().collect();
+        let mut known = HashSet::new();
+        all.retain(|key| known.insert(*key));
+        self.forms(all)
+    }
+
+    fn forms(&self, wanted: Vec<(Variant, Kind)>) -> Prewarm {
+        Prewarm {
+            wanted,
             owner: self.owner.clone(),
             device: self.device.clone(),
-        })
+        }
     }
 
     /// Records draws of no pixel, or dispatches of no group, with every pipeline of
@@ -102,10 +113,7 @@ impl Renderer {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for (variant, kind) in self.content.reachable() {
-            if !compute && kind.makes_lists() {
-                continue;
-            }
+        for (variant, kind) in self.content.general_forms() {
             let pipeline = pipelines.get(variant, kind, &self.owner)?;
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
@@ -125,60 +133,23 @@ impl Renderer {
 }
 
 impl Content {
-    /// The pipelines that objects may need.
-    fn reachable(&self) -> Vec<(Variant, Kind)> {
+    /// The general form of every pipeline that an object's technique may need, and that its
+    /// replacement may need if its contour does not close. Nothing else has an influence: no view,
+    /// mask, parameter, light, and no number of objects or copies.
+    fn general_forms(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(), self.settings.solver);
-        let planned = self.objects.ordered().filter_map(|(number, entry)| {
-            let (boundary, derived) = entry.resources()?;
-            let planned = PlannedObject {
-                number,
-                level: 0,
-                surfaces: boundary
-                    .levels
-                    .first()
-                    .map(|l| l.1.clone())
-                    .into_iter()
-                    .collect(),
-                levels: (self.levels_copies(entry, derived)).then(CopyLevels::default),
-            };
-            Some((entry, planned))
-        });
-        let planned: Vec<_> = planned.collect();
-        let drawn_by =
-            |entry: &Entry, solver| self.variant(solver, entry.drawn(), &entry.values.images);
-        // The list includes objects that fall back, because their contour may close again.
-        let own = planned.iter().filter_map(|(entry, planned)| {
-            Some(PlanObject {
-                variant: drawn_by(entry, solver),
-                ..entry.plan_object(planned)?
-            })
-        });
-        let own: Vec<_> = own.collect();
-        let mut all = Vec::new();
         let mut known = HashSet::new();
-        let objects = own.iter().zip(variants(&own, &with));
-        for ((entry, _), (object, variant)) in planned.iter().zip(objects) {
-            let mut reachable = with.reachable(object, variant);
-            if solver.follows_tolerance() {
-                let fallback = Variant {
-                    one_object: variant.one_object,
-                    one_instance: variant.one_instance,
-                    depths: variant.depths,
-                    ..drawn_by(entry, FALLBACK)
-                };
-                let object = PlanObject {
-                    variant: fallback,
-                    surfaces: &[],
-                    takes_patches: false,
-                    ..*object
-                };
-                // The fallback has one form only, the general one.
-                let general = with.reachable(&object, fallback).into_iter();
-                reachable.extend(general.filter(|(v, _)| v.beveled != 0));
-            }
-            for key in reachable {
-                if known.insert(key) {
-                    all.push(key);
+        let mut all = Vec::new();
+        for (_, entry) in self.objects.ordered() {
+            let drawn_by = |solver| self.technique(solver, entry.drawn(), &entry.values.images);
+            let mut techniques = drawn_by(solver).forms();
+            techniques.extend(solver.follows_tolerance().then(|| drawn_by(FALLBACK)));
+            for technique in techniques {
+                for kind in with.kinds(&technique) {
+                    let key = (Variant::general(technique).of_kind(kind), kind);
+                    if known.insert(key) {
+                        all.push(key);
+                    }
                 }
             }
         }

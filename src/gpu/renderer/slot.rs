@@ -14,7 +14,9 @@ use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::usage::Usage;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{Call, DrawPath, FramePlan, View};
-use crate::shader::{CasterNode, FrameBlock, InstanceBlock, OBJECT_STRIDE, ObjectBlock};
+use crate::shader::{
+    CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, Variant,
+};
 use ash::vk;
 use bytemuck::Zeroable;
 use std::sync::Arc;
@@ -85,6 +87,10 @@ pub(crate) struct BoundPlan {
     pub plan: Arc<ViewPlan>,
     /// One per step.
     pub steps: Vec<BoundStep>,
+    /// Pipelines that would be faster than those of the steps, or that are missing altogether.
+    pub faster: Vec<(Variant, Kind)>,
+    /// The number of pipelines on the device before those of the steps were found.
+    pub compiled: u64,
     pub buffers: TableBuffers,
 }
 
@@ -100,6 +106,8 @@ impl BoundPlan {
 pub(crate) struct BoundStep {
     /// `None` if it is not compiled yet.
     pub pipeline: Option<vk::Pipeline>,
+    /// True if it compares depths of a compute target.
+    pub compares_depths: bool,
     pub textures: Arc<TextureSet>,
     /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
     /// solid.
@@ -213,6 +221,12 @@ impl FrameSlot {
     /// Bytes of all buffers of the slot.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(|buffer| buffer.bytes).sum()
+    }
+
+    /// True if the frame compares depths of a compute target.
+    pub fn compares_depths(&self) -> bool {
+        let steps = self.bound.iter().flat_map(|bound| &bound.steps);
+        steps.into_iter().any(|step| step.compares_depths)
     }
 
     /// The number of commands and bytes of the slot's frame.

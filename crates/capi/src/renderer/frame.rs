@@ -156,9 +156,10 @@ pub unsafe extern "C" fn revmap_renderer_record_compute(
 pub struct RevmapPrewarm;
 handle!(RevmapPrewarm, "prewarm", Arc<Prewarm>);
 
-/// Lists every pipeline that the objects can reach while parameters, lights, placements and the
-/// view change. Other techniques make others necessary: textures where there were none, replicas,
-/// shadows; in compute also more objects or copies than one. Nothing is compiled yet.
+/// Lists the general form of every pipeline that the objects may need. Once these are compiled,
+/// revmap_renderer_prepare() compiles and hides nothing while parameters, lights, masks, placements,
+/// the view, and the numbers of objects and copies change. Other techniques make others necessary:
+/// textures where there were none, replicas, shadows. Nothing is compiled yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_prewarm(
     renderer: *mut RevmapRenderer,
@@ -166,6 +167,21 @@ pub unsafe extern "C" fn revmap_renderer_prewarm(
 ) -> RevmapResult {
     // SAFETY: the caller's pointer.
     unsafe { create(prewarm, || with(renderer, |r| Ok(r.renderer.prewarm()?))) }
+}
+
+/// Lists the pipelines that would draw the frames of all slots faster. Once they are compiled, the next
+/// revmap_renderer_prepare() takes them. The list is empty once nothing is faster.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn revmap_renderer_special_forms(
+    renderer: *mut RevmapRenderer,
+    prewarm: *mut *mut RevmapPrewarm,
+) -> RevmapResult {
+    // SAFETY: the caller's pointer.
+    unsafe {
+        create(prewarm, || {
+            with(renderer, |r| Ok(r.renderer.special_forms()))
+        })
+    }
 }
 
 /// Compiles those that are not compiled yet. The renderer must live until this returns.

@@ -48,7 +48,7 @@ impl Pipelines {
         if let Some(host) = host.filter(|_| module.entry.shades()) {
             return Ok(host.shading.words(module)?.to_vec());
         }
-        if let (Some(external), Search::External) = (variant.external, module.search)
+        if let (Some(external), Search::External) = (variant.technique.external, module.search)
             && module.entry.searches()
         {
             return external.words(module);

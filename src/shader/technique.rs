@@ -1,0 +1,207 @@
+//! The technique: what an object, its search and an output demand of a pipeline.
+//!
+//! Parameters are data: no value of an offset, a light, a camera or a bound on steps makes another
+//! technique. Textures, replicas, shadows and a bevel under a search on the map do.
+
+use super::catalogue::{Output, Search};
+use super::external::External;
+use super::generated as g;
+use crate::maps::{MapFormat, Projection};
+use crate::scene::{BumpForm, Lighting, Object, Shadow, Texturing};
+use crate::settings::{Planes, SearchSettings, Solver};
+
+/// Properties of the objects that a shadow's ray may meet. The code of the object at which the ray
+/// starts must handle them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShadowCasters {
+    /// An object with replicas.
+    pub repeated: bool,
+    /// An object with a bevel.
+    pub beveled: bool,
+}
+
+/// What a host brings to the look of an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HostLook {
+    /// Its function shades. The function reads texture coordinates, and no light of ours.
+    pub shading: bool,
+    /// Its image has the colours.
+    pub colors: bool,
+    /// Its image has the slopes or the heights.
+    pub relief: bool,
+    /// It has the heights.
+    pub heights: bool,
+}
+
+/// What an object, its search and the output demand. Each technique and [`Kind`](super::Kind) has
+/// one general pipeline, which is right for every view, light and number of objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Technique {
+    /// The search that finds hits.
+    pub search: Search,
+    /// The search of another crate, for [`Search::External`].
+    pub external: Option<External>,
+    /// The stored values of a hit.
+    pub output: Output,
+    /// 1 if the box holds several replicas.
+    pub replicas: u32,
+    /// One of `SHADOW_*`.
+    pub shadow: u32,
+    /// 1 if colours come from a map.
+    pub color_map: u32,
+    /// One of `BUMP_*`.
+    pub bump: u32,
+    /// One of `PROJECTION_*`.
+    pub projection: u32,
+    /// Searches on the map: 1 if there may be a bevel.
+    pub beveled: u32,
+    /// Searches on the map: 1 if that is the papers' texture of unsigned distances.
+    pub rgba8: u32,
+    /// Only depth: 1 if rays are parallel.
+    pub parallel: u32,
+}
+
+/// The form of an object's bumps, `BUMP_*`.
+fn bump_of(texturing: &Texturing, host: HostLook) -> u32 {
+    let form = match texturing.bump_form {
+        BumpForm::SurfaceGradient => g::BUMP_SURFACE_GRADIENT,
+        BumpForm::Papers => g::BUMP_PAPERS,
+    };
+    match (host.relief, host.heights) {
+        (false, _) if texturing.displacement_map.is_none() => g::BUMP_OFF,
+        (_, true) => form | g::BUMP_HEIGHTS,
+        _ => form,
+    }
+}
+
+impl Technique {
+    /// The technique that makes lists of patches.
+    pub const LISTS: Self = Self {
+        search: Search::None,
+        external: None,
+        output: Output::Color,
+        replicas: 0,
+        shadow: g::SHADOW_OFF,
+        color_map: 0,
+        bump: g::BUMP_OFF,
+        projection: g::PROJECTION_CYLINDRICAL,
+        beveled: 0,
+        rgba8: 0,
+        parallel: 0,
+    };
+
+    /// The technique that draws `object` by the search `solver`, which is the search of the settings
+    /// or a replacement for it.
+    #[must_use]
+    pub fn new(
+        settings: &SearchSettings,
+        planes: Planes,
+        solver: Solver,
+        lighting: &Lighting,
+        object: &Object,
+        casters: ShadowCasters,
+        host: HostLook,
+    ) -> Self {
+        let texturing = &object.texturing;
+        let casts = lighting.shadow != Shadow::Off;
+        let replicas = u32::from(object.repeat != [1; 3] || (casts && casters.repeated));
+        let shadow = match lighting.shadow {
+            Shadow::Off => g::SHADOW_OFF,
+            Shadow::Hard => g::SHADOW_HARD,
+            Shadow::Soft => g::SHADOW_SOFT,
+        };
+        let color_map = u32::from(host.colors || texturing.color_map.is_some());
+        let bump = bump_of(texturing, host);
+        let textured = color_map != 0 || bump != g::BUMP_OFF;
+        let (output, parallel) = match planes {
+            Planes::Color => (Output::Color, false),
+            Planes::All => (Output::Planes, false),
+            Planes::List(_) => (Output::List, false),
+            Planes::Depth { parallel } => (Output::Depth, parallel),
+        };
+        let is_beveled = is_beveled(object);
+        // The replacement for another search has only the general form.
+        let replaces = solver == Solver::Live && settings.solver != Solver::Live;
+        let may_bevel = replaces || is_beveled || (casts && casters.beveled);
+        let of_map = |is: bool| u32::from(solver.reads_map() && is);
+        let technique = Self {
+            search: match solver {
+                Solver::Live => Search::Live,
+                Solver::Quadric | Solver::Exact => Search::Quadric,
+                Solver::Other(_) => Search::External,
+            },
+            output,
+            replicas,
+            external: (solver.external())
+                .map(|search| External::new(search, settings, is_beveled, casts)),
+            beveled: of_map(may_bevel),
+            rgba8: of_map(settings.map_format == MapFormat::Rgba8),
+            parallel: u32::from(parallel),
+            ..Self::LISTS
+        };
+        if output == Output::Depth {
+            return technique;
+        }
+        Self {
+            shadow,
+            color_map,
+            bump,
+            projection: match texturing.projection {
+                // No code reads coordinates.
+                _ if !textured && !host.shading && output != Output::Planes => {
+                    g::PROJECTION_CYLINDRICAL
+                }
+                Projection::Planar => g::PROJECTION_PLANAR,
+                Projection::Cylindrical => g::PROJECTION_CYLINDRICAL,
+                Projection::Spherical => g::PROJECTION_SPHERICAL,
+                Projection::Arc => g::PROJECTION_ARC,
+            },
+            ..technique
+        }
+    }
+
+    /// This technique and those that replace it when a bevel is added or removed.
+    #[must_use]
+    pub fn forms(self) -> Vec<Self> {
+        let beveled = 1 - self.beveled;
+        let twin = |external| Self {
+            beveled,
+            external,
+            ..self
+        };
+        let mut all = vec![self];
+        match self.external {
+            _ if self.reads_tables() => {}
+            None => all.push(twin(None)),
+            Some(one) => all.extend(one.forms(beveled != 0).map(|one| twin(Some(one)))),
+        }
+        all
+    }
+
+    /// True if it draws neither replicas nor shadows.
+    pub const fn is_single(&self) -> bool {
+        self.replicas == 0 && self.shadow == g::SHADOW_OFF
+    }
+
+    /// True if its search walks tables.
+    pub fn reads_tables(&self) -> bool {
+        self.search == Search::Quadric || self.external.is_some_and(External::reads_table)
+    }
+
+    /// True if the number of lights makes another pipeline.
+    #[must_use]
+    pub const fn is_lit(&self) -> bool {
+        self.is_shaded() && self.shadow == g::SHADOW_OFF
+    }
+
+    /// True if colours are stored, not only depths.
+    #[must_use]
+    pub const fn is_shaded(&self) -> bool {
+        !matches!(self.output, Output::Depth)
+    }
+}
+
+/// True if an object's steps must allow for a bevel.
+pub(crate) fn is_beveled(object: &Object) -> bool {
+    object.offset.bevel != 0.0 && object.offset.chamfer > 0.0
+}

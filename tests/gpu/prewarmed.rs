@@ -1,0 +1,344 @@
+//! Pipelines compiled beforehand: no frame compiles and no object is hidden, whatever changes but a
+//! technique. General and special forms draw the same bits.
+#![allow(unsafe_code)]
+
+use crate::common::host::{Checked, Host, add, borrow, never, open, view_of};
+use crate::common::ways::STAGES;
+use crate::common::{placement, shapes};
+use crate::embedding::{hundred, options, three};
+use crate::fallback::crossing;
+use crate::unsubmitted::{Drawn, differ};
+use glam::DVec3;
+use revmap::gpu::{Device, FrameStatistics, View};
+use revmap::profile::Profile;
+use revmap::scene::{Clip, Light, Object, Scene, Shadow};
+use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
+use revmap_searches::CIRCLE;
+use std::sync::Arc;
+
+/// A renderer of which every general pipeline is compiled.
+struct Warm<'a> {
+    drawn: Drawn<'a>,
+    device: &'a Device,
+    host: &'a Host,
+    compiled: u64,
+    name: String,
+}
+
+impl<'a> Warm<'a> {
+    fn new(
+        host: &'a Host,
+        device: &'a Device,
+        (stage, search): (DrawStage, &SearchSettings),
+        scene: &Scene,
+    ) -> Self {
+        let mut drawn = Drawn::by(host, device, stage, scene, search);
+        drawn.renderer.prewarm().unwrap().compile().unwrap();
+        drawn.renderer.hide_until_compiled(true);
+        Self {
+            compiled: device.pipelines_compiled(),
+            name: format!("{stage:?}, {}", search.solver),
+            drawn,
+            device,
+            host,
+        }
+    }
+
+    /// Prepares a frame, which must compile nothing and hide nothing. Returns its statistics.
+    #[track_caller]
+    fn frame(&mut self, what: &str) -> FrameStatistics {
+        let (renderer, view) = (&mut self.drawn.renderer, &self.drawn.view);
+        let mut found = FrameStatistics::default();
+        never(self.host, |cmd| {
+            // SAFETY: `cmd` is recording, and no frame is in flight.
+            found = unsafe { renderer.prepare(cmd, 0, view) }
+                .unwrap()
+                .statistics();
+        });
+        assert_eq!(found.hidden, 0, "{}: {what}", self.name);
+        let compiled = self.device.pipelines_compiled();
+        assert_eq!(compiled, self.compiled, "{}: {what}", self.name);
+        found
+    }
+
+    /// Makes objects, lights and the view those of a scene with as many objects.
+    #[track_caller]
+    fn update(&mut self, scene: &Scene, what: &str) -> FrameStatistics {
+        let renderer = &mut self.drawn.renderer;
+        renderer.set_lighting(&scene.lighting()).unwrap();
+        for (id, object) in self.drawn.ids.iter().zip(&scene.objects) {
+            renderer.set(*id, object.clone()).unwrap();
+        }
+        self.drawn.view = view_of(scene, &options());
+        self.frame(what)
+    }
+}
+
+fn exact() -> SearchSettings {
+    SearchSettings::exact()
+}
+
+/// The host and a device of its own: other tests compile on theirs.
+fn opened() -> (Checked, Device) {
+    let host = open();
+    let device = borrow(&host);
+    (host, device)
+}
+
+fn vase() -> Scene {
+    let mut scene = three();
+    scene.objects.truncate(1);
+    scene
+}
+
+/// Parameters, lights and the eye move.
+#[test]
+fn no_parameter_compiles_a_pipeline() {
+    type Move = (&'static str, fn(&mut Scene));
+    let moves: [Move; 12] = [
+        ("extend", |s| s.objects[0].offset.extend = 0.01),
+        ("extend more", |s| s.objects[0].offset.extend = 0.02),
+        ("bevel", |s| s.objects[0].offset.bevel = 0.05),
+        ("chamfer", |s| s.objects[0].offset.chamfer = 0.4),
+        ("no bevel", |s| s.objects[0].offset.bevel = 0.0),
+        ("two lights", |s| s.lights.push(s.lights[0])),
+        ("five lights", |s| s.lights = vec![s.lights[0]; 5]),
+        ("no light", |s| s.lights.clear()),
+        ("far", |s| s.camera.eye *= 9.0),
+        ("the eye in the solid", |s| {
+            s.camera.eye = DVec3::new(0.05, 0.0, 0.5);
+        }),
+        ("a contour that does not close", |s| {
+            s.objects[0].profile = Arc::new(crossing());
+        }),
+        ("many copies", |s| {
+            let at = |n: u32| placement([-f64::from(n), 0.3, 0.0], [0.0; 3], [1.0; 3]);
+            s.objects[0].instances = (0..70).map(at).collect();
+        }),
+    ];
+    let (host, device) = opened();
+    for stage in STAGES {
+        for solver in [Solver::Exact, Solver::Quadric, Solver::Live, CIRCLE] {
+            let mut scene = vase();
+            scene.lights = vec![Light::default()];
+            let search = SearchSettings { solver, ..exact() };
+            let mut warm = Warm::new(&host, &device, (stage, &search), &scene);
+            for (name, change) in moves {
+                change(&mut scene);
+                warm.update(&scene, name);
+            }
+        }
+    }
+}
+
+/// An offset that moves a solid past the sides of its box, so that they cut it.
+#[test]
+fn no_cut_compiles_a_pipeline() {
+    let (host, device) = opened();
+    for stage in STAGES {
+        let mut scene = vase();
+        scene.objects[0].clip = Clip::Box;
+        let search = SearchSettings {
+            proxy_min_pixels: 0,
+            ..exact()
+        };
+        let mut warm = Warm::new(&host, &device, (stage, &search), &scene);
+        for extend in [0.0, 0.01, 0.2, 0.3] {
+            scene.objects[0].offset.extend = extend;
+            warm.update(&scene, &format!("{extend}"));
+        }
+    }
+}
+
+/// A crowd that the box cuts becomes whole, and is cut again.
+#[test]
+fn a_crowd_that_becomes_whole_compiles_nothing() {
+    let (host, device) = opened();
+    for stage in STAGES {
+        let mut scene = hundred();
+        scene.objects[1].clip = Clip::Box;
+        scene.objects[1].offset.extend = 0.2;
+        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
+        for extend in [0.2, -0.05, 0.2] {
+            scene.objects[1].offset.extend = extend;
+            warm.update(&scene, &format!("{extend}"));
+        }
+    }
+}
+
+/// Masks show one, several or none of the objects of a look.
+#[test]
+fn masks_compile_nothing_and_hide_nothing_else() {
+    let (host, device) = opened();
+    for stage in STAGES {
+        let mut scene = three();
+        scene.objects.push(scene.objects[0].clone());
+        scene.objects[3].placement.position.y = 1.4;
+        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
+        for (n, id) in warm.drawn.ids.clone().into_iter().enumerate() {
+            warm.drawn.renderer.set_mask(id, 1 << n).unwrap();
+        }
+        for mask in [15u32, 1, 8, 9, 6, 15, 4, 0] {
+            warm.drawn.view = view_of(&scene, &options()).with_mask(mask);
+            let shown = warm.frame(&format!("mask {mask}"));
+            assert_eq!(shown.objects, mask.count_ones(), "{stage:?}, mask {mask}");
+        }
+    }
+}
+
+/// Objects of a look come and go, one, many and none.
+#[test]
+fn other_objects_of_a_look_compile_nothing() {
+    let (host, device) = opened();
+    for stage in STAGES {
+        let scene = vase();
+        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
+        let mut more: Vec<Object> = vec![scene.objects[0].clone(); 40];
+        for (n, object) in more.iter_mut().enumerate() {
+            object.placement.position = DVec3::new(-0.3 * n as f64, 0.7, 0.1);
+        }
+        let objects = more[..1].to_vec();
+        let one = add(
+            &mut warm.drawn.renderer,
+            &Scene {
+                objects,
+                ..scene.clone()
+            },
+        );
+        assert_eq!(warm.frame("a second object").objects, 2);
+        warm.drawn.renderer.remove(one[0]).unwrap();
+        assert_eq!(warm.frame("one object again").objects, 1);
+        let all = add(
+            &mut warm.drawn.renderer,
+            &Scene {
+                objects: more,
+                ..scene
+            },
+        );
+        warm.frame("many objects");
+        warm.drawn.renderer.remove(warm.drawn.ids[0]).unwrap();
+        warm.frame("without the first");
+        for id in all {
+            warm.drawn.renderer.remove(id).unwrap();
+        }
+        assert_eq!(warm.frame("no object").objects, 0);
+    }
+}
+
+/// Tables above the largest uniform buffer, seen from afar by a small level, then near by the exact
+/// one, with one copy and with many.
+#[test]
+fn large_tables_compile_nothing() {
+    let groove = |n: u32| [0.3 + 0.002 * f64::from(n % 2), f64::from(n) / 1700.0];
+    let mut points = vec![[0.0, 0.0]];
+    points.extend((0..=1700).map(groove));
+    points.push([0.0, 1.0]);
+    let screw = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+    let (host, device) = opened();
+    for stage in STAGES {
+        let mut scene = vase();
+        scene.objects = vec![Object::new("screw", screw.clone())];
+        let near = scene.camera.eye;
+        scene.camera.eye = near * 500.0;
+        let search = SearchSettings {
+            tolerance: Tolerance::DEFAULT,
+            ..exact()
+        };
+        let mut warm = Warm::new(&host, &device, (stage, &search), &scene);
+        warm.frame("far");
+        scene.camera.eye = near * 0.5;
+        warm.update(&scene, "near");
+        let costs = warm.drawn.renderer.object_costs();
+        assert!(costs[0].table_bytes > 65_536, "{costs:?}");
+        let at = |n: u32| placement([-f64::from(n), 0.3, 0.0], [0.0; 3], [1.0; 3]);
+        scene.objects[0].instances = (0..70).map(at).collect();
+        warm.update(&scene, "copies");
+    }
+}
+
+/// Scenes in which special forms differ from general ones: one object and several, one light and
+/// none, copies, textures, cut and whole, inside and outside.
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let mut cut = vase();
+    cut.objects[0].clip = Clip::Box;
+    cut.objects[0].offset.extend = 0.15;
+    let mut inside = vase();
+    inside.camera.eye = DVec3::new(0.05, 0.0, 0.5);
+    let mut dark = three();
+    dark.lights.clear();
+    let mut glass = vase();
+    glass.objects = vec![Object::new("glass", shapes::glass().into())];
+    let mut shadowed = three();
+    shadowed.shadow = Shadow::Hard;
+    vec![
+        ("one", vase()),
+        ("three", three()),
+        ("hundred", hundred()),
+        ("cut", cut),
+        ("inside", inside),
+        ("dark", dark),
+        ("glass", glass),
+        ("shadowed", shadowed),
+    ]
+}
+
+#[test]
+fn general_and_special_forms_draw_the_same_bits() {
+    let host = open();
+    let mut worst = 0;
+    for (name, scene) in scenes() {
+        for stage in STAGES {
+            for least in [0, 150] {
+                let search = SearchSettings {
+                    proxy_min_pixels: least,
+                    ..exact()
+                };
+                let device = borrow(&host); // without pipelines
+                let mut drawn = Drawn::by(&host, &device, stage, &scene, &search);
+                drawn.renderer.prewarm().unwrap().compile().unwrap();
+                let general = drawn.picture(0);
+                let special = drawn.renderer.special_forms();
+                let shadowed = name == "shadowed";
+                assert!(shadowed || !special.is_empty(), "{name}, {stage:?}");
+                special.compile().unwrap();
+                let found = drawn.picture(0);
+                assert!(
+                    drawn.renderer.special_forms().is_empty(),
+                    "{name}, {stage:?}"
+                );
+                let pixels = differ(&general, &found);
+                println!("{name}, {stage:?}, {least}: {pixels} pixels differ");
+                worst = worst.max(pixels);
+            }
+        }
+    }
+    assert_eq!(worst, 0);
+}
+
+/// A renderer that hides shows an object as soon as its general form is compiled.
+#[test]
+fn special_forms_are_taken_when_they_are_compiled() {
+    let (host, device) = opened();
+    let scene = vase();
+    let mut drawn = Drawn::by(&host, &device, DrawStage::Fragment, &scene, &exact());
+    drawn.renderer.hide_until_compiled(true);
+    let view: View = view_of(&scene, &options());
+    let prepared = |drawn: &mut Drawn| {
+        let mut found = FrameStatistics::default();
+        never(&host, |cmd| {
+            // SAFETY: `cmd` is recording, and no frame is in flight.
+            found = unsafe { drawn.renderer.prepare(cmd, 0, &view) }
+                .unwrap()
+                .statistics();
+        });
+        found
+    };
+    assert!(prepared(&mut drawn).hidden > 0);
+    // The special form alone is enough, too.
+    let special = drawn.renderer.special_forms();
+    std::thread::scope(|scope| scope.spawn(|| special.compile()).join().unwrap()).unwrap();
+    assert_eq!(prepared(&mut drawn).hidden, 0);
+    assert!(drawn.renderer.special_forms().is_empty());
+    drawn.renderer.prewarm().unwrap().compile().unwrap();
+    assert_eq!(prepared(&mut drawn).hidden, 0);
+}
