@@ -9,9 +9,11 @@
  *
  * Structures. Most begin with their size, which the caller sets before anything else, also of those
  * that a function fills in: `RevmapScene scene = {.size = sizeof scene}; revmap_scene_defaults(&scene);`
- * A structure of the size that an earlier version had is taken: fields added since count as zero.
- * Nested structures have sizes of their own, which the functions named *_defaults set. Pointers
- * within structures are followed during a call and not kept.
+ * A structure of the size that an earlier release had is taken: members added since count as zero. One
+ * of a later release is taken if all that this library does not know is zero. Nested structures have
+ * sizes of their own, which the functions named *_defaults set. All structures of an array have one
+ * size. Structures without a size never change. Members named padding are neither read nor used later.
+ * Pointers within structures are followed during a call and not kept.
  *
  * Handles. Each is destroyed once, by the function of its name, in any order; the library keeps
  * what other handles still need. A handle that is null, destroyed or of another kind is refused
@@ -523,6 +525,8 @@ typedef struct RevmapDeviceInfo {
 typedef struct RevmapMemoryUse {
     /// sizeof(RevmapMemoryUse).
     uint32_t size;
+    /// 0.
+    uint32_t padding;
     /// Device memory that the host cannot map: data that only the device touches.
     uint64_t device;
     /// Device memory that the host can map: data that changes every frame, if there is such memory.
@@ -577,6 +581,8 @@ typedef struct RevmapObjectInfo {
     uint32_t projection;
     /// A RevmapBumpForm.
     uint32_t bump_form;
+    /// Not read.
+    uint32_t padding;
     /// Depth by which the slopes of height_map are scaled.
     double bump;
     /// Repetitions of textures around and along the solid.
@@ -591,6 +597,8 @@ typedef struct RevmapObjectInfo {
     uint32_t mirror[3];
     /// A RevmapClip.
     uint32_t clip;
+    /// Not read.
+    uint32_t padding_2;
     /// Placement of a solid without instances.
     struct RevmapPlacement placement;
     /// Placements of its copies; read during the call; null if there are none.
@@ -604,6 +612,8 @@ typedef struct RevmapObjectInfo {
     float roughness;
     /// For REVMAP_ATTACHMENT_MATERIAL: 0 or 1, or between them.
     float metalness;
+    /// Not read.
+    uint32_t padding_end;
 } RevmapObjectInfo;
 
 /// Settings of the search. Defaults: revmap_search_defaults().
@@ -623,6 +633,8 @@ typedef struct RevmapSearch {
     /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
     /// is drawn; below it the box is. UINT32_MAX: boxes only.
     uint32_t proxy_min_pixels;
+    /// Not read.
+    uint32_t padding;
     /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
     /// on patches use it.
     double tolerance;
@@ -640,6 +652,8 @@ typedef struct RevmapPicture {
     uint32_t stage;
     /// REVMAP_PLANES_COLOR or REVMAP_PLANES_ALL.
     uint32_t planes;
+    /// Not read.
+    uint32_t padding;
     /// Settings of the search.
     struct RevmapSearch search;
 } RevmapPicture;
@@ -648,6 +662,8 @@ typedef struct RevmapPicture {
 typedef struct RevmapCamera {
     /// sizeof(RevmapCamera).
     uint32_t size;
+    /// Not read.
+    uint32_t padding;
     /// World units.
     double eye[3];
     /// The point that the camera looks at, world units.
@@ -688,6 +704,8 @@ typedef struct RevmapScene {
     uint32_t size;
     /// Linear RGBA behind everything.
     float background[4];
+    /// Not read.
+    uint32_t padding;
     /// The eye.
     struct RevmapCamera camera;
     /// Lights and shadows.
@@ -702,6 +720,8 @@ typedef struct RevmapScene {
 typedef struct RevmapTimes {
     /// sizeof(RevmapTimes).
     uint32_t size;
+    /// 0.
+    uint32_t padding;
     /// CPU time to apply changes and to record, milliseconds.
     double prepare_ms;
     /// Milliseconds between timestamps of the device around the work; negative if it has no
@@ -766,6 +786,8 @@ typedef struct RevmapPass {
     /// For dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED if there is
     /// none.
     VkFormat stencil_format;
+    /// Not read.
+    uint32_t padding;
     /// For REVMAP_PLANES_LIST: a RevmapAttachment for each colour attachment, in order, none twice;
     /// read during the call.
     const uint32_t *attachments;
@@ -788,6 +810,8 @@ typedef struct RevmapPass {
     float slope_bias;
     /// The most that slope_bias moves a depth, units of the depth buffer; above 0 with a slope_bias.
     float slope_bias_limit;
+    /// Not read.
+    uint32_t padding_end;
 } RevmapPass;
 
 /// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
@@ -863,6 +887,8 @@ typedef struct RevmapStatistics {
     uint32_t drawn_by_tiles;
     /// Notes that revmap_renderer_note() gives.
     uint32_t notes;
+    /// 0.
+    uint32_t padding;
 } RevmapStatistics;
 
 /// What the frame that was prepared for a slot records.

@@ -2,7 +2,8 @@
 
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
-use crate::pointers::{described, fill, list, put_bytes, read, sized, text};
+use crate::pointers::{list, put_bytes, text};
+use crate::structures::{described, fill, read, sized};
 use ash::vk;
 use ash::vk::Handle as _;
 use revmap::gpu::{Device, HostDevice, Requirements};
@@ -79,6 +80,8 @@ pub struct RevmapDeviceInfo {
 pub struct RevmapMemoryUse {
     /// sizeof(RevmapMemoryUse).
     pub size: u32,
+    /// 0.
+    pub padding: u32,
     /// Device memory that the host cannot map: data that only the device touches.
     pub device: u64,
     /// Device memory that the host can map: data that changes every frame, if there is such memory.
@@ -89,12 +92,17 @@ pub struct RevmapMemoryUse {
     pub host: u64,
 }
 
-described!(
-    RevmapRequirements,
-    RevmapHostDevice,
-    RevmapDeviceInfo,
-    RevmapMemoryUse
-);
+described! {
+    RevmapRequirements { 0 => [size, api_version, queue_family, features] }
+    RevmapHostDevice {
+        0 => [
+            size, queue_family, get_instance_proc_addr, instance, physical_device, device, queue,
+            features, pipeline_cache,
+        ]
+    }
+    RevmapDeviceInfo { 0 => [size, validated, pipelines_compiled, name, driver] }
+    RevmapMemoryUse { 0 => [size, padding, device, visible, host] }
+}
 
 /// The functions of a host's instance.
 unsafe fn instance_of(get: GetInstanceProcAddr, instance: vk::Instance) -> Outcome<ash::Instance> {

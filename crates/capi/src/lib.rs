@@ -20,6 +20,7 @@ pub mod profile;
 pub mod rays;
 pub mod renderer;
 pub mod shading;
+mod structures;
 pub mod texture;
 pub mod values;
 

@@ -3,8 +3,9 @@
 use crate::enums;
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::Handle;
-use crate::pointers::{described, fill, list, sized, text};
+use crate::pointers::{list, text};
 use crate::profile::RevmapProfile;
+use crate::structures::{described, fill, sized};
 use crate::texture::{RevmapColorMap, RevmapHeightMap};
 use crate::values::{RevmapOffset, RevmapPlacement, UPRIGHT};
 use revmap::scene::{Material, Object, Offset, Placement, Specular, Texturing};
@@ -36,6 +37,8 @@ pub struct RevmapObjectInfo {
     pub projection: u32,
     /// A RevmapBumpForm.
     pub bump_form: u32,
+    /// Not read.
+    pub padding: u32,
     /// Depth by which the slopes of height_map are scaled.
     pub bump: f64,
     /// Repetitions of textures around and along the solid.
@@ -50,6 +53,8 @@ pub struct RevmapObjectInfo {
     pub mirror: [u32; 3],
     /// A RevmapClip.
     pub clip: u32,
+    /// Not read.
+    pub padding_2: u32,
     /// Placement of a solid without instances.
     pub placement: RevmapPlacement,
     /// Placements of its copies; read during the call; null if there are none.
@@ -63,9 +68,18 @@ pub struct RevmapObjectInfo {
     pub roughness: f32,
     /// For REVMAP_ATTACHMENT_MATERIAL: 0 or 1, or between them.
     pub metalness: f32,
+    /// Not read.
+    pub padding_end: u32,
 }
 
-described!(RevmapObjectInfo { has_material });
+described!(RevmapObjectInfo {
+    0 => [
+        size, map_rows, profile, name, color_map, height_map, color, specular_strength,
+        specular_shininess, projection, bump_form, padding, bump, texture_repeat, offset, axis, repeat,
+        mirror, clip, padding_2, placement, instances, instance_count,
+    ]
+    1 => [has_material, roughness, metalness, padding_end]
+});
 
 impl RevmapObjectInfo {
     pub(crate) unsafe fn object(&self) -> Outcome<Object> {

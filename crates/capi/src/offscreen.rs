@@ -5,7 +5,8 @@ use crate::enums::{self, RevmapPlane};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
 use crate::object::RevmapObjectInfo;
-use crate::pointers::{described, fill, read, read_all, sized, text};
+use crate::pointers::text;
+use crate::structures::{described, fill, read, read_all, sized};
 use crate::values::{RevmapCamera, RevmapLighting, RevmapSearch};
 use revmap::frame::Frame;
 use revmap::scene::Scene;
@@ -41,6 +42,8 @@ pub struct RevmapPicture {
     pub stage: u32,
     /// REVMAP_PLANES_COLOR or REVMAP_PLANES_ALL.
     pub planes: u32,
+    /// Not read.
+    pub padding: u32,
     /// Settings of the search.
     pub search: RevmapSearch,
 }
@@ -53,6 +56,8 @@ pub struct RevmapScene {
     pub size: u32,
     /// Linear RGBA behind everything.
     pub background: [f32; 4],
+    /// Not read.
+    pub padding: u32,
     /// The eye.
     pub camera: RevmapCamera,
     /// Lights and shadows.
@@ -69,6 +74,8 @@ pub struct RevmapScene {
 pub struct RevmapTimes {
     /// sizeof(RevmapTimes).
     pub size: u32,
+    /// 0.
+    pub padding: u32,
     /// CPU time to apply changes and to record, milliseconds.
     pub prepare_ms: f64,
     /// Milliseconds between timestamps of the device around the work; negative if it has no
@@ -78,12 +85,20 @@ pub struct RevmapTimes {
     pub frame_ms: f64,
 }
 
-described!(RevmapPicture, RevmapScene, RevmapTimes);
+described! {
+    RevmapPicture { 0 => [size, width, height, stage, planes, padding, search: RevmapSearch] }
+    RevmapScene {
+        0 => [
+            size, background, padding, camera: RevmapCamera, lighting: RevmapLighting, objects,
+            object_count,
+        ]
+    }
+    RevmapTimes { 0 => [size, padding, prepare_ms, gpu_ms, frame_ms] }
+}
 
 impl RevmapPicture {
     fn settings(&self) -> Outcome<Settings> {
-        // SAFETY: a live structure, whose size is looked at.
-        let search = unsafe { read(&raw const self.search) }?.settings()?;
+        let search = self.search.settings()?;
         Ok(Settings {
             width: self.width,
             height: self.height,
@@ -96,11 +111,10 @@ impl RevmapPicture {
 
 impl RevmapScene {
     unsafe fn scene(&self) -> Outcome<Scene> {
-        // SAFETY: live structures, whose sizes are looked at; the caller's lights and objects, as
-        // many as it says.
+        // SAFETY: the caller's lights and objects, as many as it says.
         unsafe {
-            let mut scene = Scene::new(read(&raw const self.camera)?.camera());
-            let lighting = read(&raw const self.lighting)?.lighting()?;
+            let mut scene = Scene::new(self.camera.camera());
+            let lighting = self.lighting.lighting()?;
             scene.background = self.background;
             scene.ambient = lighting.ambient;
             scene.lights = lighting.lights;

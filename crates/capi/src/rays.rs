@@ -3,7 +3,8 @@
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
 use crate::object::RevmapObjectInfo;
-use crate::pointers::{check_room, list, put, read};
+use crate::pointers::{check_room, list, put};
+use crate::structures::read;
 use revmap::cast::RayCaster;
 use revmap::scene::Object;
 use std::sync::Arc;

@@ -8,8 +8,9 @@ use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
-use crate::pointers::{described, list, put, read};
+use crate::pointers::{list, put};
 use crate::shading::RevmapShading;
+use crate::structures::{described, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{
@@ -65,6 +66,8 @@ pub struct RevmapPass {
     /// For dynamic rendering: format of the stencil attachment; VK_FORMAT_UNDEFINED if there is
     /// none.
     pub stencil_format: vk::Format,
+    /// Not read.
+    pub padding: u32,
     /// For REVMAP_PLANES_LIST: a RevmapAttachment for each colour attachment, in order, none twice;
     /// read during the call.
     pub attachments: *const u32,
@@ -87,6 +90,8 @@ pub struct RevmapPass {
     pub slope_bias: f32,
     /// The most that slope_bias moves a depth, units of the depth buffer; above 0 with a slope_bias.
     pub slope_bias_limit: f32,
+    /// Not read.
+    pub padding_end: u32,
 }
 
 /// The target of compute shaders, and of fragments of REVMAP_PLANES_ALL besides their attachments.
@@ -107,7 +112,19 @@ pub struct RevmapComputeTarget {
     pub images: *const vk::ImageView,
 }
 
-described!(RevmapPass { attachments }, RevmapComputeTarget);
+described! {
+    RevmapPass {
+        0 => [
+            size, kind, samples, depth_order, planes, subpass, render_pass, color_formats,
+            color_format_count, depth_format, stencil_format, padding,
+        ]
+        1 => [
+            attachments, attachment_count, sample_rays, depth_compare, depth_read_only, views,
+            slope_bias, slope_bias_limit, padding_end,
+        ]
+    }
+    RevmapComputeTarget { 0 => [size, image_count, words, images] }
+}
 
 impl RevmapPass {
     unsafe fn formats(&self) -> Outcome<PassFormats> {

@@ -2,7 +2,8 @@
 
 use crate::enums::{self, RevmapShadow};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::pointers::{described, fill, list, read, sized};
+use crate::pointers::list;
+use crate::structures::{described, fill, read, sized};
 use glam::{DMat4, DQuat, DVec3};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
@@ -67,6 +68,8 @@ pub struct RevmapLighting {
 pub struct RevmapCamera {
     /// sizeof(RevmapCamera).
     pub size: u32,
+    /// Not read.
+    pub padding: u32,
     /// World units.
     pub eye: [f64; 3],
     /// The point that the camera looks at, world units.
@@ -128,17 +131,27 @@ pub struct RevmapSearch {
     /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
     /// is drawn; below it the box is. UINT32_MAX: boxes only.
     pub proxy_min_pixels: u32,
+    /// Not read.
+    pub padding: u32,
     /// Allowed error of silhouettes and depths in pixels of the view, 0 to 64; 0 is exact. Searches
     /// on patches use it.
     pub tolerance: f64,
 }
 
-described!(
-    RevmapLighting,
-    RevmapCamera,
-    RevmapView { last },
-    RevmapSearch
-);
+described! {
+    RevmapLighting { 0 => [size, shadow, ambient, light_count, lights] }
+    RevmapCamera { 0 => [size, padding, eye, target, up, fov_y] }
+    RevmapView {
+        0 => [size, depth_order, view, projection, viewport]
+        1 => [last, jitter, depth_bias, mask, layer]
+    }
+    RevmapSearch {
+        0 => [
+            size, solver, max_steps, map_rows, map_source, map_format, proxy_min_pixels, padding,
+            tolerance,
+        ]
+    }
+}
 
 /// The placement at the origin, upright, one world unit high.
 pub(crate) const UPRIGHT: RevmapPlacement = RevmapPlacement {

@@ -3,7 +3,8 @@
 use super::{Recorder, RevmapRenderer, enter_with, with};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
-use crate::pointers::{put, read};
+use crate::pointers::put;
+use crate::structures::read;
 use crate::values::{RevmapCamera, RevmapView};
 use ash::vk;
 use ash::vk::Handle as _;

@@ -2,7 +2,8 @@
 
 use super::{Recorder, RevmapRenderer, with};
 use crate::fault::{Fault, RevmapResult, enter};
-use crate::pointers::{described, fill, put, sized};
+use crate::pointers::put;
+use crate::structures::{described, fill, sized};
 use revmap::gpu::DrawPath;
 use std::ffi::{CString, c_char};
 
@@ -31,6 +32,8 @@ pub struct RevmapStatistics {
     pub drawn_by_tiles: u32,
     /// Notes that revmap_renderer_note() gives.
     pub notes: u32,
+    /// 0.
+    pub padding: u32,
 }
 
 /// What the frame that was prepared for a slot records.
@@ -54,7 +57,15 @@ pub struct RevmapFrameStatistics {
     pub slot_bytes: u64,
 }
 
-described!(RevmapStatistics, RevmapFrameStatistics);
+described! {
+    RevmapStatistics {
+        0 => [
+            size, objects, surfaces_made, shape_map_bytes, texture_bytes, drawn_not, drawn_by_box,
+            drawn_by_hull, drawn_by_tiles, notes, padding,
+        ]
+    }
+    RevmapFrameStatistics { 0 => [size, objects, draws, dispatches, hidden, tiles, slot_bytes] }
+}
 
 impl Recorder {
     fn statistics(&self) -> RevmapStatistics {

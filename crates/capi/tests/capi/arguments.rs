@@ -204,6 +204,14 @@ fn structures_of_an_earlier_header_are_taken() {
             }
         }
         assert!(pictures[0] == pictures[1], "pixels differ");
+        // One array holds structures of one size.
+        let mut both = [info, second];
+        both[0].size = size_of::<RevmapObjectInfo>() as u32;
+        scene.objects = both.as_ptr();
+        let mut offscreen = null_mut();
+        fail! {
+            Usage, "structure 1 of an array": revmap_offscreen_create(device, &picture, &scene, &mut offscreen);
+        }
         info.size += 4;
         fail! {
             Usage, "set its size to sizeof": revmap_object_defaults(&mut info);

@@ -73,3 +73,17 @@ fn added_fields_begin_where_earlier_structures_end() {
     assert_eq!(offset_of!(RevmapView, last), 296);
     assert_eq!(offset_of!(RevmapObjectInfo, has_material), 264);
 }
+
+/// These have no size of their own, so they never change: callers pass arrays of them.
+#[test]
+fn structures_without_a_size_never_change() {
+    let sizes = [
+        size_of::<RevmapPlacement>(),
+        size_of::<RevmapOffset>(),
+        size_of::<RevmapLight>(),
+        size_of::<RevmapRay>(),
+        size_of::<RevmapRayHit>(),
+        size_of::<RevmapBounds>(),
+    ];
+    assert_eq!(sizes, [80, 24, 40, 48, 40, 48]);
+}

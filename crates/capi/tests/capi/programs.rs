@@ -63,8 +63,12 @@ fn compiler(name: &str, standard: &str) -> Command {
 
 /// Compiles C files to a program. The library is found by pkg-config.
 pub fn compile(standard: &str, flags: &[&str], sources: &[PathBuf], to: &Path) {
-    run(compiler("cc", standard)
+    // The first folder with a header counts.
+    run(Command::new("cc")
+        .arg(format!("-std={standard}"))
         .args(flags)
+        .args(STRICT)
+        .args(pkg_config("--cflags"))
         .arg("-I")
         .arg(root().join("examples/c"))
         .args(sources)
@@ -135,6 +139,33 @@ fn two_thousand_cycles_leave_nothing_behind() {
     command.env("MALLOC_ARENA_MAX", "1"); // the C library counts one arena alone
     let said = run(command.arg(root().join("assets/profiles/pawn.svg")));
     println!("{said}");
+}
+
+/// A program that was compiled with the header of an earlier release does what it does with the
+/// present one.
+#[test]
+fn programs_with_kept_headers_do_the_same() {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c");
+    let folder = folder();
+    let said = |name: &str, flags: &[&str]| {
+        let program = folder.path().join(name);
+        let flags = [flags, &SANITIZED].concat();
+        compile("c11", &flags, &[own.join("kept.c")], &program);
+        run(&mut validated(&program))
+    };
+    let present = said("present", &[]);
+    let headers = std::fs::read_dir(own.join("headers")).unwrap();
+    let headers: Vec<PathBuf> = headers.map(|entry| entry.unwrap().path()).collect();
+    assert!(!headers.is_empty());
+    for header in headers {
+        let include = folder.path().join(header.file_stem().unwrap());
+        std::fs::create_dir(&include).unwrap();
+        std::fs::copy(&header, include.join("revmap.h")).unwrap();
+        let flag = format!("-I{}", include.display());
+        let name = header.file_name().unwrap().to_str().unwrap();
+        let program = format!("program-{name}");
+        assert_eq!(said(&program, &[&flag]), present, "{name}");
+    }
 }
 
 /// The examples of `docs/embedding.md` are whole files.
