@@ -70,6 +70,8 @@ static MADE: AtomicUsize = AtomicUsize::new(0);
 static FAILS_AT: AtomicUsize = AtomicUsize::new(usize::MAX);
 static FAILED: AtomicUsize = AtomicUsize::new(usize::MAX);
 static LOST: AtomicUsize = AtomicUsize::new(usize::MAX);
+/// Waits for fences that are to end before the work does.
+static EARLY: AtomicUsize = AtomicUsize::new(0);
 static ALIVE: AtomicI64 = AtomicI64::new(0);
 static ONE: Mutex<()> = Mutex::new(());
 
@@ -91,6 +93,14 @@ unsafe extern "system" fn call<const N: usize>(
     if N < SUBMIT && MADE.fetch_add(1, Ordering::SeqCst) == FAILS_AT.load(Ordering::SeqCst) {
         FAILED.store(N, Ordering::SeqCst);
         return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    let early = |n: usize| n.checked_sub(1);
+    if N == WAIT
+        && EARLY
+            .fetch_update(Ordering::SeqCst, Ordering::SeqCst, early)
+            .is_ok()
+    {
+        return vk::Result::TIMEOUT;
     }
     let lost = LOST.load(Ordering::SeqCst) == N;
     if lost && N != WAIT {
@@ -137,6 +147,7 @@ impl Drop for Layer {
     fn drop(&mut self) {
         self.fail_at(usize::MAX);
         self.lose(None);
+        self.end_waits_early(0);
         *MASK.lock().unwrap() = Mask::default();
     }
 }
@@ -187,6 +198,11 @@ impl Layer {
         let told = |name: &&CStr| name.to_str().ok() == told_by;
         let n = CALLS.iter().position(told).unwrap_or(usize::MAX);
         LOST.store(n, Ordering::SeqCst);
+    }
+
+    /// Makes so many waits for fences return before the work is done.
+    pub fn end_waits_early(&self, waits: usize) {
+        EARLY.store(waits, Ordering::SeqCst);
     }
 
     /// The number of objects made and not destroyed, except query pools.

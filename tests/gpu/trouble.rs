@@ -145,6 +145,33 @@ fn a_lost_device_is_an_error_in_every_later_frame() {
     }
 }
 
+/// A wait that fails leaves the commands pending. The next frame waits for them, and so does the end.
+#[test]
+fn a_wait_that_fails_is_made_up_for() {
+    let (layer, host, raw) = layered();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let [scene, _] = scenes();
+        let settings = settings(stage);
+        let wanted = picture(&device, &scene, &settings);
+        let mut drawn = Offscreen::new(&device, &scene, &settings).unwrap();
+        for waits in [1, 2] {
+            // The second one meets the wait before the next frame.
+            layer.end_waits_early(waits);
+            for _ in 0..waits {
+                let error = drawn.draw().unwrap_err();
+                assert!(error.to_string().contains("vkWaitForFences"), "{error}");
+            }
+            assert_same(&next_frame(&mut drawn), &wanted);
+        }
+        layer.end_waits_early(1);
+        drawn.draw().unwrap_err();
+        drop(drawn);
+    }
+    drop(device);
+    assert_eq!(layer.alive(), 0);
+}
+
 /// A loss detected by the allocator is reported as a lost device, not as lack of memory.
 #[test]
 fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {

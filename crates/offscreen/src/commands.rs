@@ -4,6 +4,7 @@ use crate::draw::Times;
 use ash::vk;
 use revmap::error::{Error, Result};
 use revmap::gpu::{Device, vulkan_error};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// A command buffer, the fence that signals its end, and the queries of its timestamps.
@@ -11,6 +12,8 @@ pub(crate) struct Commands {
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
     fence: vk::Fence,
+    /// True from a submission until a wait for its end has succeeded.
+    pending: AtomicBool,
     /// Null on a queue without timestamps.
     queries: vk::QueryPool,
     /// Bits of a timestamp that are valid.
@@ -41,6 +44,7 @@ impl Commands {
             pool: vk::CommandPool::null(),
             buffer: vk::CommandBuffer::null(),
             fence: vk::Fence::null(),
+            pending: AtomicBool::new(false),
             queries: vk::QueryPool::null(),
             bits: family_of.map_or(0, |family| family.timestamp_valid_bits),
             period: limits.timestamp_period,
@@ -75,27 +79,39 @@ impl Commands {
     }
 
     /// Records by `record`, submits, and waits until the device is done. Returns the times but for
-    /// that of the device.
+    /// that of the device. After a wait that failed, the next call waits again before it records.
     pub fn run(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<Times> {
+        self.wait()?;
+        // SAFETY: no submission with the fence is pending.
+        unsafe { self.device.raw().reset_fences(&[self.fence]) }
+            .map_err(failed("vkResetFences"))?;
         let start = Instant::now();
         self.record(record)?;
         let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        let raw = self.device.raw();
         // SAFETY: the buffer is recorded and not pending, and the fence is not signaled.
-        unsafe {
-            self.device.submit(self.buffer, self.fence)?;
-            raw.wait_for_fences(&[self.fence], true, u64::MAX)
-                .map_err(failed("vkWaitForFences"))?;
-            raw.reset_fences(&[self.fence])
-                .map_err(failed("vkResetFences"))?;
-        }
+        unsafe { self.device.submit(self.buffer, self.fence) }?;
+        self.pending.store(true, Ordering::Relaxed);
+        self.wait()?;
         Ok(Times {
             prepare_ms,
             gpu_ms: None,
             frame_ms: start.elapsed().as_secs_f64() * 1e3,
             submissions: 1,
         })
+    }
+
+    /// Waits for the last submission. Before this succeeds, nothing that it uses may be changed or
+    /// destroyed, unless the device is lost.
+    pub fn wait(&self) -> Result<()> {
+        if self.pending.load(Ordering::Relaxed) {
+            let raw = self.device.raw();
+            // SAFETY: the fence was submitted.
+            unsafe { raw.wait_for_fences(&[self.fence], true, u64::MAX) }
+                .map_err(failed("vkWaitForFences"))?;
+            self.pending.store(false, Ordering::Relaxed);
+        }
+        Ok(())
     }
 
     fn record(&self, record: impl FnOnce(vk::CommandBuffer) -> Result<()>) -> Result<()> {
@@ -170,7 +186,7 @@ fn elapsed([start, end]: [u64; 2], bits: u32) -> u64 {
 impl Drop for Commands {
     fn drop(&mut self) {
         let raw = self.device.raw();
-        // SAFETY: every submission was waited for; null handles may be destroyed.
+        // SAFETY: the owner has waited for the last submission; null handles may be destroyed.
         unsafe {
             raw.destroy_query_pool(self.queries, None);
             raw.destroy_fence(self.fence, None);

@@ -36,6 +36,14 @@ pub struct Offscreen {
     pub(crate) device: Device,
 }
 
+impl Drop for Offscreen {
+    fn drop(&mut self) {
+        // A wait that failed has left a submission. Without memory for this one, nothing remains but to
+        // go on; a lost device has ended it.
+        let _ = self.commands.wait();
+    }
+}
+
 /// How a scene is drawn off screen, beside the settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OffscreenOptions {
