@@ -1,6 +1,6 @@
 //! A limit on the time of a frame that a folder's search draws. Vulkan cannot end a shader that
-//! runs, so the program must end itself: it says which search did not end, and may begin again
-//! without that search.
+//! runs. A program that must end sets a [handler](set_handler), which says which search did not end,
+//! and may begin again without that search.
 
 use crate::folder;
 use revmap::error::{Error, ErrorKind, Result};
@@ -73,7 +73,8 @@ pub fn leave_out(name: String, reason: String) {
     }
 }
 
-/// Sets the handler, which should not return. Without one the process ends with exit code 1.
+/// Sets the handler. A frame that does not end blocks its thread, so a handler should end the program.
+/// The library never does.
 pub fn set_handler(handler: Handler) {
     let _ = HANDLER.set(handler);
 }
@@ -98,54 +99,55 @@ pub fn check(name: &str) -> Result<()> {
 }
 
 /// Draws a frame. If a folder's search draws it, the frame has a limit of time, and a device that
-/// is lost counts as a frame that does not end.
+/// is lost counts as a frame that does not end. The [handler](set_handler) hears of both.
 ///
 /// # Errors
-/// Those of `draw`.
+/// Those of `draw`; [`ErrorKind::Other`] for a frame that ended after the limit.
 pub fn watched<T>(solver: Option<Solver>, draw: impl FnOnce() -> Result<T>) -> Result<T> {
     let Some(folder) = solver.and_then(folder::of) else {
         return draw();
     };
     let name = folder.name();
     check(&name)?;
+    limited(&name, limit(), draw)
+}
+
+fn limited<T>(name: &str, limit: Duration, draw: impl FnOnce() -> Result<T>) -> Result<T> {
     let (done, wait) = channel::<()>();
-    let own = name.clone();
-    let watch = std::thread::spawn(move || {
-        let ended = wait.recv_timeout(limit());
-        if ended == Err(RecvTimeoutError::Timeout) {
-            overrun(
-                &own,
-                &format!(
-                    "a frame by {own} took more than {}: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}",
-                    limit_in_words()
-                ),
+    let watch = move || {
+        let ended = wait.recv_timeout(limit);
+        (ended == Err(RecvTimeoutError::Timeout)).then(|| {
+            let words = in_words(limit);
+            let reason = format!(
+                "a frame by {name} took more than {words}: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}"
             );
-        }
+            overrun(name, &reason);
+            Error::new(ErrorKind::Other, reason)
+        })
+    };
+    let (drawn, late) = std::thread::scope(|scope| {
+        let watch = scope.spawn(watch);
+        let drawn = draw();
+        drop(done);
+        (drawn, watch.join().ok().flatten())
     });
-    let drawn = draw();
-    drop(done);
-    let _ = watch.join();
-    if let Err(error) = &drawn
-        && error.kind == ErrorKind::DeviceLost
-    {
-        overrun(
-            &name,
-            &format!(
+    match (drawn, late) {
+        (_, Some(late)) => Err(late),
+        (Err(error), None) if error.kind == ErrorKind::DeviceLost => {
+            let reason = format!(
                 "the device was lost while {name} drew: its search does not end, or reads what is not there ({})",
                 error.message
-            ),
-        );
+            );
+            overrun(name, &reason);
+            Err(Error::new(ErrorKind::DeviceLost, reason))
+        }
+        (drawn, None) => drawn,
     }
-    drawn
 }
 
 fn overrun(name: &str, reason: &str) {
-    match HANDLER.get() {
-        Some(handler) => handler(name, reason),
-        None => {
-            eprintln!("{reason}");
-            std::process::exit(1);
-        }
+    if let Some(handler) = HANDLER.get() {
+        handler(name, reason);
     }
 }
 
@@ -162,5 +164,32 @@ mod tests {
         for bad in ["abc", "", "0", "-1", "nan", "inf", "1e9"] {
             assert_eq!(words(bad), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn a_late_frame_and_a_lost_device_are_errors() {
+        let limit = Duration::from_millis(1);
+        let late = limited("slow", limit, || {
+            std::thread::sleep(Duration::from_millis(50));
+            Ok(())
+        });
+        let late = late.unwrap_err();
+        assert_eq!(late.kind, ErrorKind::Other);
+        let text = late.to_string();
+        assert!(
+            text.contains("a frame by slow took more than 0.001"),
+            "{text}"
+        );
+        let limit = Duration::from_secs(100);
+        let lost = || Err(Error::new(ErrorKind::DeviceLost, "gone"));
+        let lost = limited::<()>("wild", limit, lost).unwrap_err();
+        assert_eq!(lost.kind, ErrorKind::DeviceLost);
+        assert!(lost.to_string().contains("while wild drew"), "{lost}");
+        assert_eq!(limited("fine", limit, || Ok(7)), Ok(7));
+        let other = Error::new(ErrorKind::Content, "bad");
+        assert_eq!(
+            limited::<()>("bad", limit, || Err(other.clone())),
+            Err(other)
+        );
     }
 }
