@@ -10,7 +10,8 @@ use rayon::prelude::*;
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
 ///
 /// Smaller levels hold the mean light of the texels that they cover, weighted by alpha, so that
-/// transparent texels add no colour to their neighbours.
+/// transparent texels add no colour to their neighbours. Drawing makes no use of alpha: a map with
+/// transparent texels is first laid over the object's colour by [`ColorMap::over`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorMap {
     /// Levels from the full size down to 1 x 1.
@@ -43,6 +44,33 @@ impl ColorMap {
         Ok(Self {
             levels: std::iter::once(full).chain(smaller).collect(),
         })
+    }
+
+    /// Returns true if no texel is transparent.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        let mut texels = self.levels.iter().take(1).flat_map(|level| &level.texels);
+        texels.all(|texel| texel[3] == u8::MAX)
+    }
+
+    /// The opaque map that shows `color`, linear RGB from 0 to 1, where this map is transparent.
+    #[must_use]
+    pub fn over(&self, color: [f32; 3]) -> Self {
+        let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
+        let opaque = |&[r, g, b, a]: &[u8; 4]| {
+            let alpha = f32::from(a) / 255.0;
+            let light = |own: u8, below: f32| {
+                linear[usize::from(own)] * alpha + below.clamp(0.0, 1.0) * (1.0 - alpha)
+            };
+            let [below_r, below_g, below_b] = color;
+            [light(r, below_r), light(g, below_g), light(b, below_b), 1.0]
+        };
+        let full = self.levels.first().map(|level| level.map(opaque));
+        let light = full.map(|full| mips::chain(full.width, full.height, full.texels));
+        let levels = light.iter().flatten();
+        Self {
+            levels: levels.map(|level| level.map(from_light)).collect(),
+        }
     }
 
     /// Texels across and down of the full size.
@@ -246,5 +274,38 @@ mod tests {
         let map = ColorMap::from_texels(2, 1, texels.clone()).unwrap();
         assert_eq!(map.levels[0].texels, texels);
         assert_eq!(map.levels[1].texels, [[200, 10, 10, 128]]);
+    }
+
+    #[test]
+    fn a_map_over_a_colour_shows_it_where_it_is_transparent() {
+        let texels = vec![
+            [200, 10, 10, 255],
+            [0, 255, 0, 0],
+            [255, 255, 255, 128],
+            [9; 4],
+        ];
+        let map = ColorMap::from_texels(4, 1, texels).unwrap();
+        assert!(!map.is_opaque());
+        let over = map.over([1.0, 0.0, 7.0]);
+        let [first, second, third, _] = over.levels[0].texels[..] else {
+            unreachable!()
+        };
+        assert_eq!((first, second), ([200, 10, 10, 255], [255, 0, 255, 255]));
+        // Half the light of white is 188.
+        assert_eq!(third, [255, 188, 255, 255]);
+        // Smaller levels are the mean of what shows, as of an opaque map.
+        let plain = ColorMap::from_texels(4, 1, over.levels[0].texels.clone()).unwrap();
+        for (own, other) in over.levels.iter().zip(&plain.levels) {
+            for (a, b) in own
+                .texels
+                .iter()
+                .flatten()
+                .zip(other.texels.iter().flatten())
+            {
+                assert!(a.abs_diff(*b) <= 1);
+            }
+        }
+        assert!(over.is_opaque());
+        assert_eq!(over.over([0.0; 3]), over);
     }
 }

@@ -13,7 +13,8 @@ use revmap::settings::Planes;
 use revmap_files::SceneFile;
 use revmap_lab::method::Edges;
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Draws a turntable or a sweep of parameters: numbered pictures, and what each frame took
@@ -38,6 +39,9 @@ pub struct Animate {
     /// The folder that frame-0000.png and so on go into; it is made if it is not there
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Replace the frames that the folder of --output holds
+    #[arg(long, requires = "output")]
+    overwrite: bool,
     /// A CSV file for the times of each frame
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
@@ -77,12 +81,6 @@ impl Animate {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
-        if let Some(folder) = &self.output {
-            std::fs::create_dir_all(folder).map_err(|e| {
-                let message = format!("cannot be made ({e}); choose another folder");
-                Error::new(ErrorKind::File, message).in_file(folder)
-            })?;
-        }
         let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
             .collect::<Result<_>>()?;
@@ -90,8 +88,12 @@ impl Animate {
         let first = self.scene_at(&mut file, &varied, 0)?;
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
         written.extend((0..self.frames).filter_map(|n| self.picture(n)));
-        output::spare(file.files(), &written, "--output")?;
+        let old = self.output.as_deref().map_or(Vec::new(), frames_in);
+        output::spare(file.files(), written.iter().chain(&old), "--output")?;
         let (device, kept) = self.drawing.open()?;
+        if let Some(folder) = &self.output {
+            claim(folder, &old, self.overwrite)?;
+        }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
         let rows = self.draw(&device, &mut file, &varied, &first, &progress)?;
@@ -170,7 +172,9 @@ impl Animate {
     /// The file of frame `n`, if pictures are written.
     fn picture(&self, n: u32) -> Option<PathBuf> {
         let folder = self.output.as_ref()?;
-        Some(folder.join(format!("frame-{n:04}.png")))
+        // Numbers of one width: names are in the order of the frames.
+        let width = (self.frames - 1).to_string().len().max(4);
+        Some(folder.join(format!("frame-{n:0width$}.png")))
     }
 
     fn scene_at(&self, file: &mut SceneFile, varied: &[Vary], n: u32) -> Result<Scene> {
@@ -217,6 +221,41 @@ impl Animate {
     }
 }
 
+/// Frames in a folder, `frame-` and a number of four digits or more, in order.
+fn frames_in(folder: &Path) -> Vec<PathBuf> {
+    let is_frame = |path: &PathBuf| {
+        let name = path.file_name().and_then(OsStr::to_str);
+        let number = name.and_then(|n| n.strip_prefix("frame-")?.strip_suffix(".png"));
+        number.is_some_and(|n| n.len() >= 4 && n.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut frames: Vec<_> = paths.filter(is_frame).collect();
+    frames.sort();
+    frames
+}
+
+/// Makes the folder of frames. A folder with frames of an earlier run, `old`, is refused, unless
+/// `overwrite`: then they are removed.
+fn claim(folder: &Path, old: &[PathBuf], overwrite: bool) -> Result<()> {
+    let fail = |message: String| Error::new(ErrorKind::File, message).in_file(folder);
+    if !old.is_empty() && !overwrite {
+        let message = format!(
+            "holds {} frames of an earlier run; choose another folder, or give --overwrite to replace them",
+            old.len()
+        );
+        return Err(usage("--output", &message).in_file(folder));
+    }
+    std::fs::create_dir_all(folder)
+        .map_err(|e| fail(format!("cannot be made ({e}); choose another folder")))?;
+    let removed = old.iter().try_for_each(std::fs::remove_file);
+    removed.map_err(|e| {
+        fail(format!(
+            "an earlier frame cannot be removed ({e}); choose another folder"
+        ))
+    })
+}
+
 impl Vary {
     fn parse(text: &str) -> Result<Self> {
         let wrong = |what: &str| {
@@ -240,6 +279,11 @@ impl Vary {
         if from.len() != to.len() {
             return Err(wrong("has lists of two lengths"));
         }
+        if !list && from.len() != 1 {
+            return Err(wrong(
+                "has a comma outside of brackets, and numbers have points",
+            ));
+        }
         Ok(Self {
             key: key.trim().to_owned(),
             from,
@@ -258,7 +302,7 @@ impl Vary {
     }
 }
 
-fn write_times(path: &std::path::Path, rows: &[Row]) -> Result<()> {
+fn write_times(path: &Path, rows: &[Row]) -> Result<()> {
     let mut text =
         String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
     for (n, row) in rows.iter().enumerate() {
@@ -286,7 +330,16 @@ mod tests {
         assert_eq!(one.at(0.5), "object.0.extend=0.05");
         let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
         assert_eq!(three.at(0.0), "camera.eye=[1.0, 2.0, -3.0]");
-        for bad in ["a", "a=1", "a=1:b", "a=[1,2]:3", "a=nan:1"] {
+        let bad = [
+            "a",
+            "a=1",
+            "a=1:b",
+            "a=[1,2]:3",
+            "a=nan:1",
+            "a=0,1:0,2",
+            "a=0:0,2",
+        ];
+        for bad in bad {
             let error = Vary::parse(bad).err().unwrap();
             assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
         }

@@ -2,6 +2,7 @@
 //! methods, and with an exit code.
 
 use super::output;
+use super::progress::ended_by_signal;
 use revmap::error::{Error, ErrorKind};
 use std::process::ExitCode;
 
@@ -15,9 +16,10 @@ const OPTIONS: [(&str, &str); 6] = [
     ("tolerance", "--tolerance"),
 ];
 
-/// Prints the failure in one line, and returns the exit code.
+/// Prints the failure in one line, and returns the exit code: that of a signal which ended the run,
+/// else that of the failure.
 pub fn report(error: Error) -> ExitCode {
-    let code = exit_code(error.kind);
+    let code = ended_by_signal().unwrap_or_else(|| exit_code(error.kind));
     output::complain(&text(error));
     ExitCode::from(code)
 }
@@ -74,7 +76,14 @@ pub fn wrong_usage(error: &clap::Error) -> ExitCode {
     if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         output::complain("names no command; give render or another one that `revmap --help` lists");
     } else {
-        output::complain(&one_line(&error.to_string()));
+        let mut line = one_line(&error.to_string());
+        let value = error.get(clap::error::ContextKind::InvalidValue);
+        if let Some(clap::error::ContextValue::String(value)) = value
+            && let Some(point) = revmap_files::scene::decimal_comma(value)
+        {
+            line += &format!("; write {point}");
+        }
+        output::complain(&line);
     }
     ExitCode::from(WRONG_USAGE)
 }

@@ -2,6 +2,7 @@
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::DeviceReport;
+use revmap_files::destination;
 use revmap_lab::report::machine::Machine;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -79,15 +80,13 @@ pub fn check<'a>(
                 all.join(", ")
             )));
         }
-        if files[..i].contains(file) {
+        let real = destination(file);
+        if files[..i].iter().any(|other| destination(other) == real) {
             return Err(usage("is named twice; name each file once".to_owned()));
         }
-        if inputs.iter().any(|input| same(input, file)) {
-            return Err(usage("is read as well; write to another file".to_owned()));
-        }
-        writable(file, option)?;
+        writable(&real, option).map_err(|e| e.in_file(file))?;
     }
-    Ok(())
+    spare(inputs.iter().copied(), files, option)
 }
 
 /// Refuses to write any of `files` over an input.
@@ -99,8 +98,8 @@ pub fn spare<'a>(
     files: impl IntoIterator<Item = &'a PathBuf>,
     option: &str,
 ) -> Result<()> {
-    let inputs: Vec<_> = inputs.filter_map(|i| i.canonicalize().ok()).collect();
-    let over = |file: &&PathBuf| file.canonicalize().is_ok_and(|file| inputs.contains(&file));
+    let inputs: Vec<_> = inputs.map(destination).collect();
+    let over = |file: &&PathBuf| inputs.contains(&destination(file));
     match files.into_iter().find(over) {
         None => Ok(()),
         Some(file) => Err(
@@ -117,17 +116,9 @@ pub fn has_ending(file: &Path, ending: &str) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }
 
-fn same(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
 /// Tries to make a file beside `file`, as the later write does.
 fn writable(file: &Path, option: &str) -> Result<()> {
-    let fail = |message: String| {
-        Error::new(ErrorKind::File, message)
-            .in_file(file)
-            .at_key(option)
-    };
+    let fail = |message: String| Error::new(ErrorKind::File, message).at_key(option);
     if file.is_dir() {
         return Err(fail("is a folder; name a file".to_owned()));
     }

@@ -4,8 +4,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use revmap::error::{Error, ErrorKind, Result};
 use std::io::IsTerminal;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -69,27 +68,96 @@ impl Drop for Progress {
     }
 }
 
-/// The exit code that shells give to a program ended by an interrupt.
-const INTERRUPTED: i32 = 130;
-
-/// The flag that Ctrl-C sets after this call: long work ends early but cleanly. A second one ends the
-/// program at once.
+/// The flag that Ctrl-C and the signals TERM and HUP set after this call: long work ends early but
+/// cleanly. A second one ends the program at once.
 pub fn interrupt() -> Result<&'static AtomicBool> {
+    let set = interrupt::flag().as_ref().copied();
+    set.map_err(|why| {
+        let message = format!("interrupts cannot be watched for ({why}); run it again");
+        Error::new(ErrorKind::Other, message)
+    })
+}
+
+/// The exit code that shells give to a program ended by TERM or HUP, if one came. Ctrl-C leaves the
+/// code of a failure.
+pub fn ended_by_signal() -> Option<u8> {
+    interrupt::code()
+}
+
+#[cfg(unix)]
+mod interrupt {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::flag;
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    use std::sync::{Arc, LazyLock};
+
+    /// Shells add this to the number of a signal.
+    const SIGNALLED: i32 = 128;
+
+    static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+    /// The last of the signals.
+    static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+    static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
+        let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
+        for signal in watched.filter(|signal| !is_ignored(*signal)) {
+            watch(signal).map_err(|e| e.to_string())?;
+        }
+        Ok(&**STOP)
+    });
+
+    pub fn flag() -> &'static Result<&'static AtomicBool, String> {
+        &SET
+    }
+
+    pub fn code() -> Option<u8> {
+        let signal = i32::try_from(SIGNAL.load(Ordering::Relaxed)).ok()?;
+        let signal = Some(signal).filter(|s| [SIGTERM, SIGHUP].contains(s))?;
+        u8::try_from(SIGNALLED + signal).ok()
+    }
+
+    /// The first signal sets the flag, a second one ends the program.
+    fn watch(signal: i32) -> std::io::Result<()> {
+        let number = usize::try_from(signal).unwrap_or_default();
+        flag::register_conditional_shutdown(signal, SIGNALLED + signal, STOP.clone())?;
+        flag::register_usize(signal, SIGNAL.clone(), number)?;
+        flag::register(signal, STOP.clone())?;
+        Ok(())
+    }
+
+    /// Returns true for HUP under `nohup`, which is meant to be without effect.
+    fn is_ignored(signal: i32) -> bool {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mut lines = status.lines();
+        let ignored = lines.find_map(|line| line.strip_prefix("SigIgn:"));
+        let ignored = ignored.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
+        signal == SIGHUP && ignored.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
+    }
+}
+
+#[cfg(not(unix))]
+mod interrupt {
+    use std::sync::LazyLock;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    /// The exit code that shells give to a program ended by an interrupt.
+    const INTERRUPTED: i32 = 130;
+
     static STOP: AtomicBool = AtomicBool::new(false);
-    static SET: OnceLock<std::result::Result<(), String>> = OnceLock::new();
-    let set = SET.get_or_init(|| {
-        ctrlc::set_handler(|| {
+    static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
+        let stop = || {
             if STOP.swap(true, Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);
             }
-        })
-        .map_err(|e| e.to_string())
+        };
+        ctrlc::set_handler(stop).map_err(|e| e.to_string())?;
+        Ok(&STOP)
     });
-    match set {
-        Ok(()) => Ok(&STOP),
-        Err(why) => Err(Error::new(
-            ErrorKind::Other,
-            format!("interrupts cannot be watched for ({why}); run it again"),
-        )),
+
+    pub fn flag() -> &'static Result<&'static AtomicBool, String> {
+        &SET
+    }
+
+    pub fn code() -> Option<u8> {
+        None
     }
 }

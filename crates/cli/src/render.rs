@@ -306,7 +306,7 @@ impl Render {
             all
         });
         output::json(&json!({
-            "files": self.output,
+            "files": self.output.iter().map(|f| f.to_string_lossy()).collect::<Vec<_>>(),
             "width": settings.width,
             "height": settings.height,
             "stage": name_of(&options::STAGES, &self.drawing.stage),

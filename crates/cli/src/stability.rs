@@ -141,10 +141,13 @@ impl Stability {
         let stopped = stop.load(Ordering::Relaxed);
         let drawn = if stopped { drawn } else { count };
         output::result(&format!("{drawn} random scenes, {} failed", failures.len()));
-        if failures.is_empty() {
+        if failures.is_empty() && !stopped {
             return Ok(());
         }
-        let message = format!("{} of {drawn} random scenes failed", failures.len());
+        let message = match failures.len() {
+            0 => "interrupted, without a failure until then; run it again".to_owned(),
+            count => format!("{count} of {drawn} random scenes failed"),
+        };
         Err(Error::new(ErrorKind::Other, message).in_file(out))
     }
 

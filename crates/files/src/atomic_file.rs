@@ -11,9 +11,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Writes a file by `fill`, which gets a buffered writer that can seek.
 ///
 /// The bytes go into a new file in the target's folder, are flushed to the disk, and only then get
-/// the target's name. A reader never sees half a file, and a failure leaves the old content. A
-/// symbolic link is followed. A target that is neither a file nor missing (a device, a pipe) is
-/// written directly, since it cannot be replaced.
+/// the target's name. A reader never sees half a file, and a failure leaves the old content. The
+/// permissions of a file that is replaced are kept. A symbolic link is followed, also if it leads to
+/// no file yet. Two kinds of targets cannot be replaced and are written directly: devices and pipes,
+/// and files on which another file system is mounted.
 ///
 /// # Errors
 /// The errors of `fill`; [`ErrorKind::File`](revmap::error::ErrorKind::File) if the file cannot be
@@ -24,13 +25,13 @@ pub fn write_atomically(
 ) -> Result<()> {
     let failed =
         |what: &str, e: &io::Error| file_fault(format!("{what}: {}", reason(e))).in_file(target);
-    // A symbolic link is kept; the file that it points to is replaced.
-    let real = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
-    match fs::metadata(&real) {
-        Ok(meta) if meta.is_dir() => {
+    let real = destination(target);
+    let old = fs::metadata(&real).ok();
+    match &old {
+        Some(meta) if meta.is_dir() => {
             return Err(file_fault("is a folder; give the name of a file").in_file(target));
         }
-        Ok(meta) if !meta.is_file() => {
+        Some(meta) if !meta.is_file() => {
             let file = OpenOptions::new()
                 .write(true)
                 .open(&real)
@@ -52,15 +53,60 @@ pub fn write_atomically(
             let file = writer
                 .into_inner()
                 .map_err(|e| failed("cannot be written", e.error()))?;
+            if let Some(old) = &old {
+                // Some file systems have no permissions.
+                let _ = file.set_permissions(old.permissions());
+            }
             // A full disk may be reported only here.
             file.sync_all().map_err(|e| failed("cannot be written", &e))
         })
-        .and_then(|()| fs::rename(&part, &real).map_err(|e| failed("cannot be replaced", &e)));
+        .and_then(|()| replace(&part, &real).map_err(|e| failed("cannot be replaced", &e)));
     if written.is_err() {
         // Best effort: the first failure is the one to report.
         let _ = fs::remove_file(&part);
     }
     written
+}
+
+/// Gives the finished `part` the name of `real`. A file on which another is mounted, as containers
+/// do, keeps its place and gets the content.
+fn replace(part: &Path, real: &Path) -> io::Result<()> {
+    match fs::rename(part, real) {
+        Err(e) if e.kind() == io::ErrorKind::ResourceBusy => {
+            let mut file = OpenOptions::new().write(true).truncate(true).open(real)?;
+            io::copy(&mut File::open(part)?, &mut file)?;
+            file.sync_all()?;
+            fs::remove_file(part)
+        }
+        other => other,
+    }
+}
+
+/// The file that is written under the name `target`: symbolic links are followed, also those that
+/// lead to no file yet.
+#[must_use]
+pub fn destination(target: &Path) -> PathBuf {
+    /// Systems follow about so many links.
+    const MOST_LINKS: usize = 40;
+    let mut real = target.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        match (real.canonicalize(), real.read_link()) {
+            (Ok(file), _) => return file,
+            // A relative link starts at its own folder.
+            (_, Ok(link)) => real = real.parent().unwrap_or(Path::new("")).join(link),
+            (Err(_), Err(_)) => break,
+        }
+    }
+    let parent = real
+        .parent()
+        .map(|parent| match parent.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => parent,
+        });
+    match (parent.and_then(|p| p.canonicalize().ok()), real.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => real,
+    }
 }
 
 /// Writes these bytes by [`write_atomically`].
@@ -186,6 +232,42 @@ mod tests {
         write_bytes(&link, b"new").unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_no_file_yet_is_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("sub")).unwrap();
+        let link = |to: &str, name: &str| {
+            let link = folder.path().join(name);
+            std::os::unix::fs::symlink(to, &link).unwrap();
+            link
+        };
+        link("../real", "sub/second");
+        let first = link("sub/second", "first");
+        write_bytes(&first, b"new").unwrap();
+        assert_eq!(fs::read(folder.path().join("real")).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&first).unwrap().is_symlink());
+        let circle = link("circle", "circle");
+        assert_eq!(destination(&circle).file_name(), circle.file_name());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_permissions_of_a_file_are_kept() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a.bin");
+        write_bytes(&target, b"old").unwrap();
+        for mode in [0o600, 0o640, 0o666] {
+            fs::set_permissions(&target, PermissionsExt::from_mode(mode)).unwrap();
+            write_bytes(&target, b"new").unwrap();
+            assert_eq!(
+                fs::metadata(&target).unwrap().permissions().mode() & 0o777,
+                mode
+            );
+        }
     }
 
     #[test]

@@ -36,6 +36,8 @@
 //! that are measured in pixels exist for comparison with the papers.
 
 mod atomic_file;
+mod exif;
+mod jpeg_end;
 mod maps;
 mod openexr;
 mod picture;
@@ -45,7 +47,7 @@ pub mod raster;
 pub mod scene;
 mod trace;
 
-pub use atomic_file::{write_atomically, write_bytes};
+pub use atomic_file::{destination, write_atomically, write_bytes};
 pub use maps::{
     BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
     shape_map, write_displacement_map, write_shape_map,

@@ -12,10 +12,14 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, Write};
 use std::path::Path;
 
+/// The channel `A` in [`CHANNELS`]; `R G B` stand before it.
+const ALPHA: usize = 3;
+
 /// A layer of an EXR file.
 type FloatLayer = Layer<AnyChannels<FlatSamples>>;
 
-/// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed.
+/// Writes all planes as 32-bit float channels, named as in [`CHANNELS`], ZIP-compressed. `R G B` are
+/// multiplied by `A`, as OpenEXR has it; [`read_exr`] divides again.
 ///
 /// # Errors
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
@@ -23,7 +27,12 @@ type FloatLayer = Layer<AnyChannels<FlatSamples>>;
 pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
     for index in 0..frame.pixels() {
-        for (plane, value) in planes.iter_mut().zip(frame.pixel(index)) {
+        let mut pixel = frame.pixel(index);
+        let alpha = pixel[ALPHA];
+        if alpha != 1.0 {
+            pixel[..ALPHA].iter_mut().for_each(|v| *v *= alpha);
+        }
+        for (plane, value) in planes.iter_mut().zip(pixel) {
             plane.push(value);
         }
     }
@@ -64,7 +73,8 @@ pub(crate) fn write_layer(
     written.map_err(|e| one_line(&e))
 }
 
-/// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels.
+/// Reads a frame that [`write_exr`] wrote, or any file whose first layer holds its channels. `R G B`
+/// are divided by `A` where that is above 0.
 ///
 /// # Errors
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be read
@@ -104,7 +114,12 @@ fn read_checked(path: &Path) -> Result<Frame> {
         planes.push(plane);
     }
     (0..frame.pixels()).for_each(|index| {
-        frame.set_pixel(index, std::array::from_fn(|c| planes[c][index]));
+        let mut pixel: [f32; 17] = std::array::from_fn(|c| planes[c][index]);
+        let alpha = pixel[ALPHA];
+        if alpha > 0.0 && alpha != 1.0 {
+            pixel[..ALPHA].iter_mut().for_each(|v| *v /= alpha);
+        }
+        frame.set_pixel(index, pixel);
     });
     Ok(frame)
 }
@@ -170,14 +185,36 @@ mod tests {
     use std::path::PathBuf;
 
     fn sample() -> Frame {
-        let mut frame = Frame::new(37, 21, [0.1, 0.2, 0.3, 0.0]).unwrap();
+        let mut frame = Frame::new(37, 21, [0.0; 4]).unwrap();
         for index in (0..frame.pixels()).step_by(3) {
-            frame.set_pixel(
-                index,
-                std::array::from_fn(|c| (index * 17 + c) as f32 * 0.731 - 40.0),
-            );
+            let mut pixel = std::array::from_fn(|c| (index * 17 + c) as f32 * 0.731 - 40.0);
+            pixel[ALPHA] = 1.0;
+            frame.set_pixel(index, pixel);
         }
         frame
+    }
+
+    #[test]
+    fn colours_are_multiplied_by_alpha_in_the_file_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let mut frame = Frame::new(3, 1, [0.2, 0.4, 0.6, 0.0]).unwrap();
+        frame.color[1] = [0.9, 3.0, 0.5, 0.25];
+        frame.color[2] = [0.9, 3.0, 0.5, 1.0];
+        write_exr(&frame, &path).unwrap();
+        let file = BufReader::new(File::open(&path).unwrap());
+        let layer = first_layer(file).unwrap();
+        let plane = |name: &str| -> Vec<f32> {
+            let mut channels = layer.channel_data.list.iter();
+            let channel = channels.find(|c| c.name.eq(name)).unwrap();
+            channel.sample_data.values_as_f32().collect()
+        };
+        assert_eq!(plane("R"), [0.0, 0.225, 0.9]);
+        assert_eq!(plane("G"), [0.0, 0.75, 3.0]);
+        assert_eq!(plane("A"), [0.0, 0.25, 1.0]);
+        // A colour that nothing shows is lost.
+        let read = read_exr(&path).unwrap();
+        assert_eq!(read.color, [[0.0; 4], frame.color[1], frame.color[2]]);
     }
 
     fn saved() -> (tempfile::TempDir, PathBuf) {

@@ -1,6 +1,8 @@
 //! Pictures from files: PNG and JPEG.
 
+use crate::exif::Orientation;
 use crate::file_fault;
+use crate::jpeg_end;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::maps::MAX_SIDE;
@@ -17,6 +19,8 @@ pub(crate) enum Samples {
 }
 
 /// A decoded picture, row 0 on top. Palettes and grey of less than 8 bits are expanded.
+///
+/// The picture is upright: the orientation that its EXIF data gives has been applied.
 #[derive(Debug)]
 pub(crate) struct Pixels {
     pub width: u32,
@@ -47,9 +51,27 @@ impl Pixels {
         self.map(|[r, g, b, _]| [r, g, b].map(|v| (v * 65_535.0).round() as u16))
     }
 
-    /// Luminance of every pixel in `[0, 1]`, as stored; alpha counts for nothing.
+    /// The picture as its EXIF data turns it.
+    fn upright(self, exif: Option<&[u8]>) -> Self {
+        let orientation = exif.map(Orientation::of_exif).unwrap_or_default();
+        let (size, channels) = ([self.width, self.height], self.channels);
+        let [width, height] = orientation.turned_size(size);
+        let samples = match self.samples {
+            samples if orientation == Orientation::default() => samples,
+            Samples::Byte(v) => Samples::Byte(orientation.turned(size, channels, &v)),
+            Samples::Word(v) => Samples::Word(orientation.turned(size, channels, &v)),
+        };
+        Self {
+            width,
+            height,
+            channels,
+            samples,
+        }
+    }
+
+    /// Luminance of every pixel over black, in `[0, 1]`, as stored.
     pub fn luminance(&self) -> Vec<f32> {
-        self.map(|[r, g, b, _]| luminance([r, g, b]))
+        self.map(|[r, g, b, alpha]| alpha * luminance([r, g, b]))
     }
 }
 
@@ -77,6 +99,16 @@ pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
     g + 0.2126 * (r - g) + 0.0722 * (b - g)
 }
 
+/// The first bytes of a PNG.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The first bytes of a JPEG.
+const JPEG: &[u8] = b"\xff\xd8\xff";
+
+/// Returns true if the bytes begin as a PNG or a JPEG does.
+pub(crate) fn is_picture(bytes: &[u8]) -> bool {
+    bytes.starts_with(PNG) || bytes.starts_with(JPEG)
+}
+
 /// Decodes a PNG or JPEG of at most [`MAX_SIDE`] pixels on a side; the remedy names `kinds` of
 /// files.
 ///
@@ -92,23 +124,29 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
         }
         Ok(())
     };
-    if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+    if bytes.starts_with(PNG) {
         let reader = Png::open(bytes).map_err(|e| broken(e.to_string()))?;
         checked(reader.size())?;
         return reader.pixels().map_err(|e| broken(e.to_string()));
     }
-    if bytes.starts_with(b"\xff\xd8\xff") {
+    if bytes.starts_with(JPEG) {
         let mut reader = jpeg(bytes).map_err(|e| broken(e.to_string()))?;
         let (width, height) = reader.dimensions().unwrap_or_default();
         let (width, height) = (width as u32, height as u32); // at most 65535
         checked((width, height))?;
         let samples = reader.decode().map_err(|e| broken(e.to_string()))?;
-        return Ok(Pixels {
+        // Missing data are drawn grey, or as what stands in their place.
+        let longer = jpeg_end::lengthened(bytes).map(|b| jpeg(&b).and_then(|mut r| r.decode()));
+        if !matches!(longer, Some(Ok(same)) if same == samples) {
+            return Err(broken("it ends too early".to_owned()));
+        }
+        let pixels = Pixels {
             width,
             height,
             channels: reader.output_colorspace().map_or(3, |c| c.num_components()),
             samples: Samples::Byte(samples),
-        });
+        };
+        return Ok(pixels.upright(reader.exif().map(Vec::as_slice)));
     }
     Err(file_fault(format!(
         "is no picture that can be read; give a {kinds} file"
@@ -144,19 +182,22 @@ impl<'a> Png<'a> {
         } else {
             Samples::Byte(bytes)
         };
-        Ok(Pixels {
+        // EXIF data may follow the pixels.
+        self.0.finish()?;
+        let pixels = Pixels {
             width: frame.width,
             height: frame.height,
             channels: frame.color_type.samples(),
             samples,
-        })
+        };
+        Ok(pixels.upright(self.0.info().exif_metadata.as_deref()))
     }
 }
 
 /// A JPEG whose headers were read, to be decoded to grey or RGB.
 fn jpeg(bytes: &[u8]) -> std::result::Result<JpegDecoder<ZCursor<&[u8]>>, DecodeErrors> {
     let options = DecoderOptions::default()
-        .set_strict_mode(false)
+        .set_strict_mode(true)
         .set_max_width(usize::MAX)
         .set_max_height(usize::MAX);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -218,8 +259,105 @@ mod tests {
             let theirs = image::load_from_memory(file.get_ref()).unwrap();
             let ours = decode(file.get_ref(), "JPEG").unwrap();
             assert_eq!(ours.rgba8().as_flattened(), theirs.to_rgba8().as_raw());
-            let half = &file.get_ref()[..file.get_ref().len() / 4];
-            assert!(decode(half, "JPEG").is_err());
         }
+    }
+
+    /// Kinds of JPEG: 64 x 96 pixels, one form.
+    const JPEGS: [(&str, &[u8]); 3] = [
+        ("baseline", include_bytes!("../tests/inputs/baseline.jpg")),
+        (
+            "progressive",
+            include_bytes!("../tests/inputs/progressive.jpg"),
+        ),
+        ("restarts", include_bytes!("../tests/inputs/restarts.jpg")),
+    ];
+
+    #[test]
+    fn a_jpeg_that_was_cut_off_is_damaged() {
+        for (name, whole) in JPEGS {
+            assert!(decode(whole, "JPEG").is_ok(), "{name}");
+            // Data after the end are those of other programs.
+            assert!(decode(&[whole, b"more".as_slice()].concat(), "JPEG").is_ok());
+            for cut in (3..whole.len())
+                .step_by(7)
+                .chain([whole.len() - 2, whole.len() - 1])
+            {
+                let error = decode(&whole[..cut], "JPEG").unwrap_err().to_string();
+                assert!(
+                    error.contains("the image is damaged"),
+                    "{name}, {cut}: {error}"
+                );
+                // A copy that stopped leaves zeros in a file of the full length.
+                let mut zeros = whole.to_vec();
+                zeros[cut..].fill(0);
+                assert!(decode(&zeros, "JPEG").is_err(), "{name}, {cut}");
+                // A program that mends files adds the marker of the end. A progressive file that
+                // ends between two scans is whole, though coarse.
+                let ended = decode(&[&whole[..cut], b"\xff\xd9"].concat(), "JPEG");
+                let is_whole = cut + 2 == whole.len() || name == "progressive";
+                assert!(is_whole || ended.is_err(), "{name}, {cut}");
+            }
+        }
+    }
+
+    /// Every orientation that a camera stores, of JPEG and PNG.
+    #[test]
+    fn pictures_are_upright() {
+        let picture = image::RgbImage::from_fn(24, 16, |x, y| {
+            image::Rgb(if x < 8 && y < 8 { [0; 3] } else { [255; 3] })
+        });
+        let upright = |value: u8| {
+            let mut turned = DynamicImage::from(picture.clone());
+            let theirs = image::metadata::Orientation::from_exif(value);
+            turned.apply_orientation(theirs.unwrap());
+            turned.to_rgba8()
+        };
+        for value in 1..=8u8 {
+            let exif = [
+                b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".as_slice(),
+                &[value, 0, 0],
+            ];
+            let exif = exif.concat();
+            for late in [false, true] {
+                let file = png_with_exif(&picture, &exif, late);
+                let ours = decode(&file, "PNG").unwrap();
+                assert_eq!(
+                    ours.rgba8().as_flattened(),
+                    upright(value).as_raw(),
+                    "{value}"
+                );
+                assert_eq!((ours.width, ours.height), upright(value).dimensions());
+            }
+            let mut file = Cursor::new(Vec::new());
+            let plain = DynamicImage::from(picture.clone());
+            plain.write_to(&mut file, ImageFormat::Jpeg).unwrap();
+            let file = file.into_inner();
+            let length = (exif.len() as u16 + 8).to_be_bytes();
+            let segment = [b"\xff\xe1".as_slice(), &length, b"Exif\0\0", &exif].concat();
+            let file = [&file[..2], &segment, &file[2..]].concat();
+            let ours = decode(&file, "JPEG").unwrap();
+            let wanted = upright(value);
+            assert_eq!((ours.width, ours.height), wanted.dimensions());
+            for (a, b) in ours.rgba8().as_flattened().iter().zip(wanted.as_raw()) {
+                assert!(a.abs_diff(*b) < 60, "{value}");
+            }
+        }
+    }
+
+    /// A PNG with EXIF data before its pixels, or after them.
+    fn png_with_exif(picture: &image::RgbImage, exif: &[u8], late: bool) -> Vec<u8> {
+        let mut out = Vec::new();
+        let mut encoder = png::Encoder::new(&mut out, picture.width(), picture.height());
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        if !late {
+            writer.write_chunk(png::chunk::eXIf, exif).unwrap();
+        }
+        writer.write_image_data(picture.as_raw()).unwrap();
+        if late {
+            writer.write_chunk(png::chunk::eXIf, exif).unwrap();
+        }
+        writer.finish().unwrap();
+        out
     }
 }

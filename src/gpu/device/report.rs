@@ -182,16 +182,41 @@ fn position(all: &[Candidate], choice: Option<&str>) -> Result<usize> {
         let first = usable.min_by_key(|&k| rank(all[k].properties.device_type));
         return first.or((!all.is_empty()).then_some(0)).ok_or_else(none);
     };
-    let part = wanted.to_lowercase();
-    let index = wanted.parse::<usize>().ok().filter(|i| *i < all.len());
-    let is_named = |c: &Candidate| c.report.name.to_lowercase().contains(&part);
-    let named = || all.iter().position(is_named);
-    index.or_else(named).ok_or_else(|| {
-        let name = |c: &Candidate| format!("{} {}", c.report.index, c.report.name);
-        let names = all.iter().map(name).collect::<Vec<_>>().join(", ");
-        let message = format!("no device is called '{wanted}'; there are: {names}");
+    let names: Vec<&str> = all.iter().map(|c| c.report.name.as_str()).collect();
+    find(&names, wanted).map_err(|what| {
+        let numbered = names.iter().enumerate();
+        let listed = numbered.map(|(index, name)| format!("{index} {name}"));
+        let listed = listed.collect::<Vec<_>>().join(", ");
+        let message = format!("{what}; there are: {listed}");
         Error::new(ErrorKind::Usage, message).at_key("device")
     })
+}
+
+/// The first of `names` that `wanted` names: a number is an index, all else is part of a name, in
+/// any case. The error says what is not there.
+fn find(names: &[&str], wanted: &str) -> std::result::Result<usize, String> {
+    if let Ok(index) = wanted.parse::<usize>() {
+        let found = (index < names.len()).then_some(index);
+        return found.ok_or_else(|| format!("there is no device {index}"));
+    }
+    let part = wanted.to_lowercase();
+    let found = names
+        .iter()
+        .position(|name| names_part(&name.to_lowercase(), &part));
+    found.ok_or_else(|| format!("no device is called '{wanted}'"))
+}
+
+/// Returns true if `part` is in `name` and no number of the name is cut: `rtx 40` is no part of
+/// `rtx 4090`.
+fn names_part(name: &str, part: &str) -> bool {
+    let number = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit() || c == '.');
+    let whole = |(at, found): (usize, &str)| {
+        let (before, after) = (&name[..at], &name[at + found.len()..]);
+        let starts = number(part.chars().next()) && number(before.chars().next_back());
+        let ends = number(part.chars().next_back()) && number(after.chars().next());
+        !starts && !ends
+    };
+    !part.is_empty() && name.match_indices(part).any(whole)
 }
 
 /// Returns an error for a device that lacks a requirement.
@@ -310,4 +335,47 @@ fn formats() -> [(vk::Format, vk::FormatFeatureFlags, &'static str); 4] {
         (F::R32G32B32A32_SFLOAT, drawn, targets),
         (F::D32_SFLOAT, tested, "a 32-bit float depth buffer"),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::find;
+
+    #[test]
+    fn numbers_are_indices_and_names_are_not_cut() {
+        let names = [
+            "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "NVIDIA GeForce RTX 4090",
+            "RTX 40",
+        ];
+        for (wanted, index) in [
+            ("0", 0),
+            ("1", 1),
+            ("LLVM", 0),
+            ("pipe", 0),
+            ("15.0.6", 0),
+            ("nvidia", 1),
+            ("rtx 4090", 1),
+            ("rtx 40", 2),
+            ("RTX", 1),
+        ] {
+            assert_eq!(find(&names, wanted), Ok(index), "{wanted}");
+        }
+        for wanted in [
+            "3",
+            "5",
+            "256",
+            "4090",
+            "4294967296",
+            "5.0",
+            "15.0",
+            "0.6",
+            "40 9",
+            "",
+            "amd",
+        ] {
+            assert!(find(&names, wanted).is_err(), "{wanted}");
+        }
+        assert_eq!(find(&names, "5"), Err("there is no device 5".to_owned()));
+    }
 }

@@ -12,6 +12,7 @@ mod picture;
 #[cfg(feature = "shaderc")]
 mod reload;
 mod saved;
+mod screen;
 mod search_reload;
 mod shown;
 mod times;
@@ -80,6 +81,7 @@ impl View {
         let scene = file.scene(&self.set)?;
         output::spare(file.files(), &self.screenshot, "--screenshot")?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
+        output::spare(file.files(), &self.times, "--times")?;
         let search = SearchSettings {
             solver: self.solver,
             tolerance: self.tolerance,
@@ -97,6 +99,7 @@ impl View {
             viewport: ViewportBuilder::default()
                 .with_title(title)
                 .with_inner_size(vec2(width as f32, height as f32)),
+            event_loop_builder: screen::event_loop(),
             ..Default::default()
         };
         let shown = &mut app;
@@ -105,7 +108,7 @@ impl View {
             Ok(Box::new(shown))
         });
         eframe::run_native("revmap", window, creator).map_err(|e| {
-            let message = format!("no screen ({e}); set DISPLAY or WAYLAND_DISPLAY");
+            let message = format!("no screen ({e}); {}", screen::remedy());
             Error::new(ErrorKind::Unsupported, message)
         })?;
         app.end()

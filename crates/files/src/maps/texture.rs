@@ -11,7 +11,10 @@ use std::path::Path;
 /// A 16-bit code of a displacement map's channels that means slope 0.
 const ZERO: f32 = 32_768.0;
 
-/// Reads a colour map from a PNG or JPEG.
+/// Reads a colour map from a PNG or JPEG, upright by its EXIF data.
+///
+/// Transparent texels are kept; [`ColorMap::over`] lays them over an object's colour, as scene files
+/// do.
 ///
 /// # Errors
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File): missing, damaged, no picture, larger than
@@ -23,8 +26,8 @@ pub fn color_map(path: impl AsRef<Path>) -> Result<ColorMap> {
     })
 }
 
-/// Computes the slopes of an image file (PNG, JPEG); its luminance, as stored, is the height. A
-/// file that [`write_displacement_map`] wrote is loaded with its slopes.
+/// Computes the slopes of an image file (PNG, JPEG), upright by its EXIF data. Its luminance over
+/// black, as stored, is the height: transparent texels have height 0. A file that [`write_displacement_map`] wrote is loaded with its slopes.
 ///
 /// # Errors
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File): missing, damaged, no picture, larger than

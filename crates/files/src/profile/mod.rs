@@ -10,6 +10,7 @@ mod svg;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions};
 
+use crate::pixels::is_picture;
 use crate::{content_fault, file_fault};
 use revmap::error::{Error, Result};
 use revmap::profile::Profile;
@@ -65,6 +66,11 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
             "cannot be read ({e}); check the file's permissions"
         )),
     })
+}
+
+/// Returns true if the bytes are those of a picture or a drawing.
+pub(crate) fn is_profile(bytes: &[u8]) -> bool {
+    is_picture(bytes) || is_drawing(bytes)
 }
 
 /// Returns true if the bytes are XML, after blanks and a byte order mark, or gzip.

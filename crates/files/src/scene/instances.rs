@@ -1,5 +1,7 @@
-//! Placements of copies from a CSV file: one row `x,y,z,qx,qy,qz,qw,sx,sy,sz` for each.
+//! Placements of copies from a CSV file: one row `x,y,z,qx,qy,qz,qw,sx,sy,sz` for each, or columns in
+//! the order of a heading.
 
+use super::decoded;
 use crate::{content_fault, file_fault};
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
@@ -8,33 +10,58 @@ use std::path::Path;
 
 /// Count of numbers in a row.
 const COLUMNS: usize = 10;
+/// The columns' names, in the order of a file without a heading.
+const NAMES: [&str; COLUMNS] = ["x", "y", "z", "qx", "qy", "qz", "qw", "sx", "sy", "sz"];
+/// The columns in words.
+const ALL: &str = "x,y,z,qx,qy,qz,qw,sx,sy,sz";
 /// More copies than this are treated as a mistake: their transforms would use hundreds of
 /// megabytes.
 const MAX_COPIES: usize = 1 << 20;
 
-/// Reads placements. Empty lines, lines that begin with `#` and a heading line that begins with `x`
-/// are skipped. Rotations are normalised to unit length. A byte order mark, as spreadsheets write
-/// it, is skipped.
+/// Reads placements. Empty lines and lines that begin with `#` are skipped. A first line that is no
+/// row of numbers is a heading: its names say which column is which. A heading behind `#` counts if
+/// it has exactly the known names. Rotations are normalised to unit length. A byte order mark, as
+/// spreadsheets write it, is skipped.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
-    let text = std::fs::read_to_string(file)
+    let bytes = std::fs::read(file)
         .map_err(|e| file_fault(format!("cannot be read ({e}); give a CSV file")).in_file(file))?;
-    parse(&text).map_err(|e| e.in_file(file))
+    let no_text = || file_fault("is no text in UTF-8; save it as CSV in UTF-8");
+    let text = decoded(&bytes).ok_or_else(no_text);
+    text.and_then(|text| parse(&text))
+        .map_err(|e| e.in_file(file))
 }
 
 fn parse(text: &str) -> Result<Vec<Placement>> {
     let mut copies = Vec::new();
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut order: Option<[usize; COLUMNS]> = None;
     for (number, line) in text.lines().enumerate() {
         let line = line.trim();
-        let heading = copies.is_empty() && line.starts_with('x');
-        if line.is_empty() || line.starts_with('#') || heading {
-            continue;
-        }
-        let read = row(line).and_then(|copy| copy.check().map(|()| copy));
-        copies.push(read.map_err(|mut e| {
+        let at_line = |mut e: revmap::error::Error| {
             let column = e.key.take().map_or(String::new(), |key| format!(", {key}"));
             e.at_key(format!("line {}{column}", number + 1))
-        })?);
+        };
+        let may_be_heading = copies.is_empty() && order.is_none();
+        if let Some(comment) = line.strip_prefix('#') {
+            if may_be_heading {
+                order = heading(comment).ok();
+            }
+            continue;
+        }
+        if line.is_empty() {
+            continue;
+        }
+        if line.contains(';') || !line.contains(',') {
+            let message = format!(
+                "holds no values with commas between them; write points in numbers, and {ALL}"
+            );
+            return Err(at_line(content_fault(message)));
+        }
+        if may_be_heading && is_heading(line) {
+            order = Some(heading(line).map_err(at_line)?);
+            continue;
+        }
+        let read = row(line, order.as_ref()).and_then(|copy| copy.check().map(|()| copy));
+        copies.push(read.map_err(at_line)?);
         if copies.len() > MAX_COPIES {
             return Err(content_fault(format!(
                 "holds more than {MAX_COPIES} copies, the most of one object; give the rest to another [[object]]"
@@ -42,20 +69,65 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
         }
     }
     if copies.is_empty() {
-        return Err(content_fault(
-            "holds no copies; give rows of x,y,z,qx,qy,qz,qw,sx,sy,sz",
-        ));
+        return Err(content_fault(format!(
+            "holds no copies; give rows of {ALL}"
+        )));
     }
     Ok(copies)
 }
 
-fn row(line: &str) -> Result<Placement> {
-    let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-    let wrong_count = |count: String, remedy: &str| {
-        content_fault(format!("has {count}{remedy}: x,y,z,qx,qy,qz,qw,sx,sy,sz"))
+/// The fields of a line, without the quotes that some programs put about names.
+fn fields(line: &str) -> Vec<&str> {
+    fn bare(field: &str) -> &str {
+        let field = field.trim();
+        let inner = field.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
+        inner.unwrap_or(field).trim()
+    }
+    line.split(',').map(bare).collect()
+}
+
+/// Returns true for a line with the name of a column, or of words alone.
+fn is_heading(line: &str) -> bool {
+    let is_word = |field: &&str| field.parse::<f64>().is_err();
+    let is_name = |field: &&str| NAMES.iter().any(|name| name.eq_ignore_ascii_case(field));
+    let fields = fields(line);
+    fields.iter().all(|field| is_word(&field)) || fields.iter().any(|field| is_name(&field))
+}
+
+/// The column of each of [`NAMES`].
+fn heading(line: &str) -> Result<[usize; COLUMNS]> {
+    let fields = fields(line);
+    let found = |name: &str| {
+        fields
+            .iter()
+            .position(|field| field.eq_ignore_ascii_case(name))
     };
-    let mut values = [0.0; COLUMNS];
-    for (slot, field) in values.iter_mut().zip(&fields) {
+    let columns: Vec<usize> = NAMES.iter().filter_map(|name| found(name)).collect();
+    let missing = || {
+        let names = NAMES.iter().filter(|name| found(name).is_none());
+        names.copied().collect::<Vec<_>>().join(", ")
+    };
+    let stranger = (0..fields.len()).find(|column| !columns.contains(column));
+    match (columns.as_slice().try_into(), stranger) {
+        (Ok(columns), None) => Ok(columns),
+        (_, Some(column)) => Err(content_fault(format!(
+            "the heading has a column {:?} that is not known or stands there twice; the columns are {ALL}",
+            fields[column]
+        ))),
+        (Err(_), None) => Err(content_fault(format!(
+            "the heading lacks {}; the columns are {ALL}",
+            missing()
+        ))),
+    }
+}
+
+/// A row, whose columns have the usual order or the one given.
+fn row(line: &str, order: Option<&[usize; COLUMNS]>) -> Result<Placement> {
+    let fields = fields(line);
+    let wrong_count =
+        |count: String, remedy: &str| content_fault(format!("has {count}{remedy}: {ALL}"));
+    let mut read = [0.0; COLUMNS];
+    for (slot, field) in read.iter_mut().zip(&fields) {
         let number = field.parse();
         *slot = number.map_err(|_| content_fault(format!("{field:?} is not a number")))?;
     }
@@ -64,7 +136,10 @@ fn row(line: &str) -> Result<Placement> {
         n @ ..COLUMNS => return Err(wrong_count(format!("{n} values"), "; give 10")),
         _ => return Err(wrong_count(format!("more than {COLUMNS} values"), "")),
     }
-    let [x, y, z, qx, qy, qz, qw, sx, sy, sz] = values;
+    let [x, y, z, qx, qy, qz, qw, sx, sy, sz] = match order {
+        Some(order) => order.map(|column| read[column]),
+        None => read,
+    };
     Ok(Placement {
         position: DVec3::new(x, y, z),
         rotation: unit([qx, qy, qz, qw])?,
@@ -102,11 +177,34 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_order_mark_is_passed_over() {
+    fn a_heading_names_the_columns() {
+        let first = |text: &str| parse(text).unwrap()[0];
+        let wanted = first("1,2,3,0.1,0.2,0.3,0.9,4,5,6");
+        for text in [
+            "x,y,z,qw,qx,qy,qz,sx,sy,sz\n1,2,3,0.9,0.1,0.2,0.3,4,5,6",
+            "qw,qx,qy,qz,X,Z,Y,SX,SY,SZ\n0.9,0.1,0.2,0.3,1,3,2,4,5,6",
+            "# a comment\n\n\"sz\", \"sy\",sx,qw,qz,qy,qx,z,y,x\n6,5,4,0.9,0.3,0.2,0.1,3,2,1",
+            "# z,y,x,qx,qy,qz,qw,sx,sy,sz\n3,2,1,0.1,0.2,0.3,0.9,4,5,6",
+            "# x,y,z of the copies\n1,2,3,0.1,0.2,0.3,0.9,4,5,6",
+        ] {
+            assert_eq!(first(text), wanted, "{text}");
+        }
+    }
+
+    #[test]
+    fn byte_order_marks_are_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.csv");
         for heading in ["", "x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n"] {
             let text = format!("\u{feff}{heading}1,2,3,0,0,0,1,1,1,1\r\n");
-            assert_eq!(parse(&text).unwrap().len(), 1);
+            let wide = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+            for bytes in [text.into_bytes(), wide] {
+                std::fs::write(&file, bytes).unwrap();
+                assert_eq!(load(&file).unwrap().len(), 1);
+            }
         }
+        std::fs::write(&file, [0xff, 0xff]).unwrap();
+        assert!(load(&file).unwrap_err().to_string().contains("UTF-8"));
     }
 
     #[test]
@@ -120,6 +218,16 @@ mod tests {
             ("1,2,3,0,nan,0,1,1,1,1", "line 1: the rotation"),
             ("\n1,2,3,0,0,0,1,1,0,1", "line 2, scale: has 0"),
             ("inf,2,3,0,0,0,1,1,1,1", "line 1, position: has inf"),
+            ("x,y,z,qx,qy,qz,qw,sx,sy\n", "line 1: the heading lacks sz"),
+            ("x,y,z\n", "lacks qx, qy, qz, qw, sx, sy, sz"),
+            ("x,y,z,qx,qy,qz,w,sx,sy,sz", "a column \"w\""),
+            ("tx,ty,tz,qx,qy,qz,qw,sx,sy,sz", "a column \"tx\""),
+            (",x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"\""),
+            ("x,x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"x\""),
+            ("id,pos_x\n1,2", "a column \"id\""),
+            ("x;y;z;qx\n", "line 1: holds no values with commas"),
+            ("0,5;1;0;0;0;0;1;1;1;1", "write points in numbers"),
+            ("1 2 3 0 0 0 1 1 1 1", "line 1: holds no values with commas"),
         ] {
             let message = parse(text).unwrap_err().to_string();
             assert!(message.contains(wanted), "{message}");

@@ -228,6 +228,10 @@ impl<'a> Keys<'a> {
 /// A value as messages show it: its type, and the value itself if it is short.
 fn describe(value: &Value) -> String {
     match value {
+        Value::String(s) if decimal_comma(s).is_some() => {
+            let point = decimal_comma(s).unwrap_or_default();
+            format!("the text {s:?}; write {point}")
+        }
         Value::String(s) if s.chars().count() <= 40 => format!("the text {s:?}"),
         Value::String(_) => "a long text".to_owned(),
         Value::Integer(i) => format!("{i}"),
@@ -237,6 +241,23 @@ fn describe(value: &Value) -> String {
         Value::Array(a) => format!("a list of {} values", a.len()),
         Value::Table(_) => "a table".to_owned(),
     }
+}
+
+/// A number that is written with a decimal comma, with a point in its place; `None` for other text.
+///
+/// ```
+/// use revmap_files::scene::decimal_comma;
+/// assert_eq!(decimal_comma("0,05").as_deref(), Some("0.05"));
+/// assert_eq!(decimal_comma("1,2,3"), None);
+/// ```
+#[must_use]
+pub fn decimal_comma(text: &str) -> Option<String> {
+    let (whole, part) = text.split_once(',')?;
+    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
+    let unsigned = whole.strip_prefix(['+', '-']).unwrap_or(whole);
+    let is_number = digits(part) && (unsigned.is_empty() || digits(unsigned));
+    let point = format!("{whole}.{part}").parse::<f64>().ok();
+    point.filter(|_| is_number).map(|x| format!("{x}"))
 }
 
 /// The message for an unknown key.
@@ -297,13 +318,17 @@ mod tests {
     #[test]
     fn wrong_types_say_what_was_found() {
         let table = read(
-            "bevel = \"much\"\nmap_rows = -1\nrepeat = [1, 2]\nmirror = [true, 1, false]\nname = 3\npoints = [[1, 2], [3]]",
+            "bevel = \"much\"\nchamfer = \"-,05\"\nmap_rows = -1\nrepeat = [1, 2]\nmirror = [true, 1, false]\nname = 3\npoints = [[1, 2], [3]]",
         );
         let keys = Keys::new(&table, "object.2", KNOWN).unwrap();
         let cases = [
             (
                 keys.get::<f64>("bevel").err(),
                 "object.2.bevel: expected a number, found the text \"much\"",
+            ),
+            (
+                keys.get::<f64>("chamfer").err(),
+                "object.2.chamfer: expected a number, found the text \"-,05\"; write -0.05",
             ),
             (
                 keys.get::<u32>("map_rows").err(),

@@ -10,8 +10,10 @@ mod overrides;
 mod reader;
 mod warnings;
 
+pub use keys::decimal_comma;
 pub use warnings::warnings;
 
+use crate::profile::is_profile;
 use crate::{ProfileOptions, Smooth, file_fault};
 use glam::DVec3;
 use reader::Reader;
@@ -37,26 +39,36 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture) gets a scene of its
-    /// own: all of it, seen from in front and a little above. Noise of a picture is smoothed
-    /// ([`Smooth::Auto`]).
+    /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture, by its content) gets
+    /// a scene of its own: all of it, seen from in front and a little above. Noise of a picture is
+    /// smoothed ([`Smooth::Auto`]). The file is read once, so it may be a pipe.
     ///
     /// # Errors
     /// [`ErrorKind::File`] for a file that cannot be read; the errors of a profile.
     pub fn open(file: impl AsRef<Path>) -> Result<Self> {
         let file = file.as_ref();
         let folder = file.parent().unwrap_or(Path::new(""));
-        let is_profile = |e: &str| ["svg", "svgz", "png", "jpg", "jpeg"].contains(&e);
-        let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
-        if ending.is_some_and(|e| is_profile(&e)) {
-            return Self::of_profile(file, folder);
-        }
-        let text = std::fs::read_to_string(file).map_err(|e| {
-            file_fault(format!("cannot be read ({e}); give a scene in TOML")).in_file(file)
+        let bytes = std::fs::read(file).map_err(|e| {
+            file_fault(format!(
+                "cannot be read ({e}); give a scene in TOML, or a profile"
+            ))
+            .in_file(file)
         })?;
-        let mut read = Self::parse(&text, folder).map_err(|e| e.in_file(file))?;
-        read.file = Some(file.to_owned());
-        Ok(read)
+        if is_profile(&bytes) {
+            return Self::of_profile(file, folder, bytes);
+        }
+        let no_text =
+            || file_fault("is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it");
+        let text = decoded(&bytes).ok_or_else(no_text);
+        match text.and_then(|text| Self::parse(&text, folder)) {
+            Ok(scene) if !scene.root.is_empty() || !is_named_profile(file) => Ok(Self {
+                file: Some(file.to_owned()),
+                ..scene
+            }),
+            // The reader of profiles says what is wrong with a file that is named as one.
+            _ if is_named_profile(file) => Self::of_profile(file, folder, bytes),
+            other => other.map_err(|e| e.in_file(file)),
+        }
     }
 
     /// Reads `text`; paths in it are relative to `folder`.
@@ -71,14 +83,16 @@ impl SceneFile {
         })
     }
 
-    fn of_profile(file: &Path, folder: &Path) -> Result<Self> {
+    fn of_profile(file: &Path, folder: &Path, bytes: Vec<u8>) -> Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
+        // A name that is no text cannot be written in TOML; the bytes are found by this one.
+        reader.keep(folder.join(&*name), file, bytes);
         let options = ProfileOptions {
             smooth: Smooth::Auto,
             ..ProfileOptions::default()
         };
-        let profile = reader.load_profile(file, options)?;
+        let profile = reader.load_profile(&folder.join(&*name), options)?;
         // The distance at which a sphere about the box fills the picture's height.
         let reach = profile.radius.hypot(0.5) * 1.05;
         let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
@@ -130,10 +144,41 @@ impl SceneFile {
     /// Paths in the text are relative to the same folder; comments and the order of keys are lost.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] for a malformed assignment.
+    /// [`ErrorKind::Usage`] for a malformed assignment; [`ErrorKind::File`] for a profile whose file
+    /// name is no text.
     pub fn text(&self, sets: &[String]) -> Result<String> {
+        if let Some(file) = self.reader.unnamed() {
+            let message = "the name is not UTF-8, as TOML needs it; rename the file";
+            return Err(file_fault(message).in_file(file));
+        }
         let fault = |e| Error::new(ErrorKind::Other, format!("cannot be written as TOML: {e}"));
         toml::to_string(&overrides::applied(&self.root, sets)?).map_err(fault)
+    }
+}
+
+/// Returns true for a name that ends as those of profiles do.
+fn is_named_profile(file: &Path) -> bool {
+    let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let endings = ["svg", "svgz", "gz", "png", "jpg", "jpeg", "jfif"];
+    ending.is_some_and(|e| endings.contains(&e.as_str()))
+}
+
+/// The text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one.
+fn decoded(bytes: &[u8]) -> Option<String> {
+    let wide = |read: fn([u8; 2]) -> u16| {
+        let (pairs, rest) = bytes.as_chunks();
+        let units: Vec<u16> = pairs.iter().skip(1).map(|pair| read(*pair)).collect();
+        rest.is_empty()
+            .then(|| String::from_utf16(&units).ok())
+            .flatten()
+    };
+    match bytes {
+        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        _ => {
+            let plain = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            String::from_utf8(plain.to_vec()).ok()
+        }
     }
 }
 

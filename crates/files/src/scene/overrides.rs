@@ -66,14 +66,44 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
     }
 }
 
-/// The parsed value if it is TOML, otherwise the text itself.
+/// The parsed value if it is TOML, or TOML but for the spelling of its numbers; otherwise the text
+/// itself.
 fn parse(text: &str) -> Value {
-    format!("value = {text}")
-        .parse::<Table>()
-        .ok()
-        .filter(|table| table.len() == 1) // a line break in `text` would bring keys of its own
-        .and_then(|mut table| table.remove("value"))
+    let read = |text: &str| {
+        let table = format!("value = {text}").parse::<Table>().ok();
+        let table = table.filter(|table| table.len() == 1); // a line break would bring further keys
+        table.and_then(|mut table| table.remove("value"))
+    };
+    read(text)
+        .or_else(|| read(&with_plain_numbers(text)?))
         .unwrap_or_else(|| Value::String(text.to_owned()))
+}
+
+/// The text with every number spelled as TOML has it: `.5`, `5.`, `007` become `0.5`, `5.0`, `7`.
+/// `None` for text with quotes, in which no number is meant.
+fn with_plain_numbers(text: &str) -> Option<String> {
+    let separates = |c: char| "[],".contains(c) || c.is_whitespace();
+    let word = |part: &str| {
+        let (word, end) = match part.strip_suffix(separates) {
+            Some(word) => (word, &part[word.len()..]),
+            None => (part, ""),
+        };
+        plain_number(word).unwrap_or_else(|| word.to_owned()) + end
+    };
+    let parts = (!text.contains(['"', '\''])).then(|| text.split_inclusive(separates));
+    parts.map(|parts| parts.map(word).collect())
+}
+
+/// A decimal number as TOML spells it.
+fn plain_number(word: &str) -> Option<String> {
+    let unsigned = word.strip_prefix(['+', '-']).unwrap_or(word);
+    if !unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        return None; // a word, such as inf
+    }
+    match unsigned.bytes().all(|b| b.is_ascii_digit()) {
+        true => word.parse::<i64>().ok().map(|n| n.to_string()),
+        false => word.parse::<f64>().ok().map(|x| format!("{x:?}")),
+    }
 }
 
 #[cfg(test)]
@@ -91,6 +121,31 @@ mod tests {
     fn values_are_toml_or_text() {
         for (text, wanted) in [
             ("0.4", Value::Float(0.4)),
+            (".05", Value::Float(0.05)),
+            ("-.05", Value::Float(-0.05)),
+            ("+5", Value::Integer(5)),
+            ("5.", Value::Float(5.0)),
+            ("07", Value::Integer(7)),
+            ("-007.50", Value::Float(-7.5)),
+            ("1.e3", Value::Float(1000.0)),
+            (
+                "[.5,+.5, 05]",
+                Value::Array(vec![
+                    Value::Float(0.5),
+                    Value::Float(0.5),
+                    Value::Integer(5),
+                ]),
+            ),
+            (
+                "[[.5, 0],[1.,1]]",
+                Value::Array(vec![
+                    Value::Array(vec![Value::Float(0.5), Value::Integer(0)]),
+                    Value::Array(vec![Value::Float(1.0), Value::Integer(1)]),
+                ]),
+            ),
+            ("07.png", Value::String("07.png".into())),
+            ("./.5", Value::String("./.5".into())),
+            ("1 .5", Value::String("1 .5".into())),
             ("7", Value::Integer(7)),
             ("true", Value::Boolean(true)),
             (

@@ -3,7 +3,8 @@
 use super::instances;
 use super::keys::Keys;
 use crate::{
-    ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, projection_of,
+    ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, profile_from_bytes,
+    projection_of,
 };
 use revmap::error::{Error, Result};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
@@ -32,6 +33,9 @@ pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold 
 /// `R` of a polygon's box unless the file gives another.
 const RADIUS: f64 = 0.5;
 
+/// Most colours that transparent colour maps are kept over.
+const MOST_COLORS: usize = 64;
+
 /// Files read so far: those named more than once are read once and shared.
 pub(super) struct Reader {
     folder: PathBuf,
@@ -39,8 +43,20 @@ pub(super) struct Reader {
     /// Polygon profiles with their points and radius.
     polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
+    /// Colour maps with transparent texels over the colours of objects, which are told by their bits.
+    opaque_maps: HashMap<(PathBuf, [u32; 3]), Arc<ColorMap>>,
     height_maps: HashMap<PathBuf, Arc<DisplacementMap>>,
     instances: Vec<PathBuf>,
+    /// The profile that stands in place of a scene.
+    kept: Option<KeptProfile>,
+}
+
+/// A profile's file that was read already.
+struct KeptProfile {
+    /// The path by which the scene's table names it: UTF-8.
+    named: PathBuf,
+    file: PathBuf,
+    bytes: Vec<u8>,
 }
 
 impl Reader {
@@ -50,14 +66,31 @@ impl Reader {
             profiles: Vec::new(),
             polygons: Vec::new(),
             color_maps: HashMap::new(),
+            opaque_maps: HashMap::new(),
             height_maps: HashMap::new(),
             instances: Vec::new(),
+            kept: None,
         }
+    }
+
+    /// Keeps the content of the profile `file`, which the table calls `named`.
+    pub(super) fn keep(&mut self, named: PathBuf, file: &Path, bytes: Vec<u8>) {
+        let file = file.to_owned();
+        self.kept = Some(KeptProfile { named, file, bytes });
+    }
+
+    /// The file of a profile whose name no table can hold.
+    pub(super) fn unnamed(&self) -> Option<&Path> {
+        let kept = self.kept.as_ref().filter(|kept| kept.named != kept.file)?;
+        Some(&kept.file)
     }
 
     /// Every file that was read.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let profiles = self.profiles.iter().map(|(file, ..)| file);
+        let profiles = self.profiles.iter().map(|(named, ..)| {
+            let kept = self.kept.as_ref().filter(|kept| kept.named == *named);
+            kept.map_or(named, |kept| &kept.file)
+        });
         profiles
             .chain(self.color_maps.keys())
             .chain(self.height_maps.keys())
@@ -107,7 +140,7 @@ impl Reader {
                 metalness: metalness.unwrap_or(own.metalness),
             });
         }
-        object.texturing = self.texturing(&keys, object.file.as_deref())?;
+        object.texturing = self.texturing(&keys, object.file.as_deref(), object.color)?;
         let Offset {
             extend,
             bevel,
@@ -188,19 +221,43 @@ impl Reader {
         if let Some((.., known)) = self.profiles.iter().find(same) {
             return Ok(known.clone());
         }
-        let new = Arc::new(profile(file, options)?);
+        let new = match self.kept.as_ref().filter(|kept| kept.named == file) {
+            Some(kept) => {
+                profile_from_bytes(&kept.bytes, options).map_err(|e| e.in_file(&kept.file))?
+            }
+            None => profile(file, options)?,
+        };
+        let new = Arc::new(new);
         self.profiles.push((file.to_owned(), options, new.clone()));
         Ok(new)
     }
 
-    fn texturing(&mut self, keys: &Keys, profile: Option<&Path>) -> Result<Texturing> {
+    /// `color` shows where the colour map is transparent.
+    fn texturing(
+        &mut self,
+        keys: &Keys,
+        profile: Option<&Path>,
+        color: [f32; 3],
+    ) -> Result<Texturing> {
         let mut covering = Texturing {
             projection: profile.and_then(projection_of).unwrap_or_default(),
             ..Texturing::default()
         };
         if let Some(file) = keys.file("color_map", &self.folder)? {
             let map = shared(&mut self.color_maps, &file, |f| color_map(f));
-            covering.color_map = Some(map.map_err(|e| e.at_key(keys.place("color_map")))?);
+            let map = map.map_err(|e| e.at_key(keys.place("color_map")))?;
+            covering.color_map = Some(match map.is_opaque() {
+                true => map,
+                false => {
+                    // A colour that changes from frame to frame would fill the memory.
+                    if self.opaque_maps.len() >= MOST_COLORS {
+                        self.opaque_maps.clear();
+                    }
+                    let key = (file, color.map(f32::to_bits));
+                    let opaque = self.opaque_maps.entry(key);
+                    opaque.or_insert_with(|| Arc::new(map.over(color))).clone()
+                }
+            });
         }
         if let Some(file) = keys.file("height_map", &self.folder)? {
             let read = |f: &Path| displacement_map(f, SlopeFilter::default());

@@ -6,6 +6,7 @@ mod run;
 
 use super::names::{number, range};
 use super::stats::{self, Interval, Verdict};
+use super::surroundings::differences;
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
@@ -53,7 +54,7 @@ pub struct Against {
     pub alone: (usize, usize),
     /// Device and driver of each.
     pub devices: [String; 2],
-    /// A warning for each of device, driver and processor that differs.
+    /// A warning for each of device, driver, processor and surroundings that differs.
     pub warnings: Vec<String>,
 }
 
@@ -100,9 +101,11 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
         };
         (a != b && !a.is_empty() && !b.is_empty()).then(warning)
     };
+    let machines = old.into_iter().zip(new).filter_map(differs);
+    let others = differences(&before.surroundings, &after.surroundings);
     Ok(Against {
         alone: (alone(&before), alone(&after)),
-        warnings: old.into_iter().zip(new).filter_map(differs).collect(),
+        warnings: machines.chain(others).collect(),
         devices: [old, new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
         pairs,
     })

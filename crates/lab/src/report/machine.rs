@@ -1,5 +1,7 @@
 //! The note on the machine that stands beside every result.
 
+use super::surroundings;
+
 /// Place and time of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
@@ -40,6 +42,7 @@ impl Machine {
             ("program", format!("revmap {version}")),
             ("command", command.to_owned()),
         ];
+        lines.extend(surroundings::here());
         let others = revmap_searches::folder::all().into_iter();
         lines.extend(others.map(|f| ("search", format!("{}: {}", f.name(), f.origin()))));
         lines.retain(|(_, which)| !which.is_empty());

@@ -29,6 +29,7 @@ pub mod row;
 pub mod series_style;
 mod stats;
 pub mod submission;
+mod surroundings;
 pub mod table;
 pub mod view;
 

@@ -1,5 +1,7 @@
 //! Numbers and names of files, as results have them.
 
+use std::collections::HashSet;
+
 /// A number with `digits` significant digits, without trailing zeros; `inf` and `nan` as such.
 pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -25,6 +27,21 @@ pub(super) fn safe(name: &str) -> String {
     name.replace(|c| !safe(c), "-")
 }
 
+/// Names of the files of a folder. No two are the same, also where upper and lower case are.
+#[derive(Debug, Default)]
+pub(super) struct FileNames(HashSet<String>);
+
+impl FileNames {
+    /// The name of one more file: `name` where that is free, else with a number behind it.
+    pub(super) fn add(&mut self, name: &str) -> String {
+        let name = safe(name);
+        let numbered = (2..).map(|n| format!("{name}-{n}"));
+        let mut names = std::iter::once(name.clone()).chain(numbered);
+        let free = names.find(|name| self.0.insert(name.to_lowercase()));
+        free.unwrap_or(name)
+    }
+}
+
 /// `0.97 to 1.07`.
 pub(super) fn range((low, high): (f64, f64)) -> String {
     format!("{} to {}", number(low, 3), number(high, 3))
@@ -46,6 +63,13 @@ pub fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_files_have_one_name() {
+        let mut names = FileNames::default();
+        let added = ["v 1", "v-1", "V 1", "a/b", "v-1-2"].map(|name| names.add(name));
+        assert_eq!(added, ["v-1", "v-1-2", "V-1-3", "a-b", "v-1-2-2"]);
+    }
 
     #[test]
     fn numbers_keep_their_digits() {

@@ -3,7 +3,7 @@
 
 use super::folder::{make, png, write_bytes};
 use super::measure::RenderedCase;
-use super::names::{self, safe};
+use super::names::{self, FileNames};
 use super::plan::is_rbm_baseline;
 use super::series_style::SeriesStyles;
 use crate::compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
@@ -32,6 +32,7 @@ const NARROW: u32 = 200;
 /// Collects pictures while a plan is measured, and writes each in full into a folder.
 pub struct Album {
     folder: PathBuf,
+    files: FileNames,
     styles: SeriesStyles,
     heat_maps: bool,
     stage: Option<DrawStage>,
@@ -47,6 +48,7 @@ impl Album {
         make(&folder)?;
         Ok(Self {
             folder,
+            files: FileNames::default(),
             styles,
             heat_maps,
             stage: None,
@@ -98,7 +100,7 @@ impl Album {
         picture: &Picture,
         caption: String,
     ) -> Result<()> {
-        let file = self.folder.join(format!("{}.png", safe(name)));
+        let file = self.folder.join(self.files.add(name) + ".png");
         write_bytes(&file, &png(picture)?)?;
         let small = reduced(picture, picture.width.div_ceil(widest).max(1));
         self.shots.push((view, (small, caption)));
@@ -166,6 +168,7 @@ const ENLARGED: usize = 7;
 #[derive(Default)]
 pub struct Sheets {
     folder: PathBuf,
+    files: FileNames,
     of: Option<(usize, DrawStage)>,
     name: String,
     /// The part in which FLIP is largest with one ray per pixel.
@@ -190,7 +193,8 @@ impl Sheets {
         if self.of != of {
             self.finish()?;
             let view = &seen.plan.views[seen.case.view].name;
-            self.name = format!("antialiasing-{view}-{}.png", settings.stage.name());
+            let name = format!("antialiasing-{view}-{}", settings.stage.name());
+            self.name = self.files.add(&name) + ".png";
             self.of = of;
             self.truth = Some(Picture::of(seen.truth));
         }

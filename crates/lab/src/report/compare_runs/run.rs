@@ -3,6 +3,7 @@
 use crate::report::columns::{CONTRACT, results as columns};
 use crate::report::machine;
 use crate::report::stats;
+use crate::report::surroundings;
 use crate::report::table::{Table, text_of};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
@@ -17,6 +18,8 @@ pub(super) struct Run {
     samples: BTreeMap<(usize, usize), Vec<f64>>,
     /// The processor, with its threads; empty without `machine.txt`.
     processor: String,
+    /// What else changes times; empty for a run of an earlier version.
+    pub(super) surroundings: BTreeMap<String, String>,
 }
 
 /// A record of `raw.csv`.
@@ -74,6 +77,7 @@ impl Run {
             results,
             samples,
             processor: machine::field(&note, "processor", ':').unwrap_or_default(),
+            surroundings: surroundings::of_note(&note),
         })
     }
 
