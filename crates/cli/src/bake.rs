@@ -29,8 +29,8 @@ pub struct Bake {
     /// Source of distances [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&revmap_files::MAP_SOURCES))]
     map_source: Option<MapSource>,
-    /// Position of the axis: the left edge of half a profile, or the middle of a silhouette
-    #[arg(long, value_name = "AXIS", default_value = "center", value_parser = named(&ProfileAxis::NAMES))]
+    /// Position of the axis: left (half a profile), center (a silhouette), or a fraction of the width
+    #[arg(long, value_name = "AXIS", default_value = "center")]
     profile_axis: ProfileAxis,
     /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
     #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]

@@ -133,7 +133,9 @@ impl Lists {
     /// See [`folder::claim`].
     pub fn folder(&self, name: &str) -> Result<PathBuf> {
         let mut inputs = Vec::new();
-        for scene in self.scenes.iter().filter(|_| self.out.is_some()) {
+        // A pipe was read already, and no results are written over it.
+        let files = self.scenes.iter().filter(|scene| scene.is_file());
+        for scene in files.filter(|_| self.out.is_some()) {
             let mut file = SceneFile::open(scene)?;
             file.scene(&self.set)?;
             inputs.extend(file.files().map(Path::to_path_buf));

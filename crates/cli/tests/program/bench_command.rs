@@ -198,15 +198,11 @@ fn wrong_usage_is_told_in_one_line() {
     );
 }
 
-/// Ctrl-C in the middle: what was measured is kept, and the exit code says that it is not all.
-#[test]
-fn an_interrupt_keeps_what_was_measured() {
-    let bench = Bench::new();
-    let command = format!("bench {SPHERE} --size 800x600 --solver circle --out kept");
-    let mut command = bench.command(&command);
+/// Ends a run by a signal after its first pass. Returns what it said, and its exit code.
+fn ended(bench: &Bench, command: &str, signal: &str) -> (String, Option<i32>) {
+    let mut command = bench.command(&format!("{command} --out kept"));
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    // After the first pass of five or more there are results.
     let results = bench.path("kept/results.csv");
     let begin = Instant::now();
     while !results.exists() {
@@ -217,16 +213,54 @@ fn an_interrupt_keeps_what_was_measured() {
         std::thread::sleep(Duration::from_millis(5));
     }
     let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args([signal, &child.id().to_string()])
         .status()
         .unwrap();
     assert!(sent.success());
     let out = child.wait_with_output().unwrap();
-    let said = lines(&out).join(" ");
-    assert_eq!(out.status.code(), Some(1), "{said}");
+    (lines(&out).join(" "), out.status.code())
+}
+
+/// Ctrl-C in the middle: what was measured is kept, and the exit code says that it is not all.
+#[test]
+fn an_interrupt_keeps_what_was_measured() {
+    let bench = Bench::new();
+    // After the first pass of five or more there are results.
+    let command = format!("bench {SPHERE} --size 800x600 --solver circle");
+    let (said, code) = ended(&bench, &command, "-INT");
+    assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("interrupted"), "{said}");
     let floors = if cfg!(feature = "shaderc") { 2 } else { 0 };
     assert_eq!(load(&bench, "kept/results.csv").records.len(), 4 + floors);
     let report = String::from_utf8(bench.read("kept/report.html")).unwrap();
     assert!(report.contains("was interrupted"));
+}
+
+/// The signals by which systems end programs do as Ctrl-C, with the exit codes of shells.
+#[test]
+fn a_run_that_is_ended_by_the_system_has_its_report() {
+    for (signal, wanted) in [("-TERM", 143), ("-HUP", 129)] {
+        let bench = Bench::new();
+        let command =
+            format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100");
+        let (said, code) = ended(&bench, &command, signal);
+        assert_eq!(code, Some(wanted), "{said}");
+        assert!(said.contains("interrupted"), "{said}");
+        bench.has(&["kept/report.html", "kept/machine.txt", "kept/excluded.csv"]);
+    }
+}
+
+/// Two scenes whose names differ in what no file name has.
+#[test]
+fn every_scene_has_its_own_picture() {
+    let bench = Bench::new();
+    let scene = bench.read("scene.toml");
+    bench.file("v 1.toml", &scene);
+    bench.file("v-1.toml", &scene);
+    let options =
+        "bench --size 64x48 --solver circle --stage fragment --passes 2 --rounds 1 --out o";
+    let mut command = bench.command(options);
+    let output = command.args(["v 1.toml", "v-1.toml"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
+    bench.has(&["o/pictures/v-1.png", "o/pictures/v-1-2.png"]);
 }

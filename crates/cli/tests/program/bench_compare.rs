@@ -47,6 +47,30 @@ fn runs_of_two_machines_bring_warnings() {
     }
 }
 
+/// Variables, niceness and allowed processors change times.
+#[test]
+fn runs_in_other_surroundings_bring_warnings() {
+    let bench = Bench::new();
+    let note = |folder: &str, lines: &str| {
+        run(&bench, folder, "driver 1", "Xeon, 2 threads");
+        let note = format!("device: card\nprocessor: Xeon, 2 threads\n{lines}");
+        bench.file(&format!("{folder}/machine.txt"), note);
+    };
+    note("plain", "niceness: 0\nvariable: none\n");
+    note("other", "niceness: 10\nvariable: GALLIVM_PERF=nopt\n");
+    assert!(lines(&bench.done("bench --compare plain plain")).is_empty());
+    let said = lines(&bench.done("bench --compare plain other"));
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(
+        said[0].contains("differ in GALLIVM_PERF: old not set, new \"nopt\""),
+        "{said:?}"
+    );
+    assert!(
+        said[1].contains("differ in niceness: old \"0\", new \"10\""),
+        "{said:?}"
+    );
+}
+
 /// The kept run of the README, judged by itself; then a copy of it with one changed figure.
 #[test]
 fn a_changed_figure_of_a_kept_run_is_not_repeated() {

@@ -6,6 +6,7 @@ mod bad_input;
 mod bench_command;
 mod bench_compare;
 mod command_line;
+mod inputs;
 #[cfg(feature = "shaderc")]
 mod own_search;
 mod pictures;

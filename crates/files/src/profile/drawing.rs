@@ -33,6 +33,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     let (left, radius) = match axis {
         ProfileAxis::Left => (0.0, width / height),
         ProfileAxis::Center => (0.5 * width, 0.5 * width / height),
+        ProfileAxis::At(fraction) => (fraction * width, (1.0 - fraction) * width / height),
     };
     let to_profile = Affine::new([1.0 / height, 0.0, 0.0, -1.0 / height, -left / height, 1.0]);
     let canvas = Canvas {

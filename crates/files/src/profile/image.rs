@@ -1,6 +1,6 @@
 //! Profiles from pictures: dark is solid.
 
-use super::{ProfileAxis, ProfileOptions, full_fault, options};
+use super::{ProfileOptions, full_fault, options, symmetry, transparency};
 use crate::content_fault;
 use crate::maps::header::Header;
 use crate::pixels::{decode, luminance};
@@ -36,12 +36,10 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         let grey = luminance([r, g, b]);
         alpha * if options.invert { grey } else { 1.0 - grey }
     });
-    // If the axis is the middle of an odd width, it splits the first column that is used.
-    let first = match options.axis {
-        ProfileAxis::Left => 0,
-        ProfileAxis::Center => width / 2,
-    };
-    let split = options.axis == ProfileAxis::Center && !width.is_multiple_of(2);
+    // The axis is an edge of columns, or it splits the first column that is used.
+    let halves = (2.0 * options.axis.fraction() * f64::from(width)).round() as u32;
+    let halves = halves.min(2 * width - 2);
+    let (first, split) = (halves / 2, !halves.is_multiple_of(2));
     let rows = dark.par_chunks_exact(width as usize);
     let half = rows.flat_map_iter(|row| row[first as usize..].iter().copied());
     let half_plane = Raster {
@@ -54,7 +52,15 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         return Err(full_fault("image"));
     }
     let mut profile = trace_split(raster.clone(), split)?;
-    profile.warnings = options::warnings(&raster, split, &profile.outline, options);
+    let of_form = || {
+        let solid: Vec<bool> = dark.par_iter().map(|&d| d > options.edge()).collect();
+        let opaque = picture.map(|[.., alpha]| alpha > 0.5);
+        let axis_at = 0.5 * f64::from(halves);
+        let beside = symmetry::hint(&solid, width as usize, axis_at, options.axis);
+        let hints = [beside, transparency::hint(&solid, &opaque, options.invert)];
+        hints.into_iter().flatten().collect()
+    };
+    profile.warnings = options::warnings(&raster, split, &profile.outline, options, of_form);
     Ok(profile)
 }
 
@@ -76,6 +82,7 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
+    use crate::ProfileAxis;
     use crate::png_bytes as png;
     use image::{DynamicImage, GrayImage, Luma, Rgba, RgbaImage};
 

@@ -6,6 +6,8 @@ mod noise;
 mod options;
 mod paint;
 mod svg;
+mod symmetry;
+mod transparency;
 
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions};
@@ -20,7 +22,7 @@ use std::path::Path;
 ///
 /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the bottom
 /// edge `z = 0`. Everything darker than one half over white is solid, unless the options say
-/// otherwise. Pictures are traced as by [`trace`](crate::trace()). The curves of drawings are
+/// otherwise. Pictures are upright by their EXIF data, and traced as by [`trace`](crate::trace()). The curves of drawings are
 /// flattened within 1e-5 of the height. `R` is width / height with the axis at the left, and half
 /// of that with the axis in the middle.
 ///

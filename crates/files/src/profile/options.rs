@@ -9,18 +9,45 @@ use revmap::error::Result;
 use revmap::profile::{Outline, Raster, loop_area};
 
 /// The part of the picture that is the half-plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ProfileAxis {
     /// The axis is the left edge: the picture is a half profile.
     Left,
     /// The axis is the middle: the picture is a whole silhouette, and its right half is used.
     #[default]
     Center,
+    /// The axis is at this fraction of the width, from 0 (left) to below 1, and the part right of it
+    /// is used. In a picture it moves to the nearest edge or middle of a column of pixels.
+    At(f64),
 }
 
 impl ProfileAxis {
-    /// Every value with its name in options and scene files.
+    /// The values with a name in options and scene files; a number is [`ProfileAxis::At`].
     pub const NAMES: [(&'static str, Self); 2] = [("left", Self::Left), ("center", Self::Center)];
+
+    /// The axis as a fraction of the width.
+    #[must_use]
+    pub fn fraction(self) -> f64 {
+        match self {
+            Self::Left => 0.0,
+            Self::Center => 0.5,
+            Self::At(fraction) => fraction,
+        }
+    }
+}
+
+impl std::str::FromStr for ProfileAxis {
+    type Err = String;
+
+    /// A name or a number, as in scene files.
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let named = Self::NAMES.iter().find(|(name, _)| *name == text);
+        match (named, text.parse()) {
+            (Some((_, axis)), _) => Ok(*axis),
+            (None, Ok(fraction)) => Ok(Self::At(fraction)),
+            _ => Err("give left, center, or a fraction of the width such as 0.62".to_owned()),
+        }
+    }
 }
 
 /// Options for reading a profile from a file.
@@ -68,6 +95,12 @@ impl ProfileOptions {
     /// [`ErrorKind::Content`](revmap::error::ErrorKind::Content), with the key as in a scene file.
     pub fn check(&self) -> Result<()> {
         let wrong = |key: &str, message: String| Err(content_fault(message).at_key(key));
+        let fraction = self.axis.fraction();
+        if !(0.0..1.0).contains(&fraction) {
+            let message =
+                format!("is {fraction:?}; give a fraction of the width, 0 or more and below 1");
+            return wrong("profile_axis", message);
+        }
         if !(self.threshold > 0.0 && self.threshold < 1.0) {
             let message = format!("is {:?}; give a grey level between 0 and 1", self.threshold);
             return wrong("profile_threshold", message);
@@ -96,16 +129,18 @@ impl ProfileOptions {
         Err(content_fault(message).at_key(key))
     }
 
+    /// The darkness above which a pixel is solid; with `invert`, the lightness.
+    pub(super) fn edge(&self) -> f32 {
+        match self.invert {
+            true => self.threshold as f32,
+            false => 1.0 - self.threshold as f32,
+        }
+    }
+
     /// The darkness of a picture's half-plane as coverage, with the threshold at one half and noise
     /// blurred away. `split`: the axis is the middle of column 0.
     pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
-        // Everything darker than this is solid.
-        let edge = 1.0
-            - if self.invert {
-                1.0 - self.threshold
-            } else {
-                self.threshold
-            } as f32;
+        let edge = self.edge();
         let (below, above) = (0.5 / edge, 0.5 / (1.0 - edge));
         raster.coverage.par_iter_mut().for_each(|c| {
             if edge != 0.5 {
@@ -127,15 +162,18 @@ const SPECK: f64 = 9.0;
 const NOISE: usize = 8;
 
 /// Features of a picture and its outline that look unintended: one sentence each, with the key that
-/// changes it. `split`: the axis is the middle of column 0.
+/// changes it. `split`: the axis is the middle of column 0. `of_form` looks at the solid as a whole,
+/// where the picture shows it clearly.
 pub(super) fn warnings(
     raster: &Raster,
     split: bool,
     outline: &Outline,
     options: &ProfileOptions,
+    of_form: impl FnOnce() -> Vec<String>,
 ) -> Vec<String> {
     let mut found = Vec::new();
-    if !options.invert && is_light_on_dark(raster) {
+    let reversed = !options.invert && is_light_on_dark(raster);
+    if reversed {
         found.push(
             "the picture looks like a light solid on dark ground; set profile_invert = true if light is solid"
                 .to_owned(),
@@ -147,7 +185,11 @@ pub(super) fn warnings(
         .iter()
         .filter(|l| loop_area(l).abs() < SPECK * pixel);
     let specks = specks.count();
-    if specks >= NOISE {
+    let noisy = specks >= NOISE;
+    if !noisy && !reversed {
+        found.extend(of_form());
+    }
+    if noisy {
         found.push(format!(
             "the picture is noisy: {specks} specks of less than {SPECK} pixels; profile_smooth = 2 blurs them away"
         ));
@@ -288,6 +330,10 @@ mod tests {
         for threshold in [0.0, 1.0, f64::NAN, -3.0] {
             let error = read(&clean, |o| o.threshold = threshold).unwrap_err();
             assert_eq!(error.key.as_deref(), Some("profile_threshold"));
+        }
+        for fraction in [-0.1, 1.0, f64::NAN] {
+            let error = read(&clean, |o| o.axis = ProfileAxis::At(fraction)).unwrap_err();
+            assert_eq!(error.key.as_deref(), Some("profile_axis"));
         }
         for smooth in [-1.0, 101.0, f64::NAN] {
             let error = read(&clean, |o| o.smooth = Smooth::Pixels(smooth)).unwrap_err();

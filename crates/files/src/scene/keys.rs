@@ -194,6 +194,24 @@ impl<'a> Keys<'a> {
         Ok(())
     }
 
+    /// Replaces `slot` by the value of a name, as [`choose`](Self::choose) does, or by what `make`
+    /// makes of a number.
+    pub(super) fn choose_or_number<T: Copy>(
+        &self,
+        key: &str,
+        names: &[(&str, T)],
+        make: impl Fn(f64) -> T,
+        slot: &mut T,
+    ) -> Result<()> {
+        match self.table.get(key).and_then(number) {
+            Some(value) => {
+                *slot = make(value);
+                Ok(())
+            }
+            None => self.choose(key, names, slot),
+        }
+    }
+
     /// A list of pairs of numbers, of any length.
     pub(super) fn pairs(&self, key: &str) -> Result<Option<Vec<[f64; 2]>>> {
         let items = self.read(key, "a list of [r, z] pairs of numbers", Value::as_array)?;

@@ -7,6 +7,7 @@
 mod instances;
 mod keys;
 mod overrides;
+mod polygon;
 mod reader;
 mod warnings;
 

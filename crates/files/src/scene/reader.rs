@@ -2,6 +2,7 @@
 
 use super::instances;
 use super::keys::Keys;
+use super::polygon;
 use crate::{
     ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, profile_from_bytes,
     projection_of,
@@ -168,7 +169,8 @@ impl Reader {
         let file = keys.file("profile", &self.folder)?;
         let polygon = keys.pairs("polygon")?;
         let mut options = ProfileOptions::default();
-        keys.choose("profile_axis", &ProfileAxis::NAMES, &mut options.axis)?;
+        let (axis, names) = (&mut options.axis, &ProfileAxis::NAMES);
+        keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
         keys.set("profile_threshold", &mut options.threshold)?;
         keys.set("profile_invert", &mut options.invert)?;
         options.smooth = match keys.number_or_auto("profile_smooth")? {
@@ -195,8 +197,9 @@ impl Reader {
                 if let Some((_, _, profile)) = self.polygons.iter().find(same) {
                     return Ok(Object::new("polygon", profile.clone()));
                 }
-                let profile =
+                let mut profile =
                     Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
+                profile.warnings.extend(polygon::cut_off(&points, radius));
                 let profile = Arc::new(profile);
                 self.polygons.push((points, radius, profile.clone()));
                 Ok(Object::new("polygon", profile))

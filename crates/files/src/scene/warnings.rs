@@ -1,7 +1,8 @@
 //! Warnings about a scene that is allowed but looks unintended.
 
 use glam::DVec3;
-use revmap::scene::{CameraFrame, Scene, Shadow};
+use revmap::scene::{Camera, CameraFrame, Object, Scene, Shadow};
+use revmap::surface::ContourSource;
 
 /// A field of view below this many degrees looks like one in radians.
 const NARROW: f64 = 2.0;
@@ -12,8 +13,8 @@ const CROWD: usize = 1000;
 
 /// Warnings for a picture of `width x height` pixels, one sentence each, with the key. The
 /// causes are a field of view that looks like radians, colours above 1,
-/// [warnings](revmap::profile::Profile::warnings) of the profiles' pictures, shadows of a crowd,
-/// and an empty view.
+/// [warnings](revmap::profile::Profile::warnings) of the profiles, shadows of a crowd, insets that
+/// leave nothing, and an empty view.
 #[must_use]
 pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     let mut found = Vec::new();
@@ -41,7 +42,12 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     }
     for (i, object) in scene.objects.iter().enumerate() {
         let of_profile = object.profile.warnings.iter();
-        found.extend(of_profile.map(|w| format!("object.{i}.profile: {w}")));
+        let key = if object.file.is_some() {
+            "profile"
+        } else {
+            "polygon"
+        };
+        found.extend(of_profile.map(|w| format!("object.{i}.{key}: {w}")));
     }
     let copies: usize = scene.objects.iter().map(|o| o.placements().len()).sum();
     if scene.shadow != Shadow::Off && copies > CROWD {
@@ -49,7 +55,15 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
             "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
         ));
     }
-    if !is_in_view(scene, width, height) {
+    let left = |object: &&Object| object.offset.extend >= 0.0 || !is_empty(object);
+    for (i, object) in scene.objects.iter().enumerate().filter(|(_, o)| !left(o)) {
+        let inset = -object.offset.extend;
+        found.push(format!(
+            "object.{i}.extend: the inset of {inset} leaves nothing of the solid; give a smaller one"
+        ));
+    }
+    let mut left = scene.objects.iter().filter(left).peekable();
+    if left.peek().is_some() && !is_in_view(&scene.camera, left, width, height) {
         found.push(
             "nothing is in view; turn camera.target to the objects, or move camera.eye".to_owned(),
         );
@@ -57,16 +71,28 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     found
 }
 
+/// Returns true if the offset leaves no surface within the box.
+fn is_empty(object: &Object) -> bool {
+    let source = ContourSource::new(&object.profile.outline);
+    let contour = source.and_then(|source| source.contour(&object.offset));
+    contour.is_ok_and(|contour| contour.chains.is_empty())
+}
+
 /// Returns true if a ball about any copy's box is at least partly in the picture.
-fn is_in_view(scene: &Scene, width: u32, height: u32) -> bool {
-    let Ok(camera) = CameraFrame::new(&scene.camera, width, height) else {
+fn is_in_view<'a>(
+    camera: &Camera,
+    mut objects: impl Iterator<Item = &'a Object>,
+    width: u32,
+    height: u32,
+) -> bool {
+    let Ok(camera) = CameraFrame::new(camera, width, height) else {
         return true;
     };
     // The four sides of the view, normals inwards.
     let (w, h) = (f64::from(width), f64::from(height));
     let corner = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(|(x, y)| camera.direction(x, y));
     let sides = [0, 1, 2, 3].map(|k| corner[k].cross(corner[(k + 1) % 4]).normalize_or_zero());
-    scene.objects.iter().any(|object| {
+    objects.any(|object| {
         let grown = object.offset.extend.max(0.0) + object.offset.bevel;
         let radius = object.profile.radius + grown;
         let half = DVec3::new(radius, radius, 0.5 + grown);
@@ -84,7 +110,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use revmap::profile::Profile;
-    use revmap::scene::{Camera, Object};
     use std::sync::Arc;
 
     fn scene() -> Scene {
@@ -117,6 +142,24 @@ mod tests {
         warns("background", |s| s.background = [255.0, 0.0, 0.0, 1.0]);
         warns("object.0.color: has 200", |s| s.objects[0].color[1] = 200.0);
         warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
+    }
+
+    #[test]
+    fn an_inset_that_leaves_nothing_is_named() {
+        warns("object.0.extend: the inset of 0.9 leaves nothing", |s| {
+            s.objects[0].offset.extend = -0.9;
+        });
+        // The other object is there, and the first is not asked for twice.
+        let mut two = scene();
+        two.objects.push(two.objects[0].clone());
+        two.objects[1].offset.extend = -0.3;
+        let found = warnings(&two, 80, 60);
+        assert!(
+            found.len() == 1 && found[0].starts_with("object.1.extend"),
+            "{found:?}"
+        );
+        two.objects[1].offset.extend = -0.02;
+        assert_eq!(warnings(&two, 80, 60), [""; 0]);
     }
 
     #[test]

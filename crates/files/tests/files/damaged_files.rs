@@ -10,6 +10,7 @@ use revmap::settings::Settings;
 use revmap_files::{ProfileAxis, read_exr, write_exr, write_shape_map};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
+use std::time::{Duration, Instant};
 
 /// A random change of a file; positions are fractions of its length.
 #[derive(Clone, Debug)]
@@ -84,6 +85,10 @@ static SOUND: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     image::GrayImage::from_fn(24, 16, |x, _| image::Luma([x as u8 * 10]))
         .save(at("grey.jpg"))
         .unwrap();
+    for name in ["progressive.jpg", "restarts.jpg"] {
+        let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs");
+        std::fs::copy(inputs.join(name), at(name)).unwrap();
+    }
     std::fs::write(at("vase.svg"), SVG).unwrap();
     std::fs::write(at("copies.csv"), CSV).unwrap();
     std::fs::write(at("scene.toml"), TOML).unwrap();
@@ -168,8 +173,11 @@ const READ_HEIGHTS: Reader =
     |file| revmap_files::displacement_map(file, SlopeFilter::default()).map(drop);
 const READ_FRAME: Reader = |file| read_exr(file).map(drop);
 
+/// No file of a few kilobytes takes longer to read.
+const MOST_TIME: Duration = Duration::from_secs(10);
+
 /// Each valid file with its reader.
-const READERS: [(&str, Reader); 12] = [
+const READERS: [(&str, Reader); 14] = [
     ("vase.svg", read_profile),
     ("grey.png", read_profile),
     ("grey.jpg", read_profile),
@@ -182,6 +190,8 @@ const READERS: [(&str, Reader); 12] = [
     ("heights.png", READ_HEIGHTS),
     ("frame.exr", READ_FRAME),
     ("vase.svg", read_scene),
+    ("progressive.jpg", read_profile),
+    ("restarts.jpg", READ_HEIGHTS),
 ];
 
 /// Reads `bytes` in place of a valid file, beside the files that it may name.
@@ -198,7 +208,10 @@ fn read(name: &str, reader: Reader, bytes: &[u8]) -> Result<(), Error> {
     // Copies are read by the scene that names them.
     let scene = folder.path().join("scene.toml");
     let asked = if name == "copies.csv" { scene } else { file };
-    reader(&asked).inspect_err(|error| {
+    let begin = Instant::now();
+    let outcome = reader(&asked);
+    assert!(begin.elapsed() < MOST_TIME, "{name}: {:?}", begin.elapsed());
+    outcome.inspect_err(|error| {
         let within = |named: &PathBuf| named.starts_with(folder.path());
         let named = error.file.as_ref().is_some_and(within);
         assert!(named, "{name}: no file is named: {error}");
