@@ -1,0 +1,314 @@
+//! The actions of the host on one renderer.
+
+use crate::episode::Episode;
+use crate::log::{Finding, found};
+use crate::model::{Model, Thing};
+use crate::values::{copies, many, placement};
+use crate::views;
+use revmap::error::ErrorKind;
+use revmap::scene::{Object, Offset, Placement};
+
+/// Names and weights.
+const ACTIONS: [(&str, f64); 26] = [
+    ("add", 12.0),
+    ("remove", 5.0),
+    ("set look", 8.0),
+    ("set equal", 2.0),
+    ("set placement and copies", 3.0),
+    ("set_offset", 6.0),
+    ("set_placement", 8.0),
+    ("set_instances", 6.0),
+    ("set_mask", 4.0),
+    ("set_color_image", 3.0),
+    ("set_slope_image", 2.0),
+    ("set_height_image", 1.0),
+    ("set_lighting", 4.0),
+    ("remove and add", 3.0),
+    ("add and remove", 1.0),
+    ("add a thousand", 0.4),
+    ("remove most", 3.0),
+    ("remove all", 0.3),
+    ("thousands of copies", 0.6),
+    ("prewarm", 1.5),
+    ("prewarm on a thread", 1.0),
+    ("hide_until_compiled", 1.0),
+    ("plan", 2.0),
+    ("refused values", 2.0),
+    ("renderer", 0.6),
+    ("target", 1.0),
+];
+
+/// More objects than this are removed again.
+const MANY: usize = 16;
+
+impl Episode<'_> {
+    /// Does one action on a player.
+    pub fn act(&mut self, n: usize) -> Result<(), Finding> {
+        let (name, _) = ACTIONS[self.dice.weighed(ACTIONS.iter().map(|a| a.1))];
+        let count = self.players[n].model.things.len();
+        let thing = self.dice.below(count);
+        self.log.note(format!("{n}: {name}, {thing} of {count}"));
+        self.log.tally.count(name, 1);
+        match name {
+            "prewarm" | "prewarm on a thread" | "hide_until_compiled" => self.warm(n, name),
+            "plan" | "renderer" | "target" => self.whole(n, name),
+            "add"
+            | "remove and add"
+            | "add and remove"
+            | "add a thousand"
+            | "thousands of copies"
+            | "remove most"
+            | "remove all"
+            | "set_lighting" => self.come_and_go(n, name, thing),
+            _ if count == 0 => Ok(()),
+            "refused values" => self.refuse(n, thing),
+            _ => self.change(n, name, thing),
+        }
+    }
+
+    /// Changes of all objects.
+    fn come_and_go(&mut self, n: usize, name: &str, thing: usize) -> Result<(), Finding> {
+        let count = self.players[n].model.things.len();
+        self.players[n].changed = true;
+        self.players[n].prewarmed &= name == "remove all";
+        match name {
+            "add" if count < MANY => {
+                let object = self.palette.object(&mut self.dice);
+                self.add(n, object)?;
+            }
+            "remove and add" if count > 0 => {
+                let object = self.players[n].thing(thing).object.clone();
+                self.remove(n, thing)?;
+                self.add(n, object)?;
+            }
+            "add and remove" => {
+                let object = self.palette.object(&mut self.dice);
+                self.add(n, object)?;
+                self.remove(n, count)?;
+            }
+            "add a thousand" if count < MANY => {
+                let one = self.palette.object(&mut self.dice);
+                for _ in 0..1000 {
+                    let mut place = placement(&mut self.dice);
+                    place.scale *= 0.1;
+                    let mut object = one.clone();
+                    (object.placement, object.instances) = (place, Vec::new().into());
+                    self.add(n, object)?;
+                }
+            }
+            "thousands of copies" if count > 0 => {
+                let few = self.dice.below(2000);
+                let all = many(&mut self.dice, 1500 + few);
+                self.set_instances(n, thing, all)?;
+            }
+            "remove most" if count > MANY => {
+                while self.players[n].model.things.len() > 4 {
+                    let last = self.players[n].model.things.len();
+                    let one = self.dice.below(last);
+                    self.remove(n, one)?;
+                }
+            }
+            "remove all" => (0..count).try_for_each(|_| self.remove(n, 0))?,
+            "set_lighting" => {
+                let lighting = self.palette.lighting(&mut self.dice);
+                self.players[n].renderer.set_lighting(&lighting)?;
+                self.players[n].model.lighting = lighting;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, n: usize, object: Object) -> Result<(), Finding> {
+        let player = &mut self.players[n];
+        let id = player.renderer.add(object.clone())?;
+        player.model.things.push(Thing::new(id, object));
+        Ok(())
+    }
+
+    fn remove(&mut self, n: usize, thing: usize) -> Result<(), Finding> {
+        let player = &mut self.players[n];
+        let id = player.model.things.remove(thing).id;
+        player.renderer.remove(id)?;
+        // An object that is gone is refused.
+        match player.renderer.set_mask(id, 1) {
+            Err(e) if e.kind == ErrorKind::Usage => Ok(()),
+            other => found(format!("a removed object was changed: {other:?}")),
+        }
+    }
+
+    fn set_instances(
+        &mut self,
+        n: usize,
+        thing: usize,
+        all: revmap::scene::Copies,
+    ) -> Result<(), Finding> {
+        let player = &mut self.players[n];
+        let id = player.thing(thing).id;
+        player.renderer.set_instances(id, all.clone())?;
+        player.thing(thing).object.instances = all;
+        Ok(())
+    }
+
+    /// Changes of one object.
+    fn change(&mut self, n: usize, name: &str, thing: usize) -> Result<(), Finding> {
+        let (dice, palette) = (&mut self.dice, &self.palette);
+        let player = &mut self.players[n];
+        player.changed = true;
+        let kept = ["set equal", "set_offset", "set_placement", "set_mask"];
+        player.prewarmed &= kept.contains(&name);
+        let Thing { id, object, .. } = player.thing(thing).clone();
+        let textured = palette.textured;
+        match name {
+            "remove" => return self.remove(n, thing),
+            "set look" | "set placement and copies" | "set equal" => {
+                let mut object = object;
+                match name {
+                    "set look" => palette.change_look(dice, &mut object),
+                    "set equal" => {}
+                    _ => object.placement = placement(dice),
+                }
+                if name == "set placement and copies" || dice.chance(0.1) && name != "set equal" {
+                    object.instances = copies(dice);
+                }
+                player.renderer.set(id, object.clone())?;
+                player.thing(thing).object = object;
+            }
+            "set_offset" => {
+                let offset = palette.offset(dice);
+                player.renderer.set_offset(id, offset)?;
+                player.thing(thing).object.offset = offset;
+            }
+            "set_placement" => {
+                let place = placement(dice);
+                player.renderer.set_placement(id, place)?;
+                player.thing(thing).object.placement = place;
+            }
+            "set_instances" => {
+                let all = match dice.chance(0.3) {
+                    true => moved(&object),
+                    false => copies(dice),
+                };
+                return self.set_instances(n, thing, all);
+            }
+            "set_mask" => {
+                let mask = dice.pick(&[u32::MAX, u32::MAX, u32::MAX, 1, 2, 0]);
+                player.renderer.set_mask(id, mask)?;
+                player.thing(thing).mask = mask;
+            }
+            "set_color_image" if textured => {
+                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[0]));
+                player.renderer.set_color_image(id, image.clone())?;
+                player.thing(thing).color = image;
+            }
+            "set_slope_image" if textured => {
+                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[1]));
+                player.renderer.set_slope_image(id, image.clone())?;
+                player.thing(thing).relief = image.map(|image| (image, false));
+            }
+            "set_height_image" if textured => {
+                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[2]));
+                player.renderer.set_height_image(id, image.clone())?;
+                player.thing(thing).relief = image.map(|image| (image, true));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Values that are refused change nothing.
+    fn refuse(&mut self, n: usize, thing: usize) -> Result<(), Finding> {
+        let which = self.dice.below(5);
+        let player = &mut self.players[n];
+        let Thing { id, mut object, .. } = player.thing(thing).clone();
+        let extend = f64::NAN;
+        let wrong = Placement {
+            scale: glam::DVec3::ZERO,
+            ..object.placement
+        };
+        let renderer = &mut player.renderer;
+        let result = match which {
+            0 => {
+                object.offset.extend = extend;
+                object.color = [1.0, 0.0, 1.0];
+                renderer.set(id, object)
+            }
+            1 => renderer.set_offset(
+                id,
+                Offset {
+                    extend,
+                    ..object.offset
+                },
+            ),
+            2 => renderer.set_placement(id, wrong),
+            3 => renderer.set_instances(id, vec![object.placement, wrong]),
+            _ => {
+                object.map_rows = 0;
+                renderer.add(object).map(|_| ())
+            }
+        };
+        match result {
+            Err(e) if e.kind == ErrorKind::Content => Ok(()),
+            other => found(format!("wrong values {which} gave {other:?}")),
+        }
+    }
+
+    fn warm(&mut self, n: usize, name: &str) -> Result<(), Finding> {
+        let hides = self.dice.chance(0.5);
+        let player = &mut self.players[n];
+        match name {
+            "hide_until_compiled" => {
+                player.hides = hides;
+                player.renderer.hide_until_compiled(hides);
+            }
+            "prewarm" => {
+                player.join()?;
+                player.renderer.prewarm()?.compile()?;
+                player.prewarmed = true;
+            }
+            _ => {
+                player.join()?;
+                let prewarm = player.renderer.prewarm()?;
+                player.compiles = Some(std::thread::spawn(move || prewarm.compile()));
+                player.prewarmed = true;
+            }
+        }
+        Ok(())
+    }
+
+    fn whole(&mut self, n: usize, name: &str) -> Result<(), Finding> {
+        match name {
+            "plan" => {
+                let kind = self.players[n].kind.clone();
+                let seen = views::random(&mut self.dice, &kind, None, None);
+                match self.players[n].renderer.plan(&seen.view) {
+                    Err(e) if e.key.as_deref() == Some("shadow") => {
+                        self.players[n].model.lighting.shadow = revmap::scene::Shadow::Off;
+                        self.make_again(n)
+                    }
+                    result => Ok(result?),
+                }
+            }
+            "target" => {
+                let depths = self.dice.chance(0.5);
+                self.players[n].set_target(self.host, depths)
+            }
+            _ => {
+                // All objects of another renderer, or none.
+                if self.dice.chance(0.3) {
+                    self.players[n].model = Model::default();
+                }
+                self.make_again(n)
+            }
+        }
+    }
+}
+
+/// The copies of an object, half of them elsewhere.
+fn moved(object: &Object) -> revmap::scene::Copies {
+    let mut all = object.instances.clone();
+    for place in all.iter_mut().step_by(2) {
+        place.position.z += 0.1;
+    }
+    all
+}

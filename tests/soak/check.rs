@@ -1,0 +1,184 @@
+//! Comparison of a frame with that of a fresh renderer.
+
+use crate::common::host::{Host, once};
+use crate::kind::Kind;
+use crate::log::{Finding, found};
+use crate::model::Model;
+use crate::surface::{Recording, Surface, target, words};
+use crate::views::Seen;
+use revmap::gpu::{Device, DrawPath, Renderer};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// A frame that was drawn, and all that it shows.
+pub struct Drawn {
+    pub kind: Rc<Kind>,
+    pub model: Model,
+    pub seen: Seen,
+    /// True if compute compares depths.
+    pub depths: bool,
+    pub paths: Vec<DrawPath>,
+    /// The bytes of each plane.
+    pub planes: Vec<Vec<u8>>,
+    pub name: String,
+}
+
+/// What the comparison does wrong, to test that it fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    None,
+    /// The fresh renderer has the object's last colour.
+    Color,
+    /// It has no textures.
+    Texture,
+    /// It lacks an object.
+    Object,
+    /// One copy is where another is.
+    Copy,
+}
+
+/// What a comparison counted.
+pub struct Same {
+    /// Pixels that show a solid.
+    pub hits: usize,
+    /// True if some object took another draw path.
+    pub other_path: bool,
+}
+
+impl Fault {
+    /// Changes what the fresh renderer gets.
+    fn spoil(self, model: &mut Model) {
+        match self {
+            Self::None => {}
+            Self::Color => {
+                for thing in &mut model.things {
+                    thing.object.color = [0.5, 0.0, 0.5];
+                }
+            }
+            Self::Texture => {
+                for thing in &mut model.things {
+                    thing.color = None;
+                    thing.object.texturing.color_map = None;
+                }
+            }
+            Self::Object => drop(model.things.pop()),
+            Self::Copy => {
+                for thing in &mut model.things {
+                    if thing.object.instances.len() > 1 {
+                        thing.object.instances[1] = thing.object.instances[0];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Draws what a frame shows by a new renderer, and compares.
+pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Result<Same, Finding> {
+    let kind = &drawn.kind;
+    let mut model = drawn.model.clone();
+    fault.spoil(&mut model);
+    let null = ash::vk::RenderPass::null();
+    let mut renderer = Renderer::new(device, kind.output(null), &kind.search, 1)?;
+    let ids = model.add_to(&mut renderer)?;
+    let surface = Surface::new(host, kind);
+    let words = kind.compute.then(|| words(host, kind));
+    if let Some(words) = &words {
+        // SAFETY: the buffer has two words for each pixel, and outlives the renderer's frame.
+        unsafe { renderer.set_compute_target(target(words, drawn.depths)) }?;
+    }
+    let mut result = Ok(());
+    once(host, |cmd| {
+        // SAFETY: `cmd` is recording; no frame of this renderer is in flight; all that the commands
+        // read outlives them.
+        result = unsafe {
+            renderer
+                .prepare(cmd, 0, &drawn.seen.view)
+                .map_err(Finding::from)
+                .and_then(|frame| {
+                    let recording = Recording {
+                        renderer: &renderer,
+                        frame: &frame,
+                        times: 1,
+                        refused: Vec::new(),
+                    };
+                    surface.draw(host, cmd, (kind, &drawn.seen), words.as_ref(), &recording)
+                })
+        };
+    });
+    result?;
+    let mut planes = surface.read(kind);
+    if let Some(n) = kind.identity() {
+        let fresh: Vec<_> = ids.iter().map(|id| id.number()).collect();
+        renumber(&mut planes[n], &fresh, &drawn.model.numbers());
+    }
+    compare(drawn, &planes, &renderer.draw_paths())
+}
+
+/// Changes the numbers of objects in a picture of identities.
+fn renumber(bytes: &mut [u8], from: &[u32], to: &[u32]) {
+    let numbers: HashMap<u32, u32> = from.iter().copied().zip(to.iter().copied()).collect();
+    for pixel in bytes.as_chunks_mut::<8>().0 {
+        let (number, _) = pixel.split_first_chunk_mut::<4>().unwrap();
+        let known = numbers.get(&u32::from_le_bytes(*number));
+        *number = known.map_or(*number, |n| n.to_le_bytes());
+    }
+}
+
+fn compare(drawn: &Drawn, fresh: &[Vec<u8>], paths: &[DrawPath]) -> Result<Same, Finding> {
+    let kind = &drawn.kind;
+    let mut hits = 0;
+    for (n, (found_plane, wanted)) in drawn.planes.iter().zip(fresh).enumerate() {
+        // Compute has depths, then colours.
+        let bytes = if kind.compute {
+            4
+        } else {
+            wanted.len() / kind.pixels()
+        };
+        let pairs = || {
+            found_plane
+                .chunks(bytes)
+                .zip(wanted.chunks(bytes))
+                .enumerate()
+        };
+        // The first pixel's colour may be a solid's, which this counts wrong.
+        hits = pairs()
+            .filter(|(_, (_, wanted))| *wanted != &fresh[n][..bytes])
+            .count();
+        let differ = || pairs().filter(|(_, (a, b))| a != b);
+        let Some((first, (a, b))) = differ().next() else {
+            continue;
+        };
+        let (at, width) = (first % kind.pixels(), kind.options.width as usize);
+        return found(format!(
+            "{}: {} pixels differ from a fresh renderer's in plane {n}, first ({}, {}): {a:?}, fresh {b:?}; \
+             drawn by {}; fresh {}; {} objects, {} copies, view {} of {:?}",
+            drawn.name,
+            differ().count(),
+            at % width,
+            at / width,
+            summary(&drawn.paths),
+            summary(paths),
+            drawn.model.things.len(),
+            drawn.model.copies(),
+            drawn.seen.name,
+            kind,
+        ));
+    }
+    Ok(Same {
+        hits,
+        other_path: drawn.paths != paths,
+    })
+}
+
+/// The number of objects of each draw path.
+fn summary(paths: &[DrawPath]) -> String {
+    let mut counts: Vec<(DrawPath, usize)> = Vec::new();
+    for path in paths {
+        match counts.iter_mut().find(|(known, _)| known == path) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((*path, 1)),
+        }
+    }
+    format!("{counts:?}")
+}

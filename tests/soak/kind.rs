@@ -1,0 +1,168 @@
+//! The kinds of output that renderers of a random host have.
+
+use crate::common::host::{COLOR, DEPTH, Options, dynamic, order};
+use crate::dice::Dice;
+use ash::vk;
+use revmap::gpu::{Output, PassFormats, PassKind};
+use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Solver, Tolerance};
+
+/// An output, and how its renderer searches.
+#[derive(Clone, Debug)]
+pub struct Kind {
+    pub options: Options,
+    pub planes: Planes,
+    /// Formats of the colour attachments, and bytes of a pixel.
+    pub formats: Vec<(vk::Format, usize)>,
+    pub compute: bool,
+    /// True if the renderer gets the host's render pass itself, with pipelines of its own.
+    pub own_pass: bool,
+    pub search: SearchSettings,
+}
+
+impl Kind {
+    pub fn random(dice: &mut Dice) -> Self {
+        let (width, height) = dice.pick(&[(64, 48), (64, 48), (33, 17), (96, 64)]);
+        let mut kind = Self {
+            options: Options {
+                width,
+                height,
+                dynamic: true,
+                samples: 1,
+                reversed: dice.chance(0.3),
+            },
+            planes: Planes::Color,
+            formats: vec![(COLOR, 4)],
+            compute: false,
+            own_pass: false,
+            search: search(dice),
+        };
+        match dice.weighed([0.4, 0.2, 0.15, 0.25].into_iter()) {
+            0 => {
+                kind.options.dynamic = dice.chance(0.5);
+                kind.options.samples = dice.pick(&[1, 1, 4]);
+                kind.own_pass = !kind.options.dynamic && dice.chance(0.2);
+            }
+            1 => {
+                let planes = planes(dice);
+                kind.formats = planes.iter().map(|plane| format(*plane)).collect();
+                kind.planes = Planes::List(PlaneList::new(&planes).unwrap());
+            }
+            2 => {
+                let parallel = dice.chance(0.5);
+                kind.planes = Planes::Depth { parallel };
+                kind.formats.clear();
+            }
+            _ => {
+                kind.compute = true;
+                kind.options.reversed = false;
+                kind.formats.clear();
+            }
+        }
+        kind
+    }
+
+    /// True if depths are along parallel rays.
+    pub fn parallel(&self) -> bool {
+        self.planes == Planes::Depth { parallel: true }
+    }
+
+    pub fn has_motion(&self) -> bool {
+        matches!(self.planes, Planes::List(list) if list.has(Plane::Motion))
+    }
+
+    /// The number of the attachment of identities.
+    pub fn identity(&self) -> Option<usize> {
+        let Planes::List(list) = self.planes else {
+            return None;
+        };
+        list.planes().iter().position(|p| *p == Plane::Identity)
+    }
+
+    pub fn pixels(&self) -> usize {
+        (self.options.width * self.options.height) as usize
+    }
+
+    /// The output, in the host's render pass if there is one. Null: in any pass of the formats.
+    pub fn output(&self, pass: vk::RenderPass) -> Output {
+        if self.compute {
+            return Output::Compute(self.planes);
+        }
+        let colors: Vec<_> = self.formats.iter().map(|(format, _)| *format).collect();
+        let begun = if self.options.dynamic {
+            dynamic(&colors)
+        } else if pass == vk::RenderPass::null() {
+            let (color, depth) = (colors, DEPTH);
+            PassKind::SingleSubpass { color, depth }
+        } else {
+            PassKind::RenderPass { pass, subpass: 0 }
+        };
+        Output::Pass(PassFormats {
+            samples: self.options.samples,
+            depth: order(&self.options),
+            ..PassFormats::new(begun, self.planes)
+        })
+    }
+
+    /// What attachments are cleared to.
+    pub fn clears(&self) -> Vec<vk::ClearColorValue> {
+        let of = |(format, _): &(vk::Format, usize)| match *format {
+            vk::Format::R32G32_UINT => vk::ClearColorValue {
+                uint32: [u32::MAX; 4],
+            },
+            _ => vk::ClearColorValue {
+                float32: [0.1, 0.2, 0.3, 1.0],
+            },
+        };
+        self.formats.iter().map(of).collect()
+    }
+}
+
+fn search(dice: &mut Dice) -> SearchSettings {
+    SearchSettings {
+        solver: dice.pick(&[
+            Solver::Exact,
+            Solver::Exact,
+            Solver::Exact,
+            Solver::Exact,
+            Solver::Quadric,
+            Solver::Live,
+        ]),
+        // Small maps are baked fast.
+        map_rows: Some(32),
+        proxy_min_pixels: dice.pick(&[0, 150, 150, u32::MAX]),
+        tolerance: dice.pick(&[
+            Tolerance::EXACT,
+            Tolerance::DEFAULT,
+            Tolerance::new(8.0).unwrap(),
+        ]),
+        ..SearchSettings::exact()
+    }
+}
+
+/// Some planes in any order.
+fn planes(dice: &mut Dice) -> Vec<Plane> {
+    let mut left = vec![
+        Plane::Color,
+        Plane::BaseColor,
+        Plane::Normal,
+        Plane::OctahedralNormal,
+        Plane::Material,
+        Plane::Motion,
+        Plane::Identity,
+    ];
+    let count = 1 + dice.below(5);
+    (0..count)
+        .map(|_| left.remove(dice.below(left.len())))
+        .collect()
+}
+
+fn format(plane: Plane) -> (vk::Format, usize) {
+    match plane {
+        Plane::Color | Plane::BaseColor => (COLOR, 4),
+        Plane::Normal => (vk::Format::R16G16B16A16_SFLOAT, 8),
+        Plane::OctahedralNormal => (vk::Format::R16G16_SFLOAT, 4),
+        Plane::Material => (vk::Format::R8G8_UNORM, 2),
+        Plane::Motion => (vk::Format::R32G32_SFLOAT, 8),
+        Plane::Identity => (vk::Format::R32G32_UINT, 8),
+    }
+}

@@ -1,0 +1,210 @@
+//! Random objects and lights, from a palette of shared data.
+
+use crate::common::host::{Host, Texture};
+use crate::common::shapes;
+use crate::dice::Dice;
+use ash::vk;
+use glam::{DQuat, DVec3, EulerRot};
+use revmap::gpu::HostImage;
+use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
+use revmap::profile::Profile;
+use revmap::scene::{
+    BumpForm, Clip, Copies, Light, Lighting, Material, Object, Offset, Placement, Shadow,
+};
+use std::sync::Arc;
+
+/// What objects of an episode share, and the techniques that it has.
+pub struct Palette<'a> {
+    profiles: Vec<Arc<Profile>>,
+    colors: Vec<Arc<ColorMap>>,
+    slopes: Vec<Arc<DisplacementMap>>,
+    /// Images of colours, of slopes and of heights, two each.
+    pub images: [[HostImage; 2]; 3],
+    pub textured: bool,
+    offsets: bool,
+    cut: bool,
+    replicas: bool,
+    pub shadows: bool,
+    _textures: Vec<Texture<'a>>,
+}
+
+/// Side of textures, texels.
+const SIDE: u32 = 8;
+
+fn color_texels(seed: u32) -> Vec<[u8; 4]> {
+    let texel = |n: u32| {
+        let (x, y) = (n % SIDE, n / SIDE);
+        [(30 * x) as u8, (30 * y) as u8, (90 * seed % 256) as u8, 255]
+    };
+    (0..SIDE * SIDE).map(texel).collect()
+}
+
+fn heights(seed: u32) -> Vec<f32> {
+    let height = |n| ((n * (29 + 2 * seed)) % 64) as f32 / 64.0;
+    (0..SIDE * SIDE).map(height).collect()
+}
+
+fn color_map(seed: u32) -> Arc<ColorMap> {
+    Arc::new(ColorMap::from_texels(SIDE, SIDE, color_texels(seed)).unwrap())
+}
+
+fn slope_map(seed: u32) -> Arc<DisplacementMap> {
+    let filter = SlopeFilter::Scharr;
+    let map = DisplacementMap::from_heights(SIDE, SIDE, &heights(seed), filter);
+    Arc::new(map.unwrap())
+}
+
+impl<'a> Palette<'a> {
+    pub fn new(host: &'a Host, dice: &mut Dice) -> Self {
+        use vk::Format as F;
+        let mut profiles = shapes::all();
+        let profiles = (0..4).map(|_| profiles.remove(dice.below(profiles.len())).1);
+        let textures: Vec<_> = (0..6u32)
+            .map(|n| {
+                let (kind, seed) = (n / 2, 3 + n % 2);
+                let slopes = || bytemuck::pod_collect_to_vec(&slope_map(seed).encode()[0].texels);
+                match kind {
+                    0 => Texture::new(host, F::R8G8B8A8_SRGB, &color_texels(seed)),
+                    1 => Texture::new(host, F::R16G16_SFLOAT, &slopes()),
+                    _ => {
+                        let texels: Vec<_> = bytemuck::pod_collect_to_vec(&heights(seed));
+                        Texture::new(host, F::R32_SFLOAT, &texels)
+                    }
+                }
+            })
+            .collect();
+        Self {
+            profiles: profiles.map(Arc::new).collect(),
+            colors: (0..3).map(color_map).collect(),
+            slopes: (0..2).map(slope_map).collect(),
+            images: [0, 2, 4].map(|n| [textures[n].image(), textures[n + 1].image()]),
+            textured: dice.chance(0.7),
+            offsets: dice.chance(0.7),
+            cut: dice.chance(0.3),
+            replicas: dice.chance(0.3),
+            shadows: dice.chance(0.4),
+            _textures: textures,
+        }
+    }
+
+    /// An object with one copy or several.
+    pub fn object(&self, dice: &mut Dice) -> Object {
+        let mut object = Object::new("one", dice.pick(&self.profiles));
+        object.placement = placement(dice);
+        self.change_look(dice, &mut object);
+        if dice.chance(0.25) {
+            object.instances = copies(dice);
+        }
+        object
+    }
+
+    /// Changes some values of an object other than its copies.
+    pub fn change_look(&self, dice: &mut Dice, object: &mut Object) {
+        if dice.chance(0.2) {
+            object.profile = dice.pick(&self.profiles);
+        }
+        if dice.chance(0.6) {
+            object.color = [0; 3].map(|_| dice.between(0.0, 1.0) as f32);
+        }
+        if dice.chance(0.2) {
+            object.specular.shininess = dice.pick(&[4.0, 80.0]);
+            let (roughness, metalness) = (dice.between(0.0, 1.0) as f32, 1.0);
+            object.material = dice.chance(0.5).then_some(Material {
+                roughness,
+                metalness,
+            });
+        }
+        if self.offsets && dice.chance(0.4) {
+            object.offset = self.offset(dice);
+        }
+        if self.cut && dice.chance(0.4) {
+            object.clip = dice.pick(&[Clip::None, Clip::Box]);
+            object.axis = dice.pick(&[[0.5; 2], [0.45, 0.5]]);
+        }
+        if self.replicas && dice.chance(0.4) {
+            object.repeat = dice.pick(&[[1; 3], [1; 3], [2, 2, 1], [1, 1, 3]]);
+            object.mirror = dice.pick(&[[false; 3], [true, false, true]]);
+        }
+        if self.textured && dice.chance(0.5) {
+            self.change_textures(dice, object);
+        }
+    }
+
+    fn change_textures(&self, dice: &mut Dice, object: &mut Object) {
+        let look = &mut object.texturing;
+        look.color_map = match dice.below(4) {
+            0 => None,
+            // A map that no object has.
+            1 => Some(color_map(dice.below(250) as u32)),
+            _ => Some(dice.pick(&self.colors)),
+        };
+        look.displacement_map = dice.chance(0.4).then(|| dice.pick(&self.slopes));
+        look.bump = dice.pick(&[0.02, 0.05]);
+        look.bump_form = dice.pick(&[BumpForm::SurfaceGradient, BumpForm::Papers]);
+        look.projection =
+            dice.pick(&[Projection::Cylindrical, Projection::Arc, Projection::Planar]);
+        look.repeat = dice.pick(&[[1.0; 2], [2.0, 1.0], [1.0, 3.0]]);
+    }
+
+    pub fn offset(&self, dice: &mut Dice) -> Offset {
+        Offset {
+            extend: dice.pick(&[0.0, 0.0, -0.01, 0.01, 0.03, 0.2]),
+            bevel: dice.pick(&[0.0, 0.0, 0.08]),
+            chamfer: dice.pick(&[1.0, 0.4]),
+        }
+    }
+
+    pub fn lighting(&self, dice: &mut Dice) -> Lighting {
+        let light = |dice: &mut Dice| Light {
+            direction: DVec3::new(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0), -0.6),
+            color: [0.4; 3],
+            radius: dice.pick(&[2.0, 20.0]),
+        };
+        let count = dice.pick(&[0, 1, 2, 2, 3, 5]);
+        Lighting {
+            ambient: [0.1 + 0.1 * dice.below(3) as f32; 3],
+            lights: (0..count).map(|_| light(dice)).collect(),
+            shadow: match self.shadows {
+                true => dice.pick(&[Shadow::Off, Shadow::Off, Shadow::Hard, Shadow::Soft]),
+                false => Shadow::Off,
+            },
+        }
+    }
+}
+
+/// A placement near the origin.
+pub fn placement(dice: &mut Dice) -> Placement {
+    let mut turn = || dice.between(-3.0, 3.0);
+    let turns = [turn(), turn(), turn()];
+    let rotation = match dice.chance(0.5) {
+        true => DQuat::IDENTITY,
+        false => DQuat::from_euler(EulerRot::XYZ, turns[0], turns[1], turns[2]),
+    };
+    let scale = dice.between(0.2, 1.3);
+    let stretched = DVec3::new(1.0, 0.8, 1.4) * scale;
+    Placement {
+        position: DVec3::new(
+            dice.between(-1.5, 1.5),
+            dice.between(-1.5, 1.5),
+            dice.between(-1.0, 0.5),
+        ),
+        rotation,
+        scale: dice.pick(&[DVec3::splat(scale), DVec3::splat(scale), stretched]),
+    }
+}
+
+/// Copies around the limits at which draw paths change; 0 is one copy at the placement.
+pub fn copies(dice: &mut Dice) -> Copies {
+    let count = dice.pick(&[0, 0, 1, 2, 2, 5, 63, 64, 65, 66, 130, 400, 700]);
+    many(dice, count)
+}
+
+pub fn many(dice: &mut Dice, count: usize) -> Copies {
+    let size = 2.0 / (count as f64).cbrt().max(1.0);
+    let one = |_| {
+        let mut one = placement(dice);
+        one.scale *= size.min(1.0);
+        one
+    };
+    (0..count).map(one).collect()
+}
