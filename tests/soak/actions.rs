@@ -2,14 +2,14 @@
 
 use crate::episode::Episode;
 use crate::log::{Finding, found};
-use crate::model::{Model, Thing};
+use crate::model::Thing;
 use crate::values::{copies, many, placement};
 use crate::views;
 use revmap::error::ErrorKind;
 use revmap::scene::{Object, Offset, Placement};
 
 /// Names and weights.
-const ACTIONS: [(&str, f64); 26] = [
+const ACTIONS: [(&str, f64); 28] = [
     ("add", 12.0),
     ("remove", 5.0),
     ("set look", 8.0),
@@ -29,11 +29,13 @@ const ACTIONS: [(&str, f64); 26] = [
     ("remove most", 3.0),
     ("remove all", 0.3),
     ("thousands of copies", 0.6),
-    ("prewarm", 1.5),
+    ("prewarm", 2.0),
     ("prewarm on a thread", 1.0),
     ("hide_until_compiled", 1.0),
     ("plan", 2.0),
     ("refused values", 2.0),
+    ("other images", 1.0),
+    ("other profile", 1.0),
     ("renderer", 0.6),
     ("target", 1.0),
 ];
@@ -42,8 +44,22 @@ const ACTIONS: [(&str, f64); 26] = [
 const MANY: usize = 16;
 
 impl Episode<'_> {
+    /// Does some actions on each player.
+    pub fn act_on_all(&mut self) -> Result<(), Finding> {
+        for player in 0..self.players.len() {
+            for _ in 0..self.dice.pick(&[0, 1, 1, 2, 3, 5]) {
+                self.act(player)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Does one action on a player.
     pub fn act(&mut self, n: usize) -> Result<(), Finding> {
+        // A renderer that is about to be dropped may have lost some values.
+        if self.players[n].spoilt {
+            return Ok(());
+        }
         let (name, _) = ACTIONS[self.dice.weighed(ACTIONS.iter().map(|a| a.1))];
         let count = self.players[n].model.things.len();
         let thing = self.dice.below(count);
@@ -51,7 +67,9 @@ impl Episode<'_> {
         self.log.tally.count(name, 1);
         match name {
             "prewarm" | "prewarm on a thread" | "hide_until_compiled" => self.warm(n, name),
-            "plan" | "renderer" | "target" => self.whole(n, name),
+            "plan" | "renderer" | "target" | "other images" | "other profile" => {
+                self.whole(n, name)
+            }
             "add"
             | "remove and add"
             | "add and remove"
@@ -261,15 +279,17 @@ impl Episode<'_> {
                 player.hides = hides;
                 player.renderer.hide_until_compiled(hides);
             }
-            "prewarm" => {
-                player.join()?;
-                player.renderer.prewarm()?.compile()?;
-                player.prewarmed = true;
-            }
             _ => {
                 player.join()?;
-                let prewarm = player.renderer.prewarm()?;
-                player.compiles = Some(std::thread::spawn(move || prewarm.compile()));
+                let prewarm = match player.renderer.prewarm() {
+                    Ok(prewarm) => prewarm,
+                    Err(e) => return self.refused(n, e),
+                };
+                let compile = move || prewarm.compile();
+                match name {
+                    "prewarm" => compile()?,
+                    _ => player.compiles = Some(std::thread::spawn(compile)),
+                }
                 player.prewarmed = true;
             }
         }
@@ -281,24 +301,25 @@ impl Episode<'_> {
             "plan" => {
                 let kind = self.players[n].kind.clone();
                 let seen = views::random(&mut self.dice, &kind, None, None);
-                match self.players[n].renderer.plan(&seen.view) {
-                    Err(e) if e.key.as_deref() == Some("shadow") => {
-                        self.players[n].model.lighting.shadow = revmap::scene::Shadow::Off;
-                        self.make_again(n)
-                    }
-                    result => Ok(result?),
-                }
+                let planned = self.players[n].renderer.plan(&seen.view);
+                planned.or_else(|e| self.refused(n, e))
+            }
+            "other images" => {
+                self.palette.change_images(&mut self.dice);
+                Ok(())
+            }
+            "other profile" => {
+                self.palette.change_profile(&mut self.dice);
+                Ok(())
             }
             "target" => {
                 let depths = self.dice.chance(0.5);
                 self.players[n].set_target(self.host, depths)
             }
+            // After this frame.
             _ => {
-                // All objects of another renderer, or none.
-                if self.dice.chance(0.3) {
-                    self.players[n].model = Model::default();
-                }
-                self.make_again(n)
+                self.players[n].spoilt = true;
+                Ok(())
             }
         }
     }

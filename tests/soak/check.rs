@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::surface::{Recording, Surface, target, words};
 use crate::views::Seen;
 use revmap::gpu::{Device, DrawPath, Renderer};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// A frame that was drawn, and all that it shows.
@@ -41,6 +41,8 @@ pub enum Fault {
 pub struct Same {
     /// Pixels that show a solid.
     pub hits: usize,
+    /// Pixels at the near plane that differ.
+    pub tied: usize,
     /// True if some object took another draw path.
     pub other_path: bool,
 }
@@ -73,11 +75,107 @@ impl Fault {
     }
 }
 
+/// What a new renderer drew.
+struct Fresh {
+    planes: Vec<Vec<u8>>,
+    paths: Vec<DrawPath>,
+}
+
 /// Draws what a frame shows by a new renderer, and compares.
 pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Result<Same, Finding> {
-    let kind = &drawn.kind;
     let mut model = drawn.model.clone();
     fault.spoil(&mut model);
+    let new = fresh(host, device, drawn, &model)?;
+    let (mut hits, mut wrong, mut text) = (0, BTreeSet::new(), String::new());
+    let kind = &drawn.kind;
+    let planes = drawn.planes.iter().zip(&new.planes);
+    for (n, (shown, wanted)) in planes.enumerate() {
+        // Compute has depths, which may hold anything if they do not count, then colours.
+        let (bytes, skipped) = match kind.compute {
+            true => (4, if drawn.depths { 0 } else { kind.pixels() }),
+            false => (wanted.len() / kind.pixels(), 0),
+        };
+        let pairs = || shown.chunks(bytes).zip(wanted.chunks(bytes)).enumerate();
+        // If the first pixel shows a solid, this counts the background.
+        hits = pairs().filter(|(_, (_, b))| *b != &wanted[..bytes]).count();
+        let differ = pairs().skip(skipped).filter(|(_, (a, b))| a != b);
+        for (count, (pixel, (a, b))) in differ.enumerate() {
+            let pixel = pixel % kind.pixels();
+            wrong.insert(pixel);
+            if count == 0 {
+                let (x, y) = (pixel % kind.width(), pixel / kind.width());
+                text += &format!(" plane {n} at ({x}, {y}): {a:?}, fresh {b:?};");
+            }
+        }
+    }
+    let mut same = Same {
+        hits,
+        tied: 0,
+        other_path: drawn.paths != new.paths,
+    };
+    if wrong.is_empty() {
+        return Ok(same);
+    }
+    let (count, at_near) = (wrong.len(), near_plane(host, device, drawn, &model)?);
+    wrong.retain(|pixel| !at_near[*pixel]);
+    same.tied = count - wrong.len();
+    if wrong.is_empty() {
+        return Ok(same);
+    }
+    found(format!(
+        "{}: {} pixels differ from a fresh renderer's, {} beside them at the near plane:{text} drawn by {}; \
+         fresh {}; {} objects, {} copies, view {} of {kind:?}",
+        drawn.name,
+        wrong.len(),
+        same.tied,
+        summary(&drawn.paths),
+        summary(&new.paths),
+        drawn.model.things.len(),
+        drawn.model.copies(),
+        drawn.seen.name,
+    ))
+}
+
+/// The pixels that show the near plane within a solid. If several solids are there, all have its
+/// depth, and the order of draws decides which one shows.
+fn near_plane(
+    host: &Host,
+    device: &Device,
+    drawn: &Drawn,
+    model: &Model,
+) -> Result<Vec<bool>, Finding> {
+    let mut kind = (*drawn.kind).clone();
+    let several = kind.options.samples > 1;
+    kind.options.samples = 1;
+    let pixels = kind.pixels();
+    let near: f32 = if kind.options.reversed { 1.0 } else { 0.0 };
+    let one = Drawn {
+        kind: Rc::new(kind),
+        depths: true,
+        model: drawn.model.clone(),
+        paths: Vec::new(),
+        planes: Vec::new(),
+        name: String::new(),
+        seen: drawn.seen,
+    };
+    let planes = fresh(host, device, &one, model)?.planes;
+    // Compute has the depths first, in the same buffer.
+    let depths = &planes[planes.len() - 1][..4 * pixels];
+    let is_near = |n: usize| depths[4 * n..4 * n + 4] == near.to_le_bytes();
+    let width = one.kind.width();
+    let beside = |n: usize| {
+        let reach = usize::from(several);
+        let (x, y) = (n % width, n / width);
+        (y.saturating_sub(reach)..=(y + reach).min(pixels / width - 1)).any(|y| {
+            let row = x.saturating_sub(reach)..=(x + reach).min(width - 1);
+            row.into_iter().any(|x| is_near(y * width + x))
+        })
+    };
+    Ok((0..pixels).map(beside).collect())
+}
+
+fn fresh(host: &Host, device: &Device, drawn: &Drawn, model: &Model) -> Result<Fresh, Finding> {
+    let kind = &drawn.kind;
     let null = ash::vk::RenderPass::null();
     let mut renderer = Renderer::new(device, kind.output(null), &kind.search, 1)?;
     let ids = model.add_to(&mut renderer)?;
@@ -89,30 +187,29 @@ pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Resul
     }
     let mut result = Ok(());
     once(host, |cmd| {
-        // SAFETY: `cmd` is recording; no frame of this renderer is in flight; all that the commands
-        // read outlives them.
-        result = unsafe {
-            renderer
-                .prepare(cmd, 0, &drawn.seen.view)
-                .map_err(Finding::from)
-                .and_then(|frame| {
-                    let recording = Recording {
-                        renderer: &renderer,
-                        frame: &frame,
-                        times: 1,
-                        refused: Vec::new(),
-                    };
-                    surface.draw(host, cmd, (kind, &drawn.seen), words.as_ref(), &recording)
-                })
-        };
+        // SAFETY: `cmd` is recording; no frame of this renderer is in flight.
+        let frame = unsafe { renderer.prepare(cmd, 0, &drawn.seen.view) };
+        result = frame.map_err(Finding::from).and_then(|frame| {
+            let recording = Recording {
+                renderer: &renderer,
+                frame: &frame,
+                times: 1,
+                warms: false,
+                refused: Vec::new(),
+            };
+            let shown = (&**kind, &drawn.seen);
+            // SAFETY: as above; all that the commands read outlives them.
+            unsafe { surface.draw(host, cmd, shown, words.as_ref(), &recording) }
+        });
     });
     result?;
     let mut planes = surface.read(kind);
     if let Some(n) = kind.identity() {
-        let fresh: Vec<_> = ids.iter().map(|id| id.number()).collect();
-        renumber(&mut planes[n], &fresh, &drawn.model.numbers());
+        let new: Vec<_> = ids.iter().map(|id| id.number()).collect();
+        renumber(&mut planes[n], &new, &drawn.model.numbers());
     }
-    compare(drawn, &planes, &renderer.draw_paths())
+    let paths = renderer.draw_paths();
+    Ok(Fresh { planes, paths })
 }
 
 /// Changes the numbers of objects in a picture of identities.
@@ -123,52 +220,6 @@ fn renumber(bytes: &mut [u8], from: &[u32], to: &[u32]) {
         let known = numbers.get(&u32::from_le_bytes(*number));
         *number = known.map_or(*number, |n| n.to_le_bytes());
     }
-}
-
-fn compare(drawn: &Drawn, fresh: &[Vec<u8>], paths: &[DrawPath]) -> Result<Same, Finding> {
-    let kind = &drawn.kind;
-    let mut hits = 0;
-    for (n, (found_plane, wanted)) in drawn.planes.iter().zip(fresh).enumerate() {
-        // Compute has depths, then colours.
-        let bytes = if kind.compute {
-            4
-        } else {
-            wanted.len() / kind.pixels()
-        };
-        let pairs = || {
-            found_plane
-                .chunks(bytes)
-                .zip(wanted.chunks(bytes))
-                .enumerate()
-        };
-        // The first pixel's colour may be a solid's, which this counts wrong.
-        hits = pairs()
-            .filter(|(_, (_, wanted))| *wanted != &fresh[n][..bytes])
-            .count();
-        let differ = || pairs().filter(|(_, (a, b))| a != b);
-        let Some((first, (a, b))) = differ().next() else {
-            continue;
-        };
-        let (at, width) = (first % kind.pixels(), kind.options.width as usize);
-        return found(format!(
-            "{}: {} pixels differ from a fresh renderer's in plane {n}, first ({}, {}): {a:?}, fresh {b:?}; \
-             drawn by {}; fresh {}; {} objects, {} copies, view {} of {:?}",
-            drawn.name,
-            differ().count(),
-            at % width,
-            at / width,
-            summary(&drawn.paths),
-            summary(paths),
-            drawn.model.things.len(),
-            drawn.model.copies(),
-            drawn.seen.name,
-            kind,
-        ));
-    }
-    Ok(Same {
-        hits,
-        other_path: drawn.paths != paths,
-    })
 }
 
 /// The number of objects of each draw path.

@@ -78,6 +78,10 @@ impl Kind {
         list.planes().iter().position(|p| *p == Plane::Identity)
     }
 
+    pub fn width(&self) -> usize {
+        self.options.width as usize
+    }
+
     pub fn pixels(&self) -> usize {
         (self.options.width * self.options.height) as usize
     }

@@ -93,7 +93,7 @@ impl Log {
 
     /// The last actions, one a line.
     pub fn text(&self) -> String {
-        let last = self.last.iter().map(|one| format!("  {one}\n"));
+        let last = self.last.iter().map(|one| format!("  - {one}\n"));
         let all = self.path.display();
         format!(
             "the last actions (all are in {all}):\n{}",

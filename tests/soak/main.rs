@@ -23,6 +23,7 @@ mod check;
 mod common;
 mod dice;
 mod episode;
+mod frames;
 mod kind;
 mod known;
 mod log;

@@ -87,7 +87,6 @@ impl<'a> Player<'a> {
         // `add_to` ended a frame.
         self.model.end_frame();
         (self.changed, self.prewarmed, self.spoilt) = (true, false, false);
-        self.words.clear();
         self.set_target(host, self.depths)
     }
 
@@ -111,6 +110,11 @@ impl<'a> Player<'a> {
             Some(Ok(result)) => Ok(result?),
             Some(Err(_)) => Err(Finding("the thread that compiles panicked".into())),
         }
+    }
+
+    /// True if something is set that no frame may have.
+    pub fn fresh(&self) -> bool {
+        self.changed || self.model.things.is_empty()
     }
 
     pub fn thing(&mut self, n: usize) -> &mut Thing {

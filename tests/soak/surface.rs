@@ -18,6 +18,8 @@ pub struct Recording<'a> {
     pub renderer: &'a Renderer,
     pub frame: &'a PreparedFrame,
     pub times: usize,
+    /// True if draws of nothing are recorded with all pipelines first.
+    pub warms: bool,
     /// Tokens of other frames.
     pub refused: Vec<&'a PreparedFrame>,
 }
@@ -61,6 +63,7 @@ impl<'a> Surface<'a> {
             match (self, words) {
                 (Self::Pass(into), _) => {
                     into.draw(cmd, &kind.clears(), false, || {
+                        recording.warm(cmd)?;
                         host.device.cmd_set_viewport(cmd, 0, &[seen.viewport]);
                         host.device.cmd_set_scissor(cmd, 0, &[seen.scissor]);
                         recording.record(|r, frame| r.record(cmd, frame), || ())
@@ -74,6 +77,7 @@ impl<'a> Surface<'a> {
                     raw.cmd_fill_buffer(cmd, words.raw, half, half, BACKGROUND);
                     let wait = || barrier(host, cmd, &[]);
                     wait();
+                    recording.warm(cmd)?;
                     recording.record(|r, frame| r.record_compute(cmd, frame), wait)?;
                     wait();
                     let all = [vk::BufferCopy::default().size(2 * half)];
@@ -101,6 +105,16 @@ impl<'a> Surface<'a> {
 }
 
 impl Recording<'_> {
+    /// # Safety
+    /// As for the record of a frame.
+    unsafe fn warm(&self, cmd: vk::CommandBuffer) -> revmap::Result<()> {
+        match self.warms {
+            // SAFETY: as the caller promised.
+            true => unsafe { self.renderer.record_prewarm(cmd, self.frame) },
+            false => Ok(()),
+        }
+    }
+
     fn record(
         &self,
         record: impl Fn(&Renderer, &PreparedFrame) -> revmap::Result<()>,

@@ -25,7 +25,17 @@ pub struct Palette<'a> {
     cut: bool,
     replicas: bool,
     pub shadows: bool,
-    _textures: Vec<Texture<'a>>,
+    /// The images' textures, as long as they are held or commands may read them.
+    textures: Vec<Kept<'a>>,
+    host: &'a Host,
+}
+
+/// A texture and its image.
+struct Kept<'a> {
+    _texture: Texture<'a>,
+    image: HostImage,
+    /// Frames since nothing else holds the image.
+    unheld: usize,
 }
 
 /// Side of textures, texels.
@@ -54,37 +64,87 @@ fn slope_map(seed: u32) -> Arc<DisplacementMap> {
     Arc::new(map.unwrap())
 }
 
+/// A texture of colours (0), slopes (1) or heights (2).
+fn kept(host: &Host, kind: u32, seed: u32) -> Kept<'_> {
+    use vk::Format as F;
+    let (format, texels) = match kind {
+        0 => (F::R8G8B8A8_SRGB, color_texels(seed)),
+        1 => {
+            let slopes = slope_map(seed).encode();
+            (
+                F::R16G16_SFLOAT,
+                bytemuck::pod_collect_to_vec(&slopes[0].texels),
+            )
+        }
+        _ => (F::R32_SFLOAT, bytemuck::pod_collect_to_vec(&heights(seed))),
+    };
+    let texture = Texture::new(host, format, &texels);
+    let image = texture.image();
+    Kept {
+        _texture: texture,
+        image,
+        unheld: 0,
+    }
+}
+
+/// An outline of some corners, from the axis to the axis.
+fn profile(dice: &mut Dice) -> Profile {
+    let count = 3 + dice.below(10);
+    let mut points = vec![[0.0, 0.05]];
+    for n in 0..count {
+        let z = 0.05 + 0.9 * n as f64 / (count - 1) as f64;
+        points.push([dice.between(0.05, 0.42), z]);
+    }
+    points.push([0.0, 0.95]);
+    Profile::polygon(&points, 0.5).unwrap()
+}
+
 impl<'a> Palette<'a> {
     pub fn new(host: &'a Host, dice: &mut Dice) -> Self {
-        use vk::Format as F;
         let mut profiles = shapes::all();
         let profiles = (0..4).map(|_| profiles.remove(dice.below(profiles.len())).1);
-        let textures: Vec<_> = (0..6u32)
-            .map(|n| {
-                let (kind, seed) = (n / 2, 3 + n % 2);
-                let slopes = || bytemuck::pod_collect_to_vec(&slope_map(seed).encode()[0].texels);
-                match kind {
-                    0 => Texture::new(host, F::R8G8B8A8_SRGB, &color_texels(seed)),
-                    1 => Texture::new(host, F::R16G16_SFLOAT, &slopes()),
-                    _ => {
-                        let texels: Vec<_> = bytemuck::pod_collect_to_vec(&heights(seed));
-                        Texture::new(host, F::R32_SFLOAT, &texels)
-                    }
-                }
-            })
-            .collect();
+        let textures: Vec<_> = (0..6).map(|n| kept(host, n / 2, 3 + n % 2)).collect();
+        let image = |n: usize| textures[n].image.clone();
         Self {
             profiles: profiles.map(Arc::new).collect(),
             colors: (0..3).map(color_map).collect(),
             slopes: (0..2).map(slope_map).collect(),
-            images: [0, 2, 4].map(|n| [textures[n].image(), textures[n + 1].image()]),
+            images: [0, 2, 4].map(|n| [image(n), image(n + 1)]),
             textured: dice.chance(0.7),
             offsets: dice.chance(0.7),
             cut: dice.chance(0.3),
             replicas: dice.chance(0.3),
             shadows: dice.chance(0.4),
-            _textures: textures,
+            textures,
+            host,
         }
+    }
+
+    /// Replaces an image. The old one is destroyed when nothing holds it.
+    pub fn change_images(&mut self, dice: &mut Dice) {
+        let (kind, seed) = (dice.below(3), dice.below(250));
+        let new = kept(self.host, kind as u32, seed as u32);
+        self.images[kind][dice.below(2)] = new.image.clone();
+        self.textures.push(new);
+    }
+
+    /// Replaces a profile by one that no object has.
+    pub fn change_profile(&mut self, dice: &mut Dice) {
+        let profile = Arc::new(profile(dice));
+        let n = dice.below(self.profiles.len());
+        self.profiles[n] = profile;
+    }
+
+    /// Destroys the textures that were not held for so many frames.
+    pub fn free_unheld(&mut self, frames: usize) {
+        for kept in &mut self.textures {
+            kept.unheld = if kept.image.is_held() {
+                0
+            } else {
+                kept.unheld + 1
+            };
+        }
+        self.textures.retain(|kept| kept.unheld <= frames);
     }
 
     /// An object with one copy or several.

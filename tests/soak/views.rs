@@ -8,6 +8,7 @@ use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Placement};
+use revmap::settings::Planes;
 
 /// A view, with the dynamic state that a pass sets for it.
 #[derive(Clone, Copy)]
@@ -61,6 +62,9 @@ pub fn random(
     }
     if dice.chance(0.2) {
         view = view.with_jitter([0.25, -0.4]);
+    }
+    if matches!(kind.planes, Planes::Depth { .. }) && dice.chance(0.2) {
+        view = view.with_depth_bias(1e-3);
     }
     if let Some(last) = last
         && dice.chance(0.7)
