@@ -217,7 +217,7 @@ fn headings_say_which_column_is_which() {
         "scene.toml",
         format!("{CAMERA}{CONE}instances = \"copies.csv\"\n"),
     );
-    let mut drawn = |text: &str| {
+    let drawn = |text: &str| {
         bench.file("copies.csv", text);
         bench.done(&format!("render scene.toml -o out.png {SMALL}"));
         bench.read("out.png")
@@ -316,7 +316,7 @@ fn numbers_are_read_as_people_type_them() {
     let bench = Bench::new();
     let set =
         |value: &str| format!("render scene.toml -o out.png {SMALL} --set object.0.extend={value}");
-    let mut drawn = |value: &str| {
+    let drawn = |value: &str| {
         bench.done(&set(value));
         bench.read("out.png")
     };
