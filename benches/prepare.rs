@@ -7,6 +7,7 @@ use ash::vk;
 use divan::Bencher;
 use glam::DVec3;
 use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::maps::ColorMap;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement};
 use revmap::settings::{Planes, SearchSettings};
@@ -143,6 +144,31 @@ fn all_move(bencher: Bencher) {
 #[divan::bench]
 fn the_camera_moves(bencher: Bencher) {
     frames(bencher, |crowd| crowd.camera.eye.x += 1e-3);
+}
+
+/// One of many objects moves, each with a colour map of its own. Frames take linear time.
+#[divan::bench(args = [500, 2000, 8000])]
+fn one_of_many_looks_moves(bencher: Bencher, count: usize) {
+    let mut crowd = Crowd::new();
+    for id in crowd.ids.split_off(1) {
+        crowd.renderer.remove(id).unwrap();
+    }
+    let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
+    let profile = Arc::new(profile);
+    for n in 0..count {
+        let mut object = Object::new("look", profile.clone());
+        let texel = [n as u8, (n >> 8) as u8, 0, 255];
+        object.texturing.color_map =
+            Some(Arc::new(ColorMap::from_texels(1, 1, vec![texel]).unwrap()));
+        object.placement = place(n, 0);
+        crowd.renderer.add(object).unwrap();
+    }
+    bencher.bench_local(|| {
+        crowd.begin();
+        let moved = place(0, crowd.frame);
+        crowd.renderer.set_placement(crowd.ids[0], moved).unwrap();
+        crowd.prepare();
+    });
 }
 
 /// A field of copies, at a time.

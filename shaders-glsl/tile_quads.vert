@@ -20,7 +20,7 @@ void main()
         uint bit = 1u << (uint(gl_VertexIndex) % 6u);
         position = vec2(corner) + float(side) * vec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
     }
-    float near = depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
+    float near = clip_depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(position * frame.pixels.xz + frame.pixels.yw, near, 1.0);
     gl_PointSize = float(side);
     hand_over(i, frame.dir_00.w);

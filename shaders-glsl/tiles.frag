@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Traces a fragment of a tile: the nearest of the copies in its queue.
 #define SINGLE
+#define CLIP_DEPTHS
 #include "stage/queue.glsl"
 #include "stage/outputs.glsl"
 
@@ -24,5 +25,6 @@ void main()
     }
     Instance i = instances[index];
     take_one_of_objects(i);
-    gl_FragDepth = draw(look_of(i, index), pixel_rays(i), pixel, hit);
+    draw(look_of(i, index), pixel_rays(i), pixel, hit);
+    gl_FragDepth = buffer_depth_of(clamp(frame.forward.w * depth, 0.0, 1.0));
 }

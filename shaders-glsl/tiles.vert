@@ -17,9 +17,9 @@ void main()
     uvec2 far = uvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
     uvec2 half_tiles = far * (1u + halves.yw) + (1u - far) * (1u - halves.xz);
     vec2 corner = vec2(tile_corner_of(tile_words[at]) + GROUP_PIXELS / 2u * half_tiles);
-    float near = depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
+    float near = clip_depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner * frame.pixels.xz + frame.pixels.yw, near, 1.0);
-    if (VIEWS > 1u && VIEW_INDEX != frame_block.view.x) {
+    if (VIEWS > 1u && VIEW_INDEX != floatBitsToUint(frame_block.view.x)) {
         gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
     }
     tile_queue = uvec2(tile_words[at + 1u], tile_words[at + 2u]);

@@ -12,11 +12,14 @@ pub(crate) mod proxy;
 mod tile_steps;
 pub(crate) mod tiles;
 mod view;
+#[cfg(test)]
+mod viewports;
 
 pub use path::DrawPath;
 pub(crate) use path::{Conditions, LIST_LENGTHS, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
+pub(crate) use tiles::MOST_PIXELS;
 use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
@@ -151,23 +154,33 @@ struct Layer {
     draws: Vec<IndexedDraw>,
 }
 
-impl Layer {
+/// Layers in the order of their first objects.
+#[derive(Default)]
+struct Layers {
+    all: Vec<Layer>,
+    /// The index of each layer: objects may have as many looks as there are objects.
+    numbers: HashMap<(Variant, Kind, usize), usize>,
+}
+
+impl Layers {
     /// The index of an object's layer; the layer is created for its first object.
-    fn of(all: &mut Vec<Self>, objects: &[PlanObject], number: u32, key: (Variant, Kind)) -> usize {
-        let textures = |n: u32| objects[n as usize].textures;
-        let same = |layer: &Self| {
-            (layer.variant, layer.kind) == key && textures(layer.objects[0]) == textures(number)
-        };
-        let at = all.iter().position(same).unwrap_or_else(|| {
-            all.push(Self {
-                variant: key.0,
-                kind: key.1,
+    fn of(
+        &mut self,
+        objects: &[PlanObject],
+        number: u32,
+        (variant, kind): (Variant, Kind),
+    ) -> usize {
+        let textures = objects[number as usize].textures;
+        let at = *(self.numbers.entry((variant, kind, textures))).or_insert_with(|| {
+            self.all.push(Layer {
+                variant,
+                kind,
                 objects: Vec::new(),
                 draws: Vec::new(),
             });
-            all.len() - 1
+            self.all.len() - 1
         });
-        all[at].objects.push(number);
+        self.all[at].objects.push(number);
         at
     }
 }
@@ -180,7 +193,7 @@ impl FramePlan {
         objects: &[PlanObject],
         (paths, variants): (&[Path], &[Variant]),
     ) {
-        let mut layers: Vec<Layer> = Vec::new();
+        let mut layers = Layers::default();
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
@@ -188,8 +201,8 @@ impl FramePlan {
                 let mut variant = variants[n];
                 variant.speciality.outside = u32::from(outside);
                 let variant = variant.of_kind(kind);
-                let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
-                layers[layer].draws.extend(draws);
+                let layer = layers.of(objects, n as u32, (variant, kind));
+                layers.all[layer].draws.extend(draws);
             };
             match path {
                 Path::Tiles => {}
@@ -215,7 +228,7 @@ impl FramePlan {
                 }
             }
         }
-        for layer in layers {
+        for layer in layers.all {
             let first = self.draws.len() as u32;
             self.draws.extend(&layer.draws);
             self.steps.push(Step {

@@ -3,7 +3,7 @@
 use super::path::LIST_LENGTHS;
 use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
 use super::{
-    Call, Conditions, DrawPath, FramePlan, Layer, Path, PlanObject, Step, View, projector,
+    Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
 };
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
@@ -30,7 +30,7 @@ impl FramePlan {
             .collect();
         let projector = projector(view, objects, with);
         let visible = Visible::new(view, &projector, &batches);
-        let mut layers = Vec::new();
+        let mut layers = Layers::default();
         let mut layer_of = Vec::with_capacity(numbers.len());
         let kind = if with.compute {
             Kind::TileTree
@@ -47,9 +47,10 @@ impl FramePlan {
             }
             let mut variant = variants[n];
             variant.speciality.outside = u32::from(of.is_whole() && visible.is_apart(batch));
-            let layer = Layer::of(&mut layers, objects, n as u32, (variant, kind));
+            let layer = layers.of(objects, n as u32, (variant, kind));
             layer_of.push(layer as u32);
         }
+        let layers = layers.all;
         let queues = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].object.placements().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;

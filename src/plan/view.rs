@@ -17,7 +17,8 @@ pub enum DepthOrder {
     Reversed,
 }
 
-/// The part of the framebuffer that is drawn, in pixels.
+/// The rectangle of the framebuffer onto which the view is projected, in pixels. It may be partly or
+/// wholly outside of the framebuffer: what is outside is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewport {
     /// Left edge.
@@ -38,14 +39,34 @@ impl Viewport {
             2.0 * (y - self.y) / self.height - 1.0,
         )
     }
+
+    /// Returns an error for a number that is not finite, and for an empty viewport.
+    fn check(&self) -> Result<()> {
+        let sides = [("width", self.width), ("height", self.height)];
+        for (key, value) in [("x", self.x), ("y", self.y)].into_iter().chain(sides) {
+            if !value.is_finite() {
+                return Err(wrong(format!(
+                    "viewport.{key} is {value}; give a finite number"
+                )));
+            }
+        }
+        if self.width <= 0.0 || self.height == 0.0 {
+            let (width, height) = (self.width, self.height);
+            let message = format!(
+                "the viewport is empty: {width} x {height} pixels; give a width above 0 and a height other than 0"
+            );
+            return Err(wrong(message));
+        }
+        Ok(())
+    }
 }
 
 /// An eye, the ray of every pixel, and the depth of every point.
 ///
 /// The ray through the centre of framebuffer pixel `(i, j)` is `eye + t (dir_00 + i dir_x + j
-/// dir_y)`. The direction is not normalised: `t` is the depth along `forward`, and the depth buffer
-/// holds `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
-/// instead, and depths `depth[0] + depth[1] t`.
+/// dir_y)`. The direction is not normalised: `t` is the depth along `forward`, and the depth in clip
+/// space is `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
+/// instead, and depths `depth[0] + depth[1] t`. [`View::depth_at`] is the value in the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub(crate) eye: DVec3,
@@ -54,7 +75,12 @@ pub struct View {
     pub(crate) dir_y: DVec3,
     pub(crate) forward: DVec3,
     pub(crate) clip_from_world: DMat4,
+    /// Constant and factor of depths in clip space, from 0 to 1: `depth[0] + depth[1] / t`.
     pub(crate) depth: [f64; 2],
+    /// The depth buffer's values of these depths 0 and 1.
+    pub(crate) depth_range: [f64; 2],
+    /// Shift of depths, units of the depth buffer.
+    pub(crate) depth_bias: f64,
     /// `t` of the near plane.
     pub(crate) near: f64,
     pub(crate) order: DepthOrder,
@@ -136,6 +162,8 @@ impl View {
             forward,
             clip_from_world,
             depth: [0.0; 2],
+            depth_range: [0.0, 1.0],
+            depth_bias: 0.0,
             near: 0.0,
             order: DepthOrder::Normal,
             viewport,
@@ -187,9 +215,37 @@ impl View {
     /// [`SlopeBias`](crate::gpu::SlopeBias) adds a bias for slopes. Parts of solids whose
     /// shifted depth leaves 0 to 1 may be missing, and those at the near plane may have holes.
     #[must_use]
-    pub fn with_depth_bias(mut self, bias: f64) -> Self {
-        self.depth[0] += bias;
-        self
+    pub fn with_depth_bias(self, bias: f64) -> Self {
+        Self {
+            depth_bias: self.depth_bias + bias,
+            ..self
+        }
+    }
+
+    /// The same view with the depth range of the host's `VkViewport`: `minDepth` and `maxDepth`.
+    /// The depth buffer holds `minDepth` for a depth of 0 in clip space, and `maxDepth` for 1. A new
+    /// view has the range 0 to 1. Give it in each frame of a viewport with another range: the
+    /// viewport does not reach depths that a shader writes.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Content`] unless `0 <= minDepth < maxDepth <= 1`.
+    pub fn with_depth_range(self, [min, max]: [f64; 2]) -> Result<Self> {
+        if !(0.0 <= min && min < max && max <= 1.0) {
+            return Err(wrong(format!(
+                "the depth range {min} to {max} is none; give 0 <= minDepth < maxDepth <= 1, and DepthOrder::Reversed for reversed depths"
+            )));
+        }
+        Ok(Self {
+            depth_range: [min, max],
+            ..self
+        })
+    }
+
+    /// Constant and factor of depths in clip space, with the bias.
+    pub(crate) fn clip_depth(&self) -> [f64; 2] {
+        let [constant, factor] = self.depth;
+        let [min, max] = self.depth_range;
+        [constant + self.depth_bias / (max - min), factor]
     }
 
     /// The same view of some rows of the picture, for a picture that is drawn in several submissions:
@@ -242,12 +298,10 @@ impl View {
         viewport: Viewport,
         order: DepthOrder,
     ) -> Result<Self> {
+        viewport.check()?;
         let clip_from_world = projection * view;
-        let fits = viewport.width > 0.0 && viewport.height != 0.0;
-        if !clip_from_world.is_finite() || !fits {
-            return Err(wrong(
-                "the matrices or the viewport are not of a picture; give finite numbers and a width above 0",
-            ));
+        if !clip_from_world.is_finite() {
+            return Err(wrong("the matrices are not finite; give finite numbers"));
         }
         let inverse = clip_from_world.inverse();
         let w_row = clip_from_world.transpose().w_axis;
@@ -280,7 +334,8 @@ impl View {
         };
         let dir_00 = direction(0.5, 0.5);
         let (dir_x, dir_y) = (direction(1.5, 0.5) - dir_00, direction(0.5, 1.5) - dir_00);
-        if dir_x.cross(dir_y).dot(forward) <= 0.0 {
+        check_steps(dir_00, [dir_x, dir_y])?;
+        if turn(dir_x, dir_y).dot(forward) <= 0.0 {
             return Err(wrong(
                 "the view mirrors the picture; turn one axis of the projection or of the viewport round",
             ));
@@ -324,14 +379,16 @@ impl View {
         };
         let eye = point(0.5, 0.5);
         let (dir_x, dir_y) = (point(1.5, 0.5) - eye, point(0.5, 1.5) - eye);
+        check_steps(eye, [dir_x, dir_y])?;
         let rows = clip_from_world.transpose();
         let (z_row, w) = (rows.z_axis.truncate() / rows.w_axis.w, rows.w_axis.w);
         let slope = z_row.length();
         let forward = z_row * (sense / slope);
-        let turned = dir_x.cross(dir_y).dot(forward);
+        let turned = turn(dir_x, dir_y).dot(forward);
         let level = dir_x.dot(forward).abs() + dir_y.dot(forward).abs();
-        let finite = eye.is_finite() && forward.is_finite() && w != 0.0;
-        if !finite || turned <= 0.0 || level > 1e-6 * (dir_x.length() + dir_y.length()) {
+        let finite = forward.is_finite() && w != 0.0;
+        let is_level = level <= 1e-6 * (dir_x.length() + dir_y.length());
+        if !(finite && turned > 0.0 && is_level) {
             return Err(wrong(
                 "the parallel projection is oblique, mirrors, or is none; give one at right angles to the view, for this depth order",
             ));
@@ -360,17 +417,16 @@ impl View {
     /// The depth-buffer value of a point at `t`.
     #[must_use]
     pub fn depth_at(&self, t: f64) -> f64 {
-        if self.parallel {
-            self.depth[0] + self.depth[1] * t
-        } else {
-            self.depth[0] + self.depth[1] / t
-        }
+        let ([constant, factor], [min, max]) = (self.depth, self.depth_range);
+        let along = if self.parallel { t } else { 1.0 / t };
+        min + (max - min) * (constant + factor * along) + self.depth_bias
     }
 
     /// The `t` of a depth-buffer value: the inverse of [`View::depth_at`].
     #[must_use]
     pub fn t_at(&self, depth: f64) -> f64 {
-        let by = depth - self.depth[0];
+        let [min, max] = self.depth_range;
+        let by = (depth - self.depth_bias - min) / (max - min) - self.depth[0];
         if self.parallel {
             by / self.depth[1]
         } else {
@@ -423,6 +479,23 @@ impl View {
     pub(crate) fn pixel_size(&self) -> f64 {
         self.dir_x.length()
     }
+}
+
+/// The direction around which the picture's axes turn.
+fn turn(dir_x: DVec3, dir_y: DVec3) -> DVec3 {
+    dir_x.normalize().cross(dir_y.normalize())
+}
+
+/// Returns an error for pixels that 64 bits cannot hold: of a viewport, or a projection, of extreme
+/// size.
+fn check_steps(first: DVec3, steps: [DVec3; 2]) -> Result<()> {
+    let holds = |step: DVec3| step.length_squared().is_normal();
+    if first.is_finite() && steps.into_iter().all(holds) {
+        return Ok(());
+    }
+    Err(wrong(
+        "a pixel of this viewport and projection is no number; give sizes and positions in pixels",
+    ))
 }
 
 fn wrong(message: impl Into<String>) -> Error {

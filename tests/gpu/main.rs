@@ -61,3 +61,4 @@ mod tolerance;
 mod trouble;
 mod unsubmitted;
 mod updates;
+mod viewports;

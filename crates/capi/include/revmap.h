@@ -858,6 +858,9 @@ typedef struct RevmapView {
     uint32_t mask;
     /// Index among the views of the pass: see RevmapPass.views.
     uint32_t layer;
+    /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
+    /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.
+    double depth_range[2];
 } RevmapView;
 
 /// An object of one renderer, which refuses those of others; never 0. The number refers to the same

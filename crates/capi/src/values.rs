@@ -110,6 +110,9 @@ pub struct RevmapView {
     pub mask: u32,
     /// Index among the views of the pass: see RevmapPass.views.
     pub layer: u32,
+    /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
+    /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.
+    pub depth_range: [f64; 2],
 }
 
 /// Settings of the search. Defaults: revmap_search_defaults().
@@ -144,6 +147,7 @@ described! {
     RevmapView {
         0 => [size, depth_order, view, projection, viewport]
         1 => [last, jitter, depth_bias, mask, layer]
+        2 => [depth_range]
     }
     RevmapSearch {
         0 => [
@@ -270,7 +274,11 @@ impl RevmapView {
         };
         let made = made.with_mask(mask).with_layer(self.layer);
         let made = made.with_jitter(self.jitter);
-        Ok(made.with_depth_bias(self.depth_bias))
+        let made = made.with_depth_bias(self.depth_bias);
+        match self.depth_range {
+            [0.0, 0.0] => Ok(made),
+            range => Ok(made.with_depth_range(range)?),
+        }
     }
 }
 

@@ -13,16 +13,16 @@ struct Frame {
     vec4 clip_x;  // clip x of a world vector; w: 1 where rays are parallel
     vec4 clip_y;  // clip y; w: depth of the near plane
     vec4 dir_00;  // ray through the centre of pixel (0, 0), forward component 1; w: pixel width at unit depth
-    vec4 dir_x;   // change of the ray per column; w: depth = w + dir_y.w / t
+    vec4 dir_x;   // change of the ray per column; w: depth in clip space = w + dir_y.w / t
     vec4 dir_y;   // change of the ray per row
     vec4 forward; // unit; w: sense of depth, 1 where depth grows away from the eye, else -1
-    vec4 ambient; // linear RGB; w: depth value of the near plane
+    vec4 ambient; // linear RGB; w: depth of the near plane in clip space
     uvec4 size;   // width, height, number of lights, first record of the last frame's placements
     vec4 pixels;  // clip x = x * (x of a pixel's corner) + y; clip y = z * (y of a pixel's corner) + w
     vec4 caster_eye;       // the eye, from the origin of the hierarchy of shadow.glsl; w: number of shape maps (bits)
     vec4 caster_middle;    // root of the hierarchy: middle of its box; w: number of all nodes (bits)
     vec4 caster_half_size; // root; w: index of the only copy, or INNER_NODE (bits)
-    uvec4 view;            // x: index of the view among those of the pass
+    vec4 view; // index of the view among those of the pass (bits); depth range: first, last - first; far end
     Light lights[MAX_LIGHTS];
 };
 

@@ -51,10 +51,24 @@ float pixel_width(float t)
     return ORTHO != 0u ? frame.dir_00.w : frame.dir_00.w * t;
 }
 
-// Returns the depth buffer value of depth `t`, 0 to 1.
-float depth_of(float t)
+// Returns the depth of `t` in clip space, 0 to 1.
+float clip_depth_of(float t)
 {
     return clamp(frame.dir_x.w + (ORTHO != 0u ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);
+}
+
+// Returns the depth buffer value of a depth in clip space: in the depth range of the viewport. At the far plane and
+// beyond, where nothing is drawn, it is the buffer's end that is far.
+float buffer_depth_of(float clip)
+{
+    vec4 view = frame_block.view;
+    return mix(view.y + view.z * clip, clip, clip == view.w);
+}
+
+// Returns the depth buffer value of `t`.
+float depth_of(float t)
+{
+    return buffer_depth_of(clip_depth_of(t));
 }
 
 #endif

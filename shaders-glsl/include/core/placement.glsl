@@ -27,7 +27,7 @@ vec4 clip_of(Instance i, vec3 p)
     float depth = i.scale_depth.z + dot(frame.forward.xyz, way);
     vec2 xy = vec2(i.scale_depth.w, i.origin.w) + vec2(dot(frame.clip_x.xyz, way), dot(frame.clip_y.xyz, way));
     bool parallel = frame.clip_x.w != 0.0;
-    // This is depth_of of pixel_ray.glsl, times w.
+    // This is clip_depth_of of pixel_ray.glsl, times w.
     float z = parallel ? frame.dir_x.w + frame.dir_y.w * depth : frame.dir_x.w * depth + frame.dir_y.w;
     return vec4(xy, z, parallel ? 1.0 : depth);
 }

@@ -25,9 +25,13 @@ layout(location = 6) out uvec4 identity; // number of the object, number of the 
 void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES
-    atomicAdd(pixel_words[second_word(uvec2(pixel + 0.5))], steps);
+    uvec2 at = uvec2(pixel + 0.5);
+    if (any(greaterThanEqual(at, frame.size.xy))) {
+        return; // the viewport ends beyond the target
+    }
+    atomicAdd(pixel_words[second_word(at)], steps);
     if (exhausted) {
-        atomicOr(pixel_words[second_word(uvec2(pixel + 0.5))], EXHAUSTED_BIT);
+        atomicOr(pixel_words[second_word(at)], EXHAUSTED_BIT);
     }
 #endif
 }
@@ -38,7 +42,7 @@ vec2 octahedral(vec3 n)
 {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     vec2 sense = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-    return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * sense;
+    return mix((1.0 - abs(p.yx)) * sense, p, bvec2(n.z >= 0.0));
 }
 
 // Returns the way in pixels from a hit to where it was in the last frame. The hit moves along its normal by the change
@@ -53,7 +57,7 @@ vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
     vec4 at = vec4(p + before.origin.z * way, 1.0);
     vec3 projected = vec3(dot(before.position_sx, at), dot(before.rotation, at), dot(before.scale_depth, at));
     // A point that was behind the eye has no position in the last frame.
-    return projected.z > 0.0 ? projected.xy / projected.z - pixel - before.origin.xy : vec2(0.0);
+    return mix(vec2(0.0), projected.xy / projected.z - pixel - before.origin.xy, bvec2(projected.z > 0.0));
 }
 #endif
 
@@ -62,15 +66,17 @@ vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
 {
     float t = rays.base + hit.t;
+    float depth = depth_of(t);
     if (SLOPE_BIAS == 0u) {
-        return depth_of(t);
+        return depth;
     }
     // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
     vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
     float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
-    float slope = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * max(across.x, across.y) / max(along, 1e-30);
+    float change = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * frame_block.view.z;
+    float slope = change * max(across.x, across.y) / max(along, 1e-30);
     float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
-    return clamp(depth_of(t) + frame.forward.w * bias, 0.0, 1.0);
+    return clamp(depth + frame.forward.w * bias, 0.0, 1.0);
 }
 #else
 // Shades and writes a hit, and returns its depth value.

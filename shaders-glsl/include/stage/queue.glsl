@@ -4,6 +4,17 @@
 #include "stage/tile_words.glsl"
 #include "core/replicas.glsl"
 
+// Returns a depth in the unit of nearest_copy. Fragments read no depths of a buffer, so theirs are in clip space. They
+// exceed its limits before the near plane and beyond the far plane. Rays are never parallel.
+float queue_depth_of(float t)
+{
+#ifdef CLIP_DEPTHS
+    return frame.dir_x.w + frame.dir_y.w / t;
+#else
+    return depth_of(t);
+#endif
+}
+
 // Returns the copies of a block of a queue that pixel `bit` of the tile may show, one bit each.
 uint marks_of(uint block, uint bit)
 {
@@ -36,7 +47,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         }
         uint word = block - QUEUE_WORDS * QUEUE_BLOCK + 2u * uint(findLSB(marks));
         marks &= marks - 1u;
-        if (sense * depth_of(max(uintBitsToFloat(tile_words[word + 1u]), 1e-30)) >= depth) {
+        if (sense * queue_depth_of(max(uintBitsToFloat(tile_words[word + 1u]), 1e-30)) >= depth) {
             break;
         }
         Instance i = instances[tile_words[word]];
@@ -46,7 +57,7 @@ bool nearest_copy(uint first, uint count, uint bit, vec2 at, inout float depth, 
         bool met = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
-        float met_at = sense * depth_of(rays.base + hit.t);
+        float met_at = sense * queue_depth_of(rays.base + hit.t);
         if (met && met_at < depth) {
             found = true;
             nearest_word = word;

@@ -21,7 +21,7 @@ Instance begin(uint number)
 // draws each frame in all of them, and the frame's own view keeps it.
 void hand_over(Instance i, float scale)
 {
-    if (VIEWS > 1u && VIEW_INDEX != frame_block.view.x) {
+    if (VIEWS > 1u && VIEW_INDEX != floatBitsToUint(frame_block.view.x)) {
         gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
     }
     PixelRays rays = pixel_rays(i);

@@ -217,8 +217,8 @@ impl Renderer {
     /// The call keeps the handles; [`Renderer::prepare`] binds them.
     ///
     /// The caller must ensure that
-    /// * the handles are of this device, as [`ComputeTarget`] describes them, and large enough for
-    ///   every view's viewport, which begins at 0;
+    /// * the handles are of this device, as [`ComputeTarget`] describes them, and as wide and high as
+    ///   every view's viewport, rounded down to whole pixels;
     /// * they live until another target is set and the frames that were recorded before are done.
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) -> Result<()> {
         self.content.output.check_target(Some(&target))?;

@@ -1,10 +1,11 @@
 //! Checks of an output: what the device draws into, and the memory that compute writes to.
 
-use crate::error::{Error, ErrorKind, Result, usage};
+use crate::error::{Error, ErrorKind, Result, content, usage};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
 use crate::maps::MapFormat;
+use crate::plan::{MOST_PIXELS, View};
 use crate::settings::{Plane, Planes, SearchSettings};
 use ash::vk;
 
@@ -59,6 +60,30 @@ impl Output {
         }
         Ok(())
     }
+}
+
+/// Returns an error for a viewport that the device does not take, and for one whose part in the
+/// largest framebuffer has pixels beyond those that records of tiles hold.
+pub(super) fn check_viewport(view: &View, limits: &vk::PhysicalDeviceLimits) -> Result<()> {
+    let (v, [low, high]) = (&view.viewport, view.corners());
+    let [least, most] = limits.viewport_bounds_range.map(f64::from);
+    let [wide, tall] = limits.max_viewport_dimensions.map(f64::from);
+    let inside = |end: f64| (least..=most).contains(&end);
+    let fits = [low.x, low.y, high.x, high.y].into_iter().all(inside);
+    if !fits || v.width > wide || v.height.abs() > tall {
+        let message = format!(
+            "{} x {} pixels at {}, {} are more than the device has; give up to {wide} x {tall} within {least} to {most}",
+            v.width, v.height, v.x, v.y
+        );
+        return content("view.viewport", message);
+    }
+    let largest = [limits.max_framebuffer_width, limits.max_framebuffer_height];
+    let ends = [high.x, high.y].into_iter().zip(largest.map(f64::from));
+    if ends.map(|(end, side)| end.min(side)).fold(0.0, f64::max) > f64::from(MOST_PIXELS) {
+        let message = format!("ends beyond pixel {MOST_PIXELS}; draw a smaller picture");
+        return content("view.viewport", message);
+    }
+    Ok(())
 }
 
 impl PassFormats {

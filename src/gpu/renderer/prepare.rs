@@ -3,6 +3,7 @@
 //! objects anew.
 
 use super::Renderer;
+use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer, Written};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
@@ -51,6 +52,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::prepare`].
     pub fn plan(&mut self, view: &View) -> Result<()> {
+        check_viewport(view, self.device.limits())?;
         self.content.plan(view, None).map(|_| ())
     }
 
@@ -68,6 +70,7 @@ impl Renderer {
     /// # Errors
     /// [`ErrorKind::Content`] for content that cannot be drawn, with the key `object.N...`; N
     /// counts objects in order. The error repeats until that content is mended or removed.
+    /// [`ErrorKind::Content`] also for a viewport that the device does not have.
     /// [`ErrorKind::Usage`] for a missing slot, a view of the other depth order, or a missing
     /// target. Errors of Vulkan calls.
     ///
@@ -138,6 +141,7 @@ impl Renderer {
             let layer = view.layer;
             format!("view {layer} of a pass with {views}; give an index below that")
         } else {
+            check_viewport(view, self.device.limits())?;
             return output.check_target(self.content.target.as_ref());
         };
         Err(Error::new(ErrorKind::Usage, message))

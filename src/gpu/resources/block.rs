@@ -97,7 +97,8 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
         block.towards = vector(-light.direction.normalize_or_zero(), light.cap());
         block.color = [red, green, blue, 0.0];
     }
-    let [constant, factor] = view.depth;
+    let [constant, factor] = view.clip_depth();
+    let [least, most] = view.depth_range;
     let (sense, near_value) = match view.order {
         DepthOrder::Normal => (1.0, 0.0),
         DepthOrder::Reversed => (-1.0, 1.0),
@@ -123,7 +124,12 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
             -2.0 * v.y / v.height - 1.0,
         ]
         .map(|side| side as f32),
-        view: [view.layer, 0, 0, 0],
+        view: [
+            view.layer,
+            (least as f32).to_bits(),
+            ((most - least) as f32).to_bits(),
+            (1.0 - near_value).to_bits(),
+        ],
         lights,
         ..bytemuck::Zeroable::zeroed()
     }

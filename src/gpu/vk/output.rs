@@ -211,7 +211,8 @@ impl Output {
 }
 
 /// Memory that compute shaders write to. Fragment shaders that draw all planes write to it besides
-/// their attachments.
+/// their attachments. It is as large as the view's viewport; pixels of the viewport beyond that, of
+/// one that does not begin at 0, are not drawn.
 #[derive(Clone, Debug)]
 pub struct ComputeTarget {
     /// A storage buffer of two 32-bit words per pixel, row by row from the top. The first half

@@ -3,6 +3,7 @@
 
 use crate::plan::View;
 use crate::scene::{Cluster, Placement};
+use crate::shader::generated::QUAD_BITS;
 use glam::{DMat3, DVec2, DVec3};
 
 /// The part of a box that can be solid: a cylinder about the axis. Object units, from the middle of
@@ -27,7 +28,7 @@ pub(crate) struct Projector {
     low: DVec2,
     high: DVec2,
     /// First and last pixel of both axes whose centres are in the viewport: left, top, right,
-    /// bottom.
+    /// bottom. The last one is before the first one if there are none.
     ends: [i32; 4],
     /// A pixel's longer side at unit depth.
     pixel: f64,
@@ -58,6 +59,8 @@ pub(crate) struct ScreenBounds {
     pub near: f32,
 }
 
+/// Most pixels along a side of the picture: records of tiles and quads hold no more.
+pub(crate) const MOST_PIXELS: u32 = 1 << QUAD_BITS;
 /// Pixels along the side of a tile.
 pub(super) const SIDE: u32 = 8;
 /// Margin of a rectangle of pixels whose rays go through their centres.
@@ -84,8 +87,8 @@ impl Projector {
             ends: [
                 first_pixel(low.x).max(0),
                 first_pixel(low.y).max(0),
-                last_pixel(high.x),
-                last_pixel(high.y),
+                last_pixel(high.x).min(MOST_PIXELS as i32 - 1),
+                last_pixel(high.y).min(MOST_PIXELS as i32 - 1),
             ],
             eye: view.eye,
             squares: rows.map(DVec3::length_squared).into(),
@@ -104,10 +107,13 @@ impl Projector {
         self.ends.map(|pixel| pixel.max(0) as u32)
     }
 
-    /// Number of tiles across and down.
+    /// Number of tiles across and down; none if no pixel is in the viewport.
     pub fn tiles(&self) -> [u32; 2] {
-        let tiles = |pixels: f64| ((pixels + 0.5) / f64::from(SIDE)).ceil() as u32;
-        [tiles(self.high.x), tiles(self.high.y)]
+        let [left, top, right, bottom] = self.ends;
+        if left > right || top > bottom {
+            return [0; 2];
+        }
+        [right, bottom].map(|last| last as u32 / SIDE + 1)
     }
 
     pub fn axes(&self, copy: &Placement, axis: DVec2) -> ProjectedAxes {

@@ -24,7 +24,7 @@ mod deal;
 mod outer;
 mod strip;
 
-pub(crate) use bounds::{Cylinder, Projector};
+pub(crate) use bounds::{Cylinder, MOST_PIXELS, Projector};
 pub(crate) use deal::LEAST_QUEUE;
 
 use super::view::View;
@@ -181,7 +181,7 @@ impl<'a> Visible<'a> {
         let size = projector.tiles();
         // Several strips per thread, as some take longer.
         let wide = size[0].div_ceil(4 * rayon::current_num_threads() as u32);
-        let wide = wide.next_multiple_of(BLOCK);
+        let wide = wide.max(1).next_multiple_of(BLOCK);
         let strip = |left: u32| {
             let columns = left..size[0].min(left + wide);
             Strip::new(projector, batches, columns, size[1])

@@ -150,8 +150,25 @@ fn renderers_and_objects() {
             layer: 1,
             ..view
         };
+        let ranged = |depth_range| RevmapView {
+            layer: 0,
+            depth_range,
+            ..second
+        };
+        let wide = RevmapView {
+            viewport: [0.0, 0.0, 1e9, 48.0],
+            ..ranged([0.0, 1.0])
+        };
+        let beside = RevmapView {
+            viewport: [f64::NAN, 0.0, 64.0, 48.0],
+            ..ranged([0.2, 0.7])
+        };
         fail! {
             Usage, "view 1 of a pass with 1": revmap_renderer_prepare(renderer, some, 0, &second);
+            Content, "depth range": revmap_renderer_prepare(renderer, some, 0, &ranged([0.7, 0.2]));
+            Content, "depth range": revmap_renderer_prepare(renderer, some, 0, &ranged([0.0, f64::NAN]));
+            Content, "viewport": revmap_renderer_prepare(renderer, some, 0, &wide);
+            Content, "viewport.x is NaN": revmap_renderer_prepare(renderer, some, 0, &beside);
         }
         let mut target = sized!(RevmapComputeTarget);
         fail! {

@@ -1,0 +1,271 @@
+//! Views and plans of viewports of any numbers: refused by name, or planned within the picture.
+#![allow(clippy::unwrap_used)]
+
+use super::path::Conditions;
+use super::{Call, DepthOrder, FramePlan, PlanObject, View, Viewport, plan, shape_of};
+use crate::error::{ErrorKind, Result};
+use crate::profile::Profile;
+use crate::scene::{Object, Placement};
+use crate::shader::generated::QUAD_BITS;
+use crate::shader::{Kind, Search, Variant};
+use crate::solid::cache::Solid;
+use crate::solid::offset_surface::{OffsetSurface, Recipe};
+use crate::surface::FitOptions;
+use glam::{DMat4, DQuat, DVec3, DVec4};
+use proptest::prelude::*;
+use std::sync::{Arc, LazyLock};
+
+/// A spindle, its surface, and as objects: one copy, and a hundred.
+static SOLIDS: LazyLock<(Arc<OffsetSurface>, [Object; 2])> = LazyLock::new(|| {
+    let points = [[0.0, 0.0], [0.45, 0.5], [0.0, 1.0]];
+    let profile = Arc::new(Profile::polygon(&points, 0.5).unwrap());
+    let FitOptions { tolerance } = FitOptions::default();
+    let exact = Recipe::Patches {
+        level: 0,
+        tolerance,
+    };
+    let one = Object::new("one", profile.clone());
+    let mut several = one.clone();
+    let place = |n: u32| Placement {
+        position: DVec3::new(0.7 * f64::from(n / 10), 0.7 * f64::from(n % 10) - 3.5, 0.0),
+        rotation: DQuat::from_rotation_x(0.1 * f64::from(n)),
+        ..Placement::default()
+    };
+    several.instances = (0..100).map(place).collect();
+    let solid = Arc::new(Solid::new(&profile));
+    let surface = solid.surface(&one.offset, exact).unwrap();
+    (surface, [one, several])
+});
+
+/// The view from 6 units away, of 90 degrees in perspective. `up`: 1 if `y` points downwards.
+fn view_of(viewport: Viewport, parallel: bool, order: DepthOrder) -> Result<View> {
+    let up = viewport.height.signum();
+    let look = DMat4::from_translation(DVec3::new(6.0, 0.0, -0.5));
+    let deep = 1000.0 / 999.9;
+    let (z, w, last) = match (parallel, order) {
+        (false, DepthOrder::Normal) => (deep, -0.1 * deep, DVec4::X),
+        (false, DepthOrder::Reversed) => (0.0, 0.1, DVec4::X),
+        (true, DepthOrder::Normal) => (1e-3, 0.0, DVec4::W),
+        (true, DepthOrder::Reversed) => (-1e-3, 1.0, DVec4::W),
+    };
+    let lens = DMat4::from_cols(
+        DVec4::new(0.0, -1.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -up, 0.0),
+        DVec4::new(z, 0.0, 0.0, w),
+        last,
+    );
+    View::from_matrices(look, lens.transpose(), viewport, order)
+}
+
+fn planned(view: &View, compute: bool) -> FramePlan {
+    let (surface, objects) = &*SOLIDS;
+    let surfaces = [surface.clone()];
+    let objects: Vec<_> = (0..)
+        .zip(objects)
+        .map(|(number, object)| PlanObject {
+            object,
+            number,
+            first_instance: number,
+            variant: Variant {
+                search: Search::Quadric,
+                ..Variant::LISTS
+            },
+            textures: 0,
+            surfaces: &surfaces,
+            takes_patches: true,
+            levels: None,
+            shape: shape_of(object, [0.5, 0.46, 0.0, 1.0]),
+            outline: None,
+        })
+        .collect();
+    let with = Conditions {
+        compute,
+        passes_cells: true,
+        subgroup_size: 32,
+        most_storage: 1 << 30,
+        occlusion_culling: true,
+        ..Conditions::default()
+    };
+    plan(view, &objects, &with)
+}
+
+/// Ends of the pixels that a viewport may draw: left, top, right, bottom.
+fn shown(view: &View) -> [f64; 4] {
+    let [low, high] = view.corners();
+    let most = f64::from(1u32 << QUAD_BITS);
+    [low.x, low.y, high.x, high.y].map(|end| end.clamp(0.0, most))
+}
+
+fn check(view: &View) {
+    let [left, top, right, bottom] = shown(view);
+    // A picture of 32,768 pixels a side has 17 million tiles, so few of its rows are planned.
+    let view = match bottom > 4096.0 {
+        true => view.with_rows(64..128),
+        false => *view,
+    };
+    for compute in [false, true] {
+        let plan = planned(&view, compute);
+        let quads = plan.steps.iter().filter_map(|step| match &step.call {
+            Call::Tiles(range) if step.kind == Kind::Quads => Some(range.clone()),
+            _ => None,
+        });
+        for record in quads.flatten() {
+            let word = plan.words[4 * record as usize];
+            let at = |shift: u32| f64::from(word >> shift & ((1 << QUAD_BITS) - 1));
+            let side = f64::from(1u32 << (word >> (2 * QUAD_BITS)));
+            let ([x, y], half) = ([at(0), at(QUAD_BITS)], 0.5);
+            assert!(x + half >= left && x + side - half <= right, "{view:?}");
+            assert!(y + half >= top && y + side - half <= bottom, "{view:?}");
+        }
+        if left == right || top == bottom {
+            assert!(plan.words.is_empty(), "{view:?}");
+        }
+    }
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    let odd = vec![
+        0.0,
+        -0.0,
+        1e-9,
+        -1e-9,
+        1e-300,
+        1e9,
+        -1e9,
+        1e300,
+        -1e300,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    prop_oneof![
+        6 => -900.0..900.0f64,
+        2 => (-60i32..60).prop_map(|n| 8.0 * f64::from(n)),
+        3 => proptest::sample::select(odd),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+    /// A viewport of any four numbers is refused by name or planned, in both stages, and nothing is
+    /// drawn outside of it.
+    #[test]
+    fn any_viewport_is_planned_or_refused(
+        [x, y, width, height] in [number(), number(), number(), number()],
+        parallel: bool,
+        reversed: bool,
+    ) {
+        let order = if reversed { DepthOrder::Reversed } else { DepthOrder::Normal };
+        let numbers = [x, y, width, height];
+        match view_of(Viewport { x, y, width, height }, parallel, order) {
+            Ok(view) => {
+                let finite = numbers.iter().all(|number| number.is_finite());
+                prop_assert!(finite && width > 0.0 && height != 0.0);
+                check(&view);
+            }
+            Err(error) => {
+                prop_assert_eq!(error.kind, ErrorKind::Content);
+                let usual = |number: &f64| number.abs() < 1e10 && (number.abs() > 1e-10);
+                let fits = numbers[2..].iter().all(usual) && width > 0.0;
+                let placed = numbers[..2].iter().all(|number| number.abs() < 1e10);
+                prop_assert!(!(fits && placed), "{}", error);
+            }
+        }
+    }
+}
+
+/// The first number that is not finite is named.
+#[test]
+fn numbers_that_are_not_finite_are_named() {
+    let keys = ["x", "y", "width", "height"];
+    for (n, key) in keys.into_iter().enumerate() {
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut all = [0.0, 0.0, 64.0, 48.0];
+            all[n] = odd;
+            let [x, y, width, height] = all;
+            let viewport = Viewport {
+                x,
+                y,
+                width,
+                height,
+            };
+            let error = view_of(viewport, false, DepthOrder::Normal).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::Content);
+            let named = error.to_string().contains(&format!("viewport.{key} is"));
+            assert!(named, "{error}");
+        }
+    }
+}
+
+/// A split screen that slides out to each side draws its visible pixels until none is left.
+#[test]
+fn a_viewport_slides_out_to_each_side() {
+    for parallel in [false, true] {
+        for [x, y] in [
+            [-64.0, 0.0],
+            [-65.0, 0.0],
+            [-1e4, 0.0],
+            [0.0, -48.0],
+            [0.0, -1e4],
+            [-20.0, -30.0],
+            [1e9, 1e9],
+        ] {
+            for height in [48.0, -48.0] {
+                let viewport = Viewport {
+                    x,
+                    y: if height < 0.0 { y - height } else { y },
+                    width: 64.0,
+                    height,
+                };
+                check(&view_of(viewport, parallel, DepthOrder::Normal).unwrap());
+            }
+        }
+    }
+}
+
+/// Depths follow the range of the viewport and the bias in any order, and invert.
+#[test]
+fn depths_are_in_the_range_of_the_viewport() {
+    let viewport = Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: 64.0,
+        height: 48.0,
+    };
+    for (parallel, order) in [
+        (false, DepthOrder::Normal),
+        (false, DepthOrder::Reversed),
+        (true, DepthOrder::Normal),
+        (true, DepthOrder::Reversed),
+    ] {
+        let plain = view_of(viewport, parallel, order).unwrap();
+        let one = plain
+            .with_depth_range([0.2, 0.7])
+            .unwrap()
+            .with_depth_bias(1e-3);
+        let other = plain
+            .with_depth_bias(1e-3)
+            .with_depth_range([0.2, 0.7])
+            .unwrap();
+        assert_eq!(one, other);
+        for t in [0.3, 5.0, 70.0] {
+            let wanted = 0.2 + 0.5 * plain.depth_at(t) + 1e-3;
+            assert!((one.depth_at(t) - wanted).abs() < 1e-12);
+            assert!(
+                (one.t_at(wanted) / t - 1.0).abs() < 1e-6,
+                "{parallel} {order:?} {t}"
+            );
+        }
+        for range in [
+            [0.7, 0.2],
+            [0.5, 0.5],
+            [-0.1, 1.0],
+            [0.0, 1.1],
+            [f64::NAN, 1.0],
+        ] {
+            let error = plain.with_depth_range(range).unwrap_err();
+            assert!(error.to_string().contains("depth range"), "{error}");
+        }
+    }
+}
