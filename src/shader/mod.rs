@@ -9,6 +9,7 @@ mod module;
 mod outputs;
 mod spirv;
 mod technique;
+mod textures;
 mod variant;
 mod view_index;
 
@@ -27,6 +28,7 @@ pub use spirv::{depth_less, instructions, op};
 pub(crate) use technique::is_beveled;
 pub use technique::{HostLook, ShadowCasters, Technique};
 pub use variant::{Kind, Speciality, Variant};
+pub use textures::with_constant_textures;
 pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.

@@ -11,6 +11,9 @@ pub mod op {
     pub const EXECUTION_MODE: u32 = 16;
     pub const CAPABILITY: u32 = 17;
     pub const TYPE_BOOL: u32 = 20;
+    pub const TYPE_INT: u32 = 21;
+    pub const TYPE_SAMPLED_IMAGE: u32 = 27;
+    pub const TYPE_ARRAY: u32 = 28;
     pub const TYPE_POINTER: u32 = 32;
     pub const CONSTANT_TRUE: u32 = 41;
     pub const CONSTANT_FALSE: u32 = 42;
@@ -19,6 +22,15 @@ pub mod op {
     pub const SPEC_CONSTANT_OP: u32 = 52;
     pub const VARIABLE: u32 = 59;
     pub const LOAD: u32 = 61;
+    pub const ACCESS_CHAIN: u32 = 65;
+    pub const FUNCTION: u32 = 54;
+    pub const SAMPLE_FIRST: u32 = 87; // OpImageSampleImplicitLod
+    pub const SAMPLE_LAST: u32 = 97; // OpImageDrefGather
+    pub const PHI: u32 = 245;
+    pub const LOOP_MERGE: u32 = 246;
+    pub const SELECTION_MERGE: u32 = 247;
+    pub const BRANCH: u32 = 249;
+    pub const SWITCH: u32 = 251;
     pub const DECORATE: u32 = 71;
     pub const I_ADD: u32 = 128;
     pub const I_MUL: u32 = 132;

@@ -6,7 +6,8 @@ use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
 use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::catalogue::{Entry, Output, modules};
+use crate::shader::catalogue::{Entry, Output, Search, modules};
+use crate::shader::textures::{varying_textures, with_constant_textures};
 use crate::shader::{
     CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
     ObjectBlock, ShadowCasters, Technique, Variant, depth_less, generated as g, instructions, op,
@@ -165,6 +166,27 @@ fn modules_are_few_and_small() {
             .len();
     }
     assert!(packed < 530_000, "{packed} bytes in all");
+}
+
+/// Only shadows of searches on maps index an array of textures by a number that varies. Pipelines get
+/// the module with constants in its place, so that no device needs a feature for it.
+#[test]
+fn pipelines_index_textures_by_constants() {
+    let mut varying = 0;
+    for module in modules() {
+        let words = words(&module).unwrap();
+        let found = varying_textures(&words);
+        assert!(
+            found == 0 || module.search == Search::Live,
+            "{}",
+            module.name()
+        );
+        varying += found;
+        let constant = with_constant_textures(&words);
+        assert_eq!(varying_textures(&constant), 0, "{}", module.name());
+        assert!(found > 0 || constant == words, "{}", module.name());
+    }
+    assert!(varying > 0);
 }
 
 /// Every pipeline that can be drawn with has its modules.

@@ -8,8 +8,8 @@ use crate::gpu::vk::render_pass::CompatiblePass;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
-    Kind, Module, Search, Variant, depth_less, frozen, with_locations, with_outputs_for,
-    with_view_index, words,
+    Kind, Module, Search, Variant, depth_less, frozen, with_constant_textures, with_locations,
+    with_outputs_for, with_view_index, words,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -79,7 +79,7 @@ impl Pipelines {
     }
 
     fn shader(&self, words: &[u32], constants: &HashMap<u32, u32>) -> Result<ShaderModule<'_>> {
-        let words = frozen(words, constants);
+        let words = with_constant_textures(&frozen(words, constants));
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
         // host promised.
