@@ -12,6 +12,8 @@ pub mod op {
     pub const CAPABILITY: u32 = 17;
     pub const TYPE_BOOL: u32 = 20;
     pub const TYPE_INT: u32 = 21;
+    pub const TYPE_IMAGE: u32 = 25;
+    pub const TYPE_SAMPLER: u32 = 26;
     pub const TYPE_SAMPLED_IMAGE: u32 = 27;
     pub const TYPE_ARRAY: u32 = 28;
     pub const TYPE_POINTER: u32 = 32;

@@ -18,7 +18,7 @@ use crate::shader::generated::SOURCES_HASH;
 use crate::shader::{Module, instructions, op, shading_modules};
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -152,6 +152,16 @@ impl Shading {
         words.flat_map(bindings).collect()
     }
 
+    /// The largest number of textures of a set that one of its compiled modules reads.
+    pub(crate) fn textures(&self, set: u32) -> u32 {
+        let compiled = self.modules.iter().filter_map(|(_, words)| words.get());
+        let words = compiled.filter_map(|words| words.as_deref().ok());
+        words
+            .map(|words| textures(words, set))
+            .max()
+            .unwrap_or_default()
+    }
+
     fn empty(stage: DrawStage) -> Self {
         let all = shading_modules(stage == DrawStage::Compute).into_iter();
         Self {
@@ -180,6 +190,40 @@ fn bindings(words: &[u32]) -> Vec<(u32, u32)> {
     of(op::BINDING)
         .filter_map(|(id, binding)| Some((set(id)?.1, binding)))
         .collect()
+}
+
+/// The number of textures of a set that a module declares: combined image samplers, and samplers and
+/// sampled images by themselves.
+fn textures(words: &[u32], set: u32) -> u32 {
+    let (mut counts, mut constants) = (HashMap::new(), HashMap::new());
+    let (mut of_set, mut all) = (HashSet::new(), 0);
+    for (code, one) in instructions(words) {
+        let count = match (code, one) {
+            (op::DECORATE, [_, id, op::DESCRIPTOR_SET, number]) if *number == set => {
+                of_set.insert(*id);
+                None
+            }
+            (op::CONSTANT, [_, _, id, value]) => {
+                constants.insert(*id, *value);
+                None
+            }
+            (op::TYPE_SAMPLED_IMAGE | op::TYPE_SAMPLER, [_, id, ..]) => Some((*id, 1)),
+            // Images that are no storage images.
+            (op::TYPE_IMAGE, [_, id, _, _, _, _, _, 1, ..]) => Some((*id, 1)),
+            (op::TYPE_ARRAY, [_, id, of, length]) => {
+                let length = constants.get(length).copied().unwrap_or(1);
+                counts.get(of).map(|count| (*id, count * length))
+            }
+            (op::TYPE_POINTER, [_, id, _, of]) => counts.get(of).map(|count| (*id, *count)),
+            (op::VARIABLE, [_, of, id, ..]) if of_set.contains(id) => {
+                all += counts.get(of).copied().unwrap_or(0);
+                None
+            }
+            _ => None,
+        };
+        counts.extend(count);
+    }
+    all
 }
 
 #[cfg(test)]

@@ -25,6 +25,15 @@ fn bytes_come_back() {
     }
 }
 
+/// Arrays count by their lengths: four textures of an object, and twelve maps that shadows read.
+#[test]
+fn textures_of_a_set_are_counted() {
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let made = some(stage);
+        assert_eq!([0, 1, 2, 3].map(|set| made.textures(set)), [0, 16, 0, 0]);
+    }
+}
+
 #[test]
 fn every_module_that_a_variant_needs_is_there() {
     let made = some(DrawStage::Fragment);

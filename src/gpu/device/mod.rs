@@ -2,6 +2,7 @@
 
 pub(crate) mod budget;
 pub(crate) mod instance;
+pub(crate) mod limits;
 pub(crate) mod report;
 
 use crate::error::Result;

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::instance::{API_VERSION, Instance, is_among};
+use crate::gpu::device::limits::lacking;
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::pipelines::DeviceConstants;
 use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
@@ -288,6 +289,7 @@ pub(crate) fn inspect(
     if features.fragment_stores_and_atomics == vk::FALSE {
         missing.push("fragmentStoresAndAtomics".to_owned());
     }
+    missing.extend(lacking(&basic.limits));
     for (format, wanted, what) in formats() {
         // SAFETY: plain query.
         let offered = unsafe { raw.get_physical_device_format_properties(physical, format) };

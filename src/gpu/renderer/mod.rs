@@ -81,6 +81,8 @@ impl Renderer {
     /// The errors of [`Renderer::new`]. [`ErrorKind::Usage`] for a shading of the other stage, for an
     /// output without colour, for a search other than `exact`, `quadric` and `live`, for a function
     /// that reads another set than 3, and for one that reads set 3 if the layout is null.
+    /// [`ErrorKind::Unsupported`] for a function whose textures, with the library's 16, are more than
+    /// a stage of the device has.
     ///
     /// # Safety
     /// The call makes a pipeline layout with the host's set, and pipelines are made with it.
@@ -89,6 +91,7 @@ impl Renderer {
     /// * the shading was compiled by this library, or its bytes were written by it;
     /// * the layout is of this device, has every binding that the function reads, and lives as long
     ///   as the renderer and its [`Prewarm`](crate::gpu::Prewarm)s;
+    /// * the layout's descriptors, with the library's, are within the limits of the device;
     /// * the function ends and reads only what the bound set has;
     /// * a set of the layout is bound at number 3, with [`Renderer::pipeline_layout`], whenever
     ///   [`Renderer::record`], [`Renderer::record_compute`] or [`Renderer::record_prewarm`] is called.
@@ -100,7 +103,7 @@ impl Renderer {
         slots: usize,
         shading: &HostShading,
     ) -> Result<Self> {
-        shading.check(&output, settings)?;
+        shading.check(&output, settings, device.shared.limits())?;
         Self::make(device, output, settings, slots, Some(shading))
     }
 

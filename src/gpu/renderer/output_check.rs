@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result, content, usage};
 use crate::gpu::device::Shared;
+use crate::gpu::device::limits::fragment_resources;
 use crate::gpu::vk::call::kind_of;
 use crate::gpu::vk::output::{ComputeTarget, Output, PassFormats, PassKind};
 use crate::maps::MapFormat;
@@ -122,6 +123,14 @@ impl PassFormats {
         let (planes, most) = (self.planes.attachments(), limits.max_color_attachments);
         if planes > most as usize {
             let message = format!("{planes} planes; the device draws into {most} at once");
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
+        }
+        let (drawn, most) = (planes as u32, limits.max_fragment_combined_output_resources);
+        if fragment_resources() + drawn > most {
+            let needed = fragment_resources() + drawn;
+            let message = format!(
+                "{planes} planes; the device lacks maxFragmentCombinedOutputResources of {needed} (it has {most})"
+            );
             return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
         }
         match &self.begun {

@@ -17,7 +17,8 @@ pub(crate) struct Binding {
 
 const COMPUTE: Stages = Stages::COMPUTE;
 const PIXEL: Stages = Stages::from_raw(Stages::FRAGMENT.as_raw() | COMPUTE.as_raw());
-const EVERY: Stages = Stages::from_raw(Stages::VERTEX.as_raw() | PIXEL.as_raw());
+/// All stages of the library's shaders.
+pub(crate) const EVERY: Stages = Stages::from_raw(Stages::VERTEX.as_raw() | PIXEL.as_raw());
 
 const fn one(kind: Kind, stages: Stages) -> Binding {
     Binding {
@@ -68,6 +69,13 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(Kind::STORAGE_BUFFER, COMPUTE), // bins of tiles
     ],
 ];
+
+/// The number of descriptors of some kinds in all sets that one of these stages may read.
+pub(crate) fn count(kinds: &[Kind], stages: Stages) -> u32 {
+    let counts = |of: &&Binding| kinds.contains(&of.kind) && of.stages.intersects(stages);
+    let all = SETS.iter().flat_map(|set| set.iter());
+    all.filter(counts).map(|of| of.count).sum()
+}
 
 /// The layout of a set.
 pub(crate) fn layout(raw: &ash::Device, set: usize) -> Result<vk::DescriptorSetLayout> {
@@ -170,11 +178,12 @@ pub(crate) unsafe fn write(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::SETS;
+    use super::{SETS, Stages};
     use crate::shader::{instructions, modules, op, words};
-    use std::collections::BTreeSet;
+    use std::collections::BTreeMap;
 
-    /// The table of descriptors agrees with every binding that a module reads.
+    /// The table of descriptors agrees with every binding that a module reads, and with the stages of
+    /// those modules.
     #[test]
     fn descriptors_are_those_of_the_shaders() {
         const VARIABLE: u32 = 59;
@@ -182,12 +191,21 @@ mod tests {
         const SAMPLED: u32 = 27;
         const IMAGE: u32 = 25;
         const ARRAY: u32 = 28;
-        let mut seen = BTreeSet::new();
+        let mut seen = BTreeMap::new();
         for module in modules() {
             let words = words(&module).unwrap();
             let all: Vec<_> = instructions(&words)
                 .map(|(code, one)| (code, one[1..].to_vec()))
                 .collect();
+            let (_, entry) = all
+                .iter()
+                .find(|(code, _)| *code == op::ENTRY_POINT)
+                .unwrap();
+            let stage = match entry[0] {
+                0 => Stages::VERTEX,
+                4 => Stages::FRAGMENT,
+                _ => Stages::COMPUTE,
+            };
             let decorated = |id: u32, what: u32| {
                 let of = |(code, w): &&(u32, Vec<u32>)| {
                     *code == op::DECORATE && w[0] == id && w[1] == what
@@ -222,11 +240,15 @@ mod tests {
                     "{}: {set}, {binding}",
                     module.name()
                 );
-                seen.insert((set, binding));
+                *seen.entry((set, binding)).or_insert(Stages::empty()) |= stage;
             }
         }
         let all: usize = SETS.iter().map(|set| set.len()).sum();
         assert_eq!(seen.len(), all, "bindings that no shader reads");
+        for ((set, binding), stages) in seen {
+            let known = SETS[set as usize][binding as usize].stages;
+            assert_eq!(known, stages, "{set}, {binding}");
+        }
     }
 
     /// True if an opcode defines a type.

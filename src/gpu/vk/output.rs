@@ -1,9 +1,9 @@
 //! The output of a renderer, set once: formats and conventions, the memory that compute writes to,
 //! and a host's function of shading.
 
-use crate::error::{Result, usage};
+use crate::error::{Error, ErrorKind, Result, usage};
 use crate::frame::srgb_from_linear;
-use crate::gpu::vk::descriptors::SETS;
+use crate::gpu::vk::descriptors::{EVERY, SETS, count};
 use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings};
@@ -253,14 +253,21 @@ pub(crate) const HOST_SET: u32 = SETS.len() as u32;
 pub struct HostShading {
     /// The function.
     pub shading: Arc<Shading>,
-    /// The layout of set 3, for the stage of the shading; null if the function reads no set.
+    /// The layout of set 3, for the stage of the shading; null if the function reads no set. Its
+    /// descriptors count beside the library's under the device's limits: the library has 16
+    /// combined image samplers in each stage.
     pub set_layout: vk::DescriptorSetLayout,
 }
 
 impl HostShading {
     /// Returns an error for an output or a search that the function does not shade, and for a function
     /// that does not fit the sets.
-    pub(crate) fn check(&self, output: &Output, settings: &SearchSettings) -> Result<()> {
+    pub(crate) fn check(
+        &self,
+        output: &Output,
+        settings: &SearchSettings,
+        limits: &vk::PhysicalDeviceLimits,
+    ) -> Result<()> {
         let (stage, name) = match output {
             Output::Pass(_) => (DrawStage::Fragment, "a pass"),
             Output::Compute(_) => (DrawStage::Compute, "a compute target"),
@@ -294,6 +301,16 @@ impl HostShading {
                 let message = "is null, and the shading reads set 3; give one";
                 return usage("set_layout", message);
             }
+        }
+        let own = count(&[vk::DescriptorType::COMBINED_IMAGE_SAMPLER], EVERY);
+        let needed = own + self.shading.textures(HOST_SET);
+        let has = (limits.max_per_stage_descriptor_samplers)
+            .min(limits.max_per_stage_descriptor_sampled_images);
+        if needed > has {
+            let message = format!(
+                "reads textures; the device lacks maxPerStageDescriptorSamplers and maxPerStageDescriptorSampledImages of {needed} (it has {has})"
+            );
+            return Err(Error::new(ErrorKind::Unsupported, message).at_key("shading"));
         }
         Ok(())
     }
