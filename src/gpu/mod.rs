@@ -33,7 +33,7 @@ pub use renderer::slot::FrameStatistics;
 pub use resources::textures::HostImage;
 pub use vk::call::{allocation_error, vulkan_error};
 pub use vk::output::{
-    ComputeTarget, DepthTest, HostShading, Output, PassFormats, PassKind, SlopeBias,
+    ComputeTarget, DepthTest, HostPass, HostShading, Output, PassFormats, PassKind, SlopeBias,
 };
 #[cfg(feature = "other-shaders")]
 pub use vk::pipelines::ShaderSource;

@@ -51,7 +51,9 @@ pub struct HostDevice<'a> {
     pub features: vk::PhysicalDeviceFeatures,
     /// The host's allocator; without one a renderer makes its own.
     pub allocator: Option<Arc<Mutex<Allocator>>>,
-    /// The host's pipeline cache; without one a renderer makes its own.
+    /// The host's pipeline cache; without one a renderer makes its own. Several threads may compile
+    /// with it at once, so it is made without
+    /// `VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT`.
     pub pipeline_cache: Option<vk::PipelineCache>,
 }
 
@@ -89,7 +91,12 @@ impl Device {
     /// * all handles belong together and stay valid until that destruction;
     /// * the device was opened with the features that `host.features` lists, on Vulkan 1.2 or
     ///   later;
-    /// * `host.queue`, if given, is used by nothing else during [`Device::submit`].
+    /// * `host.queue`, if given, is used by nothing else during [`Device::submit`];
+    /// * `host.pipeline_cache`, if given, was made without
+    ///   `VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT`, and nothing merges other caches
+    ///   into it while pipelines are made: by [`Renderer::prepare`](crate::gpu::Renderer::prepare),
+    ///   [`Renderer::record_prewarm`](crate::gpu::Renderer::record_prewarm) and
+    ///   [`Prewarm::compile`](crate::gpu::Prewarm::compile).
     pub unsafe fn borrow(host: &HostDevice<'_>) -> Result<Self> {
         let mut candidate = inspect(host.instance, 0, host.physical);
         refuse(&candidate)?;
@@ -194,32 +201,25 @@ impl Device {
     }
 
     /// Adds the data that [`Device::pipeline_cache_data`] returned in another process. Pipelines
-    /// that were compiled there are found instead of compiled. Data of another driver is ignored.
+    /// that were compiled there are found instead of compiled. Data of another device or driver is
+    /// ignored. Other threads may compile meanwhile.
     ///
     /// # Errors
-    /// Errors of Vulkan calls.
+    /// [`ErrorKind::Usage`] for damaged data and for data that [`Device::pipeline_cache_data`] did
+    /// not write, which could crash a driver; also for a device that was borrowed with the host's
+    /// cache. Errors of Vulkan calls.
     pub fn add_pipeline_cache(&self, data: &[u8]) -> Result<()> {
-        let (raw, cache) = (&self.shared.raw, self.shared.pipelines.cache);
-        let with = vk::PipelineCacheCreateInfo::default().initial_data(data);
-        // SAFETY: drivers read the data's header and ignore data of other drivers; the second cache
-        // is gone again.
-        unsafe {
-            let other = raw.create_pipeline_cache(&with, None);
-            let other = other.call("vkCreatePipelineCache")?;
-            let merged = raw.merge_pipeline_caches(cache, &[other]);
-            raw.destroy_pipeline_cache(other, None);
-            merged.call("vkMergePipelineCaches")
-        }
+        let (pipelines, chosen) = (&self.shared.pipelines, &self.shared.chosen);
+        pipelines.add_cache_bytes(data, &chosen.properties)
     }
 
-    /// The driver's compiled pipelines, to be saved for [`Device::add_pipeline_cache`].
+    /// The driver's compiled pipelines, to be saved for [`Device::add_pipeline_cache`]. A mark and a
+    /// hash precede the driver's own data.
     ///
     /// # Errors
     /// Errors of Vulkan calls.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>> {
-        let cache = self.shared.pipelines.cache;
-        // SAFETY: the cache is live.
-        unsafe { self.shared.raw.get_pipeline_cache_data(cache) }.call("vkGetPipelineCacheData")
+        self.shared.pipelines.cache_bytes()
     }
 
     /// The device's functions and handle, for other drawing on the device.

@@ -9,7 +9,7 @@ use ash::vk;
 pub use engine::{lend::*, memory::*, set::UniformSet, *};
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
-    ComputeTarget, Device, HostDevice, ObjectId, Output, PassFormats, PassKind, Renderer,
+    ComputeTarget, Device, HostDevice, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer,
     Requirements, View,
 };
 use revmap::scene::Scene;
@@ -125,7 +125,8 @@ pub fn renderer(device: &Device, stage: &Stage, search: &SearchSettings, slots: 
     let begun = match stage.options.dynamic {
         true => dynamic(&[COLOR]),
         false => PassKind::RenderPass {
-            pass: stage.into.pass,
+            // SAFETY: tests drop renderers and prewarms before their stage.
+            pass: unsafe { HostPass::new(stage.into.pass) },
             subpass: 0,
         },
     };

@@ -40,6 +40,7 @@ mod hulls;
 mod limits;
 mod memory_types;
 mod offsets;
+mod pipelines;
 #[allow(unsafe_code)]
 mod plans;
 mod prewarmed;

@@ -9,7 +9,9 @@ use ash::vk;
 use ash::vk::Handle as _;
 use glam::DVec3;
 use revmap::error::ErrorKind::{self, Unsupported, Usage};
-use revmap::gpu::{ComputeTarget, Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{
+    ComputeTarget, Device, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer, View,
+};
 use revmap::scene::{Camera, Lighting, Object, Shadow};
 use revmap::settings::{Planes, SearchSettings, Solver};
 use std::sync::Arc;
@@ -125,7 +127,8 @@ fn attachments_that_do_not_fit_are_refused() {
     two.views = 2;
     assert_refused(device(), Output::Pass(two), Usage, Some("views"));
     let null = PassKind::RenderPass {
-        pass: vk::RenderPass::null(),
+        // SAFETY: the renderer refuses this handle before any use.
+        pass: unsafe { HostPass::new(vk::RenderPass::null()) },
         subpass: 0,
     };
     assert_refused(device(), pass(null, 1, Planes::Color), Usage, Some("pass"));
@@ -147,8 +150,8 @@ fn samples_that_the_device_has_not_are_refused() {
     let instance = layer.instance(&host.entry, &host.instance, mask);
     let poorer = borrow_through(&host, &instance, &host.device).unwrap();
     let own = PassKind::RenderPass {
-        // The renderer refuses this handle before any use.
-        pass: vk::RenderPass::from_raw(1),
+        // SAFETY: the renderer refuses this handle before any use.
+        pass: unsafe { HostPass::new(vk::RenderPass::from_raw(1)) },
         subpass: 0,
     };
     for samples in [2, 4, 8] {

@@ -503,7 +503,9 @@ typedef struct RevmapHostDevice {
     VkQueue queue;
     /// The features that the device was opened with; null: none.
     const VkPhysicalDeviceFeatures *features;
-    /// A pipeline cache of the host's; may be null.
+    /// A pipeline cache of the host's; may be null. Several threads may compile with it at once: it
+    /// must be made without VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT, and nothing may
+    /// merge other caches into it while pipelines are compiled.
     VkPipelineCache pipeline_cache;
 } RevmapHostDevice;
 
@@ -966,12 +968,13 @@ RevmapResult revmap_device_memory_use(const struct RevmapDevice *device,
                                       struct RevmapMemoryUse *memory);
 
 /// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
-/// another driver is ignored.
+/// another device or driver is ignored. Damaged and other bytes are refused, and so are all for a
+/// device that was borrowed with a pipeline cache.
 RevmapResult revmap_device_add_pipeline_cache(const struct RevmapDevice *device,
                                               const void *bytes,
                                               size_t count);
 
-/// Returns the driver's compiled pipelines. With null bytes, count becomes their number. Otherwise
+/// Returns the driver's compiled pipelines, behind a mark and a hash. With null bytes, count becomes their number. Otherwise
 /// count is the room in bytes, which must be large enough, and becomes the number of bytes written.
 /// The number grows as pipelines are compiled.
 RevmapResult revmap_device_pipeline_cache(const struct RevmapDevice *device,
@@ -1234,9 +1237,8 @@ RevmapResult revmap_renderer_prewarm(struct RevmapRenderer *renderer,
 RevmapResult revmap_renderer_special_forms(struct RevmapRenderer *renderer,
                                            struct RevmapPrewarm **prewarm);
 
-/// Compiles those that are not compiled yet. The renderer must live until this returns.
-///
-/// Another thread may use the renderer meanwhile.
+/// Compiles those that are not compiled yet. Another thread may use the renderer meanwhile, or
+/// destroy it.
 RevmapResult revmap_prewarm_compile(const struct RevmapPrewarm *prewarm);
 
 /// Returns the number of pipelines, compiled or not.

@@ -54,7 +54,9 @@ pub struct RevmapHostDevice {
     pub queue: vk::Queue,
     /// The features that the device was opened with; null: none.
     pub features: *const vk::PhysicalDeviceFeatures,
-    /// A pipeline cache of the host's; may be null.
+    /// A pipeline cache of the host's; may be null. Several threads may compile with it at once: it
+    /// must be made without VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT, and nothing may
+    /// merge other caches into it while pipelines are compiled.
     pub pipeline_cache: vk::PipelineCache,
 }
 
@@ -289,7 +291,8 @@ pub unsafe extern "C" fn revmap_device_memory_use(
 }
 
 /// Adds compiled pipelines that revmap_device_pipeline_cache() gave in another process. Data of
-/// another driver is ignored.
+/// another device or driver is ignored. Damaged and other bytes are refused, and so are all for a
+/// device that was borrowed with a pipeline cache.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
     device: *const RevmapDevice,
@@ -303,7 +306,7 @@ pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
     })
 }
 
-/// Returns the driver's compiled pipelines. With null bytes, count becomes their number. Otherwise
+/// Returns the driver's compiled pipelines, behind a mark and a hash. With null bytes, count becomes their number. Otherwise
 /// count is the room in bytes, which must be large enough, and becomes the number of bytes written.
 /// The number grows as pipelines are compiled.
 #[unsafe(no_mangle)]

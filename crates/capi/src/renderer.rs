@@ -14,7 +14,7 @@ use crate::structures::{described, read};
 use crate::values::{RevmapLighting, RevmapSearch};
 use ash::vk;
 use revmap::gpu::{
-    ComputeTarget, DepthOrder, DepthTest, HostShading, Output, PassFormats, PassKind,
+    ComputeTarget, DepthOrder, DepthTest, HostPass, HostShading, Output, PassFormats, PassKind,
     PreparedFrame, Renderer, SlopeBias,
 };
 use revmap::settings::{PlaneList, Planes};
@@ -130,7 +130,8 @@ impl RevmapPass {
     unsafe fn formats(&self) -> Outcome<PassFormats> {
         let begun = match enums::pass_kind(self.kind)? {
             RevmapPassKind::RenderPass => PassKind::RenderPass {
-                pass: self.render_pass,
+                // SAFETY: the caller's pass, which lives as long as it promised.
+                pass: unsafe { HostPass::new(self.render_pass) },
                 subpass: self.subpass,
             },
             RevmapPassKind::Dynamic => {

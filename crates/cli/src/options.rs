@@ -196,7 +196,7 @@ fn open(choice: Option<&str>) -> Result<(Device, Kept)> {
         .collect();
     let file = cache::folder().map(|folder| folder.join(format!("{name}.pipelines")));
     if let Some(data) = file.as_deref().and_then(cache::read) {
-        // The driver ignores data that is not its own.
+        // Data of another driver is ignored, and a damaged file refused.
         let _ = device.add_pipeline_cache(&data);
     }
     Ok((device, Kept { file }))

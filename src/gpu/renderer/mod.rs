@@ -46,8 +46,8 @@ use std::sync::Arc;
 pub struct Renderer {
     pub(super) content: Content,
     pub(super) slots: Vec<FrameSlot>,
-    /// The owner of its pipelines, with the host's shading.
-    pub(super) owner: Owner,
+    /// The owner of its pipelines, with the host's shading. It is dropped before the device.
+    pub(super) owner: Arc<Owner>,
     /// True if `prepare` compiles nothing.
     pub(super) hides: bool,
     pub(super) device: Arc<Shared>,
@@ -122,7 +122,7 @@ impl Renderer {
         settings.check()?;
         let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();
-        let owner = device.pipelines.owner(&output, shading)?;
+        let owner = Arc::new(device.pipelines.owner(&output, shading)?);
         let mut content = Content::new(&device, geometry, output, settings)?;
         content.host_shades = shading.is_some();
         Ok(Self {
@@ -229,11 +229,5 @@ impl Renderer {
         self.content.version += 1;
         self.slots.iter_mut().for_each(|slot| slot.named = None);
         Ok(())
-    }
-}
-
-impl Drop for Renderer {
-    fn drop(&mut self) {
-        self.device.pipelines.forget(&self.owner);
     }
 }

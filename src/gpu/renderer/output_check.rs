@@ -134,7 +134,7 @@ impl PassFormats {
             return Err(Error::new(ErrorKind::Unsupported, message).at_key("planes"));
         }
         match &self.begun {
-            PassKind::RenderPass { pass, .. } if *pass == vk::RenderPass::null() => {
+            PassKind::RenderPass { pass, .. } if pass.raw() == vk::RenderPass::null() => {
                 usage("pass", "the render pass is null; give one")
             }
             // Vulkan cannot return the formats of a render pass.

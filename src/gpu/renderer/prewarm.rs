@@ -13,9 +13,11 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
+/// Pipelines that are the renderer's own live until both are dropped.
 pub struct Prewarm {
     wanted: Vec<(Variant, Kind)>,
-    owner: Owner,
+    /// Dropped before the device.
+    owner: Arc<Owner>,
     device: Arc<Shared>,
 }
 
@@ -32,7 +34,7 @@ impl Prewarm {
         self.wanted.is_empty()
     }
 
-    /// Compiles all pipelines that are not compiled yet. The renderer must live until this returns.
+    /// Compiles all pipelines that are not compiled yet.
     ///
     /// # Errors
     /// Errors of Vulkan calls.

@@ -135,13 +135,40 @@ impl Default for DepthTest {
     }
 }
 
+/// A host's render pass, which pipelines are made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct HostPass(vk::RenderPass);
+
+impl HostPass {
+    /// A render pass of the host.
+    ///
+    /// # Safety
+    /// The value keeps the handle; renderers and their [`Prewarm`](crate::gpu::Prewarm)s make
+    /// pipelines with it.
+    ///
+    /// The caller must ensure that
+    /// * the pass is null, which is refused, or of the device of every renderer that is made with this
+    ///   value;
+    /// * it lives until each of these renderers and all their prewarms are dropped.
+    #[must_use]
+    pub const unsafe fn new(pass: vk::RenderPass) -> Self {
+        Self(pass)
+    }
+
+    /// The handle.
+    #[must_use]
+    pub const fn raw(self) -> vk::RenderPass {
+        self.0
+    }
+}
+
 /// Kind of pass that the host begins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum PassKind {
     /// A subpass of a render pass. The host may begin any compatible pass instead.
     RenderPass {
-        /// The pass, which must live as long as the renderer.
-        pass: vk::RenderPass,
+        /// The pass.
+        pass: HostPass,
         /// The subpass, which has the colour attachments of the planes and a depth attachment.
         subpass: u32,
     },

@@ -1,6 +1,7 @@
 //! Pipelines, one per variant, use and output. All renderers of a device share them; each pipeline
 //! is compiled once and kept.
 
+mod cache;
 mod compile;
 
 use crate::error::{Result, lock};
@@ -14,7 +15,7 @@ use crate::shading::Shading;
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 /// Specialisation constants that are the same for all pipelines of a device.
 #[derive(Clone, Copy, Debug)]
@@ -44,10 +45,11 @@ pub(crate) struct Pipelines {
     /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
     pub layout: vk::PipelineLayout,
-    pub cache: vk::PipelineCache,
+    /// Shared while pipelines are compiled, exclusive while another cache is merged into it.
+    cache: RwLock<vk::PipelineCache>,
     /// True if this value made `cache` and destroys it.
     owns_cache: bool,
-    made: Mutex<HashMap<Key, vk::Pipeline>>,
+    made: Made,
     /// The number of pipelines that were compiled.
     pub compiled: AtomicU64,
     owners: AtomicU64,
@@ -66,13 +68,31 @@ pub(crate) struct Pipelines {
 pub type ShaderSource =
     Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
 
-/// The renderer that pipelines are for: its output, and the host's shading in them.
-#[derive(Clone)]
+/// The pipelines that are compiled.
+type Made = Arc<Mutex<HashMap<Key, vk::Pipeline>>>;
+
+/// The renderer that pipelines are for: its output, and the host's shading in them. The pipelines
+/// that are its own live as long as it. Its users keep the device alive.
 pub(crate) struct Owner {
     /// 0 if all renderers may share the pipelines.
     number: u64,
     output: Output,
-    pub shading: Option<Arc<BoundShading>>,
+    pub shading: Option<BoundShading>,
+    made: Made,
+    raw: ash::Device,
+}
+
+impl Drop for Owner {
+    fn drop(&mut self) {
+        let Some(mut made) = self.made.lock().ok().filter(|_| self.number != 0) else {
+            return;
+        };
+        let mine = made.extract_if(|(.., number), _| *number == self.number);
+        for (_, pipeline) in mine {
+            // SAFETY: the renderer is gone, and its frames are done.
+            unsafe { self.raw.destroy_pipeline(pipeline, None) };
+        }
+    }
 }
 
 /// A host's shading with the layout of its pipelines.
@@ -101,7 +121,7 @@ impl BoundShading {
 
 impl Drop for BoundShading {
     fn drop(&mut self) {
-        // SAFETY: the renderer's frames are done, and its pipelines need no layout.
+        // SAFETY: the renderer's frames are done, and its pipelines need no layout any more.
         unsafe { self.raw.destroy_pipeline_layout(self.layout, None) };
     }
 }
@@ -119,9 +139,9 @@ impl Pipelines {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
             layout: vk::PipelineLayout::null(),
-            cache: cache.unwrap_or_default(),
+            cache: cache.unwrap_or_default().into(),
             owns_cache: cache.is_none(),
-            made: Mutex::default(),
+            made: Made::default(),
             compiled: AtomicU64::new(0),
             owners: AtomicU64::new(0),
             flags: vk::PipelineCreateFlags::empty(),
@@ -139,7 +159,7 @@ impl Pipelines {
             let empty = vk::PipelineCacheCreateInfo::default();
             // SAFETY: a plain creation, destroyed in Drop.
             let made = unsafe { raw.create_pipeline_cache(&empty, None) };
-            all.cache = made.call("vkCreatePipelineCache")?;
+            all.cache = made.call("vkCreatePipelineCache")?.into();
         }
         Ok(all)
     }
@@ -175,8 +195,8 @@ impl Pipelines {
     }
 
     /// Returns the owner of a renderer's pipelines. The pipelines of a host's render pass or shading
-    /// are the renderer's own: the host may destroy its pass once the renderer is gone, and make
-    /// another of the same handle. All others are shared.
+    /// are the renderer's own: the host may destroy its pass once the renderer and its prewarms are
+    /// gone, and make another of the same handle. All others are shared.
     pub fn owner(&self, output: &Output, host: Option<&HostShading>) -> Result<Owner> {
         let of_host = matches!(
             output,
@@ -190,22 +210,10 @@ impl Pipelines {
         Ok(Owner {
             number: (of_host || host.is_some()).then(number).unwrap_or_default(),
             output: output.clone(),
-            shading: host.map(bound).transpose()?.map(Arc::new),
+            shading: host.map(bound).transpose()?,
+            made: self.made.clone(),
+            raw: self.raw.clone(),
         })
-    }
-
-    /// Destroys all pipelines of `owner`, whose frames are done.
-    pub fn forget(&self, owner: &Owner) {
-        let owner = owner.number;
-        if owner == 0 {
-            return;
-        }
-        if let Ok(mut made) = self.made.lock() {
-            // SAFETY: the frames that used the pipelines are done.
-            let destroy = |pipeline| unsafe { self.raw.destroy_pipeline(pipeline, None) };
-            let mine = made.extract_if(|(.., number), _| *number == owner);
-            mine.for_each(|(_, pipeline)| destroy(pipeline));
-        }
     }
 }
 
@@ -223,14 +231,15 @@ fn layout(raw: &ash::Device, sets: &[vk::DescriptorSetLayout]) -> Result<vk::Pip
 
 impl Drop for Pipelines {
     fn drop(&mut self) {
-        let made = self.made.get_mut().map(std::mem::take);
+        let made = self.made.lock().map(|mut made| std::mem::take(&mut *made));
+        let cache = self.cache.get_mut().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the device's last user is gone; null handles may be destroyed.
         unsafe {
             for pipeline in made.unwrap_or_default().into_values() {
                 self.raw.destroy_pipeline(pipeline, None);
             }
             if self.owns_cache {
-                self.raw.destroy_pipeline_cache(self.cache, None);
+                self.raw.destroy_pipeline_cache(*cache, None);
             }
             self.raw.destroy_pipeline_layout(self.layout, None);
             for layout in self.set_layouts {

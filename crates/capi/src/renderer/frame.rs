@@ -185,9 +185,8 @@ pub unsafe extern "C" fn revmap_renderer_special_forms(
     }
 }
 
-/// Compiles those that are not compiled yet. The renderer must live until this returns.
-///
-/// Another thread may use the renderer meanwhile.
+/// Compiles those that are not compiled yet. Another thread may use the renderer meanwhile, or
+/// destroy it.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_prewarm_compile(prewarm: *const RevmapPrewarm) -> RevmapResult {
     enter(|| Ok(RevmapPrewarm::get(prewarm)?.compile()?))

@@ -4,7 +4,7 @@ use crate::host::{Host, Stage, Texture, UniformSet, borrow, open};
 use crate::recording::{OPTIONS, POINTS, RANGE, camera, lend, render_pass, scene};
 use ash::vk;
 use glam::{DMat4, Vec3};
-use revmap::gpu::{self, HostShading, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{self, HostPass, HostShading, Output, PassFormats, PassKind, Renderer, View};
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
 use revmap_capi::device::*;
@@ -35,7 +35,8 @@ fn lights(host: &Host) -> UniformSet<'_> {
 fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &gpu::HostImage) -> Vec<u8> {
     let device = borrow(host);
     let begun = PassKind::RenderPass {
-        pass: stage.into.pass,
+        // SAFETY: the stage outlives the renderer.
+        pass: unsafe { HostPass::new(stage.into.pass) },
         subpass: 0,
     };
     let output = Output::Pass(PassFormats::new(begun, Planes::Color));

@@ -13,6 +13,7 @@ use crate::shader::{
 };
 use ash::vk;
 use std::collections::HashMap;
+use std::sync::PoisonError;
 
 impl Pipelines {
     pub(super) fn compile(
@@ -21,7 +22,7 @@ impl Pipelines {
         kind: Kind,
         owner: &Owner,
     ) -> Result<vk::Pipeline> {
-        let (output, host) = (&owner.output, owner.shading.as_deref());
+        let (output, host) = (&owner.output, owner.shading.as_ref());
         let own = variant.constants().into_iter();
         let constants = own.chain(output.constants()).chain(self.constants.values());
         let constants = constants.collect();
@@ -104,8 +105,9 @@ impl Pipelines {
             .flags(self.flags)
             .stage(module.stage(vk::ShaderStageFlags::COMPUTE))
             .layout(host.map_or(self.layout, |host| host.layout));
+        let cache = self.cache.read().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: `info` and all it points to live until the call returns.
-        let made = unsafe { self.raw.create_compute_pipelines(self.cache, &[info], None) };
+        let made = unsafe { self.raw.create_compute_pipelines(*cache, &[info], None) };
         first(made, "vkCreateComputePipelines")
     }
 
@@ -171,7 +173,7 @@ impl Pipelines {
             .layout(host.map_or(self.layout, |host| host.layout));
         match &pass.begun {
             PassKind::RenderPass { pass, subpass } => {
-                info = info.render_pass(*pass).subpass(*subpass);
+                info = info.render_pass(pass.raw()).subpass(*subpass);
             }
             PassKind::SingleSubpass { color, depth } => {
                 compatible = CompatiblePass::new(&self.raw, color, *depth, pass.samples)?;
@@ -191,10 +193,10 @@ impl Pipelines {
                 info = info.push_next(&mut rendering);
             }
         }
-        let raw = &self.raw;
+        let cache = self.cache.read().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: `info` and all it points to live until the call returns; a render pass lives as
-        // the host of the output promised.
-        let made = unsafe { raw.create_graphics_pipelines(self.cache, &[info], None) };
+        // the caller of HostPass::new promised.
+        let made = unsafe { (self.raw).create_graphics_pipelines(*cache, &[info], None) };
         first(made, "vkCreateGraphicsPipelines")
     }
 }
