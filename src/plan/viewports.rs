@@ -7,7 +7,7 @@ use crate::error::{ErrorKind, Result};
 use crate::profile::Profile;
 use crate::scene::{Object, Placement};
 use crate::shader::generated::QUAD_BITS;
-use crate::shader::{Kind, Search, Variant};
+use crate::shader::{Kind, Search, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use crate::surface::FitOptions;
@@ -66,13 +66,12 @@ fn planned(view: &View, compute: bool) -> FramePlan {
             object,
             number,
             first_instance: number,
-            variant: Variant {
+            technique: Technique {
                 search: Search::Quadric,
-                ..Variant::LISTS
+                ..Technique::LISTS
             },
             textures: 0,
             surfaces: &surfaces,
-            takes_patches: true,
             levels: None,
             shape: shape_of(object, [0.5, 0.46, 0.0, 1.0]),
             outline: None,
@@ -81,6 +80,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
     let with = Conditions {
         compute,
         passes_cells: true,
+        takes_patches: true,
         subgroup_size: 32,
         most_storage: 1 << 30,
         occlusion_culling: true,

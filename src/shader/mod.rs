@@ -27,8 +27,8 @@ pub use outputs::{with_locations, with_outputs_for};
 pub use spirv::{depth_less, instructions, op};
 pub(crate) use technique::is_beveled;
 pub use technique::{HostLook, ShadowCasters, Technique};
-pub use variant::{Kind, Speciality, Variant};
 pub use textures::with_constant_textures;
+pub use variant::{Kind, Speciality, Variant};
 pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.

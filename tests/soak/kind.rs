@@ -3,7 +3,7 @@
 use crate::common::host::{COLOR, DEPTH, Options, dynamic, order};
 use crate::dice::Dice;
 use ash::vk;
-use revmap::gpu::{Output, PassFormats, PassKind};
+use revmap::gpu::{HostPass, Output, PassFormats, PassKind};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Solver, Tolerance};
 
 /// An output, and how its renderer searches.
@@ -98,6 +98,8 @@ impl Kind {
             let (color, depth) = (colors, DEPTH);
             PassKind::SingleSubpass { color, depth }
         } else {
+            // SAFETY: the pass outlives the renderers of the episode and what they compile.
+            let pass = unsafe { HostPass::new(pass) };
             PassKind::RenderPass { pass, subpass: 0 }
         };
         Output::Pass(PassFormats {

@@ -31,6 +31,8 @@ pub(super) struct Content {
     pub lighting: Lighting,
     /// Values that were set since the last refresh.
     pub wanted: Wanted,
+    /// True if an object was removed since the last refresh, and with it a reason for common facts.
+    pub removed: bool,
     pub common: Common,
     /// Numbers of objects that are new or were changed since the last frame, if motion is drawn.
     pub moved: BTreeSet<u32>,
@@ -65,6 +67,7 @@ impl Content {
             geometry,
             lighting: Lighting::default(),
             wanted: Wanted::new(),
+            removed: false,
             common: Common::default(),
             moved: BTreeSet::new(),
             version: 1,

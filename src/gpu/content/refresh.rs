@@ -39,7 +39,7 @@ impl Content {
     /// Applies the values that were added and set since the last call that succeeded, all or none.
     /// After an error they stay wanted, and the next call tries them again.
     pub fn refresh(&mut self) -> Result<()> {
-        if self.wanted.is_empty() {
+        if self.wanted.is_empty() && !self.removed {
             return Ok(());
         }
         let mut wanted = std::mem::take(&mut self.wanted);
@@ -48,6 +48,7 @@ impl Content {
             (self.wanted, self.common) = (wanted, before);
             return Err(error);
         }
+        self.removed = false;
         self.version += 1;
         for (number, values) in wanted {
             if let Some(entry) = self.objects.at_mut(number) {

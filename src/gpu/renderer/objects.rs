@@ -35,6 +35,7 @@ impl Renderer {
         self.content.entry(id)?;
         self.content.objects.remove(id);
         self.content.wanted.remove(&id.number());
+        self.content.removed |= self.content.casts();
         self.content.moved.remove(&id.number());
         self.content.version += 1;
         Ok(())

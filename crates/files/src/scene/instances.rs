@@ -91,7 +91,7 @@ fn is_heading(line: &str) -> bool {
     let is_word = |field: &&str| field.parse::<f64>().is_err();
     let is_name = |field: &&str| NAMES.iter().any(|name| name.eq_ignore_ascii_case(field));
     let fields = fields(line);
-    fields.iter().all(|field| is_word(&field)) || fields.iter().any(|field| is_name(&field))
+    fields.iter().all(|field| is_word(field)) || fields.iter().any(|field| is_name(field))
 }
 
 /// The column of each of [`NAMES`].
