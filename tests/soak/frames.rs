@@ -230,12 +230,15 @@ impl Episode<'_> {
     fn plant(&mut self, n: usize) -> bool {
         let busy = self.players.iter().any(|p| p.compiles.is_some());
         // A frame that has nothing to change allocates nothing.
-        let chance = if self.players[n].fresh() { 0.1 } else { 0.02 };
+        let chance = if self.players[n].fresh() { 0.2 } else { 0.02 };
         if busy || !self.dice.chance(chance) {
             return false;
         }
         match self.dice.chance(0.7) {
-            true => self.layer.fail_at(self.dice.below(12)),
+            true => {
+                let most = self.dice.pick(&[2, 5, 20]);
+                self.layer.fail_at(self.dice.below(most));
+            }
             false => {
                 let room = self.dice.pick(&[0, 1000, 100_000]);
                 let used = self.device.memory_use().total();

@@ -23,6 +23,7 @@ mod check;
 mod common;
 mod dice;
 mod episode;
+mod findings;
 mod frames;
 mod kind;
 mod known;
