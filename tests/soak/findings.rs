@@ -45,7 +45,6 @@ fn picture(host: &host::Host, renderer: &mut Renderer, view: &View) -> Vec<u8> {
 /// A solid without a contour makes the map's search draw all solids under shadows. Once it is
 /// removed, the others are drawn as if it had never been there.
 #[test]
-#[ignore = "removed under shadows"]
 fn a_removed_solid_leaves_no_search_behind() {
     let host = open();
     let device = borrow(&host);

@@ -254,7 +254,10 @@ impl Episode<'_> {
         let cmd = self.flights[0].cmd[0];
         self.begin(cmd);
         // SAFETY: all frames have run, and the commands are never submitted.
-        match unsafe { self.players[n].renderer.prepare(cmd, 0, &seen.view) } {
+        let result = unsafe { self.players[n].renderer.prepare(cmd, 0, &seen.view) };
+        // SAFETY: `cmd` is recording; another player begins it again.
+        let _ = unsafe { self.host.device.end_command_buffer(cmd) };
+        match result {
             Err(e) if e.kind == ErrorKind::DeviceLost => {
                 self.log.tally.count("lost", 1);
                 Ok(())
