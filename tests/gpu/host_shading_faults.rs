@@ -2,9 +2,11 @@
 //! prewarmed, hidden and told apart.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Checked, UniformSet, add, borrow, open, view_of};
+use crate::calls::{Layer, Mask};
+use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
 use crate::embedding::options;
 use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
+use crate::trouble::grant;
 use ash::vk;
 use revmap::error::ErrorKind;
 use revmap::gpu::{Device, HostShading, Output, Renderer};
@@ -34,6 +36,52 @@ fn shaded(
     };
     // SAFETY: the layout is live until the renderer is dropped; the faults of tests draw nothing.
     unsafe { Renderer::with_shading(device, output, settings, 1, &host) }
+}
+
+/// A function of `count` textures of the host's set.
+fn of_textures(count: u32) -> Arc<Shading> {
+    let text = format!(
+        "layout(set = 3, binding = 0) uniform sampler2D host_maps[{count}];\n\
+         vec4 host_shade(Surface s) {{ return texture(host_maps[0], s.uv); }}\n"
+    );
+    shading(DrawStage::Fragment, &text)
+}
+
+/// A device of 16 textures in a stage leaves 12 to the host's set, and more are refused by name.
+#[test]
+fn textures_beyond_the_device_are_refused() {
+    let (layer, host) = (Layer::take(), open());
+    let mask = Mask {
+        limits: Some(grant),
+        ..Mask::default()
+    };
+    let instance = layer.instance(&host.entry, &host.instance, mask);
+    let least = borrow_through(&host, &instance, &host.device).unwrap();
+    let layout = |count| {
+        let binding = vk::DescriptorSetLayoutBinding::default()
+            .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+            .descriptor_count(count)
+            .stage_flags(vk::ShaderStageFlags::FRAGMENT);
+        let bindings = [binding];
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: a plain creation, destroyed below.
+        unsafe { host.device.create_descriptor_set_layout(&info, None) }.unwrap()
+    };
+    for (count, message) in [(12, None), (13, Some("of 17 (it has 16)"))] {
+        let set_layout = layout(count);
+        let by = of_textures(count);
+        let made = shaded(&least, colors(), &SearchSettings::exact(), &by, set_layout);
+        match message {
+            None => drop(made.unwrap()),
+            Some(message) => {
+                let error = made.err().unwrap();
+                assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
+                assert!(error.to_string().contains(message), "{error}");
+            }
+        }
+        // SAFETY: no renderer with the layout is left.
+        unsafe { host.device.destroy_descriptor_set_layout(set_layout, None) };
+    }
 }
 
 /// A shading is refused where it would not shade, each time with the key and the remedy.

@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, Host, borrow_through, color_pass, open, open_with};
+use crate::common::host::{Checked, Host, borrow_through, open, open_with};
 use crate::common::ways::apart;
 use crate::common::{device, eye, next_frame, scene_of, shapes, updated};
 use crate::embedding::three;
@@ -11,12 +11,10 @@ use ash::vk;
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostShading, Output, Renderer};
+use revmap::gpu::{Device, DrawPath};
 use revmap::scene::{Placement, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Settings, Solver};
-use revmap::shading::Shading;
+use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_offscreen::Offscreen;
-use std::sync::Arc;
 
 fn settings(stage: DrawStage) -> Settings {
     Settings {
@@ -232,7 +230,7 @@ fn a_device_without_what_is_needed_is_refused() {
 }
 
 /// Grants what renderers need beyond the guaranteed limits of Vulkan.
-fn grant(limits: &mut vk::PhysicalDeviceLimits) {
+pub fn grant(limits: &mut vk::PhysicalDeviceLimits) {
     limits.max_per_stage_descriptor_storage_buffers = 9;
     limits.max_fragment_combined_output_resources = 10;
 }
@@ -328,43 +326,6 @@ fn a_device_of_nearly_least_limits_draws_the_same() {
             hits > 3000 && edges <= 4 && far == 0,
             "{stage:?}: {hits} {edges} {far}"
         );
-    }
-}
-
-/// A host's shading with textures is refused on a device that has no more than the library's own.
-#[test]
-fn textures_of_a_shading_count_beside_the_librarys() {
-    let (layer, host) = (Layer::take(), open());
-    let bytes = include_bytes!("../../examples/shadowed/shade.shading");
-    let shading = Arc::new(Shading::from_bytes(bytes).unwrap());
-    let binding = vk::DescriptorSetLayoutBinding::default()
-        .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
-        .descriptor_count(1)
-        .stage_flags(vk::ShaderStageFlags::FRAGMENT);
-    let mask = Mask {
-        limits: Some(grant),
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let least = borrow_through(&host, &instance, &host.device).unwrap();
-    let bindings = [binding];
-    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-    // SAFETY: a plain creation; no renderer is made with the layout.
-    unsafe {
-        let set_layout = host
-            .device
-            .create_descriptor_set_layout(&info, None)
-            .unwrap();
-        let by = HostShading {
-            shading,
-            set_layout,
-        };
-        let output = Output::Pass(color_pass());
-        let made = Renderer::with_shading(&least, output, &SearchSettings::exact(), 1, &by);
-        let error = made.err().unwrap();
-        host.device.destroy_descriptor_set_layout(set_layout, None);
-        assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
-        assert!(error.to_string().contains("of 17 (it has 16)"), "{error}");
     }
 }
 

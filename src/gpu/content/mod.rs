@@ -60,10 +60,11 @@ impl Content {
         geometry: Arc<Mutex<Geometry>>,
         output: Output,
         settings: &SearchSettings,
+        host_shades: bool,
     ) -> Result<Self> {
         Ok(Self {
             objects: Objects::new(most_instances(device, &output)),
-            textures: Textures::new(device, settings.map_format)?,
+            textures: Textures::new(device, settings.map_format, host_shades)?,
             geometry,
             lighting: Lighting::default(),
             wanted: Wanted::new(),
@@ -78,7 +79,7 @@ impl Content {
             notes: Vec::new(),
             settings: *settings,
             output,
-            host_shades: false,
+            host_shades,
             device: device.clone(),
         })
     }

@@ -81,7 +81,7 @@ impl Renderer {
     /// The errors of [`Renderer::new`]. [`ErrorKind::Usage`] for a shading of the other stage, for an
     /// output without colour, for a search other than `exact`, `quadric` and `live`, for a function
     /// that reads another set than 3, and for one that reads set 3 if the layout is null.
-    /// [`ErrorKind::Unsupported`] for a function whose textures, with the library's 16, are more than
+    /// [`ErrorKind::Unsupported`] for a function whose textures, with the library's 4, are more than
     /// a stage of the device has.
     ///
     /// # Safety
@@ -123,8 +123,7 @@ impl Renderer {
         let geometry = Geometry::of(&device.shared, &device.geometry)?;
         let device = device.shared.clone();
         let owner = Arc::new(device.pipelines.owner(&output, shading)?);
-        let mut content = Content::new(&device, geometry, output, settings)?;
-        content.host_shades = shading.is_some();
+        let content = Content::new(&device, geometry, output, settings, shading.is_some())?;
         Ok(Self {
             slots: (0..slots)
                 .map(|_| FrameSlot::new(&device))

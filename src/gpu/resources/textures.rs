@@ -124,7 +124,7 @@ pub(crate) struct BoundTextures {
 }
 
 impl Textures {
-    pub fn new(device: &Arc<Shared>, format: MapFormat) -> Result<Self> {
+    pub fn new(device: &Arc<Shared>, format: MapFormat, host_shades: bool) -> Result<Self> {
         let mut uploads = Uploads::new(device);
         let texel = vk::Format::R32_SFLOAT;
         let mut all = Self {
@@ -134,7 +134,7 @@ impl Textures {
             sets: Kept::default(),
             blank: uploads.image("blank", texel, (1, 1), &[&[0; 4]])?,
             blank_set: None,
-            pool: Arc::new(SetPool::new(device, format)?),
+            pool: Arc::new(SetPool::new(device, format, host_shades)?),
             uploads,
         };
         all.blank_set = Some(all.set(&Texturing::default(), BoundTextures::default())?);
@@ -229,8 +229,9 @@ impl Textures {
             .chain(std::iter::repeat(blank))
             .take(MAX_SHADOW_MAPS as usize)
             .collect();
+        let shadows = (!self.pool.host_shades).then_some(shadows.as_slice());
         let writes: Vec<_> = (0u32..)
-            .zip(own.chunks(1).chain([shadows.as_slice()]))
+            .zip(own.chunks(1).chain(shadows))
             .map(|(binding, infos)| {
                 vk::WriteDescriptorSet::default()
                     .dst_set(made.set)
@@ -302,6 +303,8 @@ struct SetPool {
     /// The sampler of maps; that of surface textures, which repeats around and along the axis; one
     /// that repeats only around, so that the poles' rows do not run into each other.
     samplers: [vk::Sampler; 3],
+    /// True if sets have no maps for shadows: [`HOST_TEXTURES`](crate::gpu::vk::descriptors::HOST_TEXTURES).
+    host_shades: bool,
     state: Mutex<Sets>,
     device: Arc<Shared>,
 }
@@ -317,10 +320,11 @@ const SETS: u32 = 64;
 
 impl SetPool {
     /// No sets yet, and samplers for maps of this format.
-    fn new(device: &Arc<Shared>, format: MapFormat) -> Result<Self> {
+    fn new(device: &Arc<Shared>, format: MapFormat, host_shades: bool) -> Result<Self> {
         use vk::{Filter, SamplerAddressMode as Address};
         let mut pool = Self {
             samplers: [vk::Sampler::null(); 3],
+            host_shades,
             state: Mutex::default(),
             device: device.clone(),
         };
@@ -361,8 +365,12 @@ impl SetPool {
     fn take(&self) -> Result<vk::DescriptorSet> {
         let mut state = lock(&self.state)?;
         if state.free.is_empty() {
-            let layouts = &self.device.pipelines.set_layouts;
-            let (pool, sets) = allocate(&self.device.raw, layouts, &[TEXTURE_SET], SETS)?;
+            let pipelines = &self.device.pipelines;
+            let layouts = match self.host_shades {
+                true => pipelines.host_layouts(),
+                false => pipelines.set_layouts,
+            };
+            let (pool, sets) = allocate(&self.device.raw, &layouts, &[TEXTURE_SET], SETS)?;
             state.pools.push(pool);
             state.free = sets;
         }

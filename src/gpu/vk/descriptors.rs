@@ -70,6 +70,10 @@ pub(crate) const SETS: [&[Binding]; 3] = [
     ],
 ];
 
+/// The bindings of [`TEXTURE_SET`] under a host's shading, which reads no shadows. Other textures
+/// that Vulkan guarantees are the host's.
+pub(crate) const HOST_TEXTURES: &[Binding] = SETS[TEXTURE_SET].split_at(4).0;
+
 /// The number of descriptors of some kinds in all sets that one of these stages may read.
 pub(crate) fn count(kinds: &[Kind], stages: Stages) -> u32 {
     let counts = |of: &&Binding| kinds.contains(&of.kind) && of.stages.intersects(stages);
@@ -77,10 +81,10 @@ pub(crate) fn count(kinds: &[Kind], stages: Stages) -> u32 {
     all.filter(counts).map(|of| of.count).sum()
 }
 
-/// The layout of a set.
-pub(crate) fn layout(raw: &ash::Device, set: usize) -> Result<vk::DescriptorSetLayout> {
+/// The layout of a set with these bindings.
+pub(crate) fn layout(raw: &ash::Device, bindings: &[Binding]) -> Result<vk::DescriptorSetLayout> {
     let bindings: Vec<_> = (0u32..)
-        .zip(SETS[set])
+        .zip(bindings)
         .map(|(number, binding)| {
             vk::DescriptorSetLayoutBinding::default()
                 .binding(number)

@@ -3,7 +3,7 @@
 
 use crate::error::{Error, ErrorKind, Result, usage};
 use crate::frame::srgb_from_linear;
-use crate::gpu::vk::descriptors::{EVERY, SETS, count};
+use crate::gpu::vk::descriptors::{HOST_TEXTURES, SETS};
 use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings};
@@ -281,8 +281,8 @@ pub struct HostShading {
     /// The function.
     pub shading: Arc<Shading>,
     /// The layout of set 3, for the stage of the shading; null if the function reads no set. Its
-    /// descriptors count beside the library's under the device's limits: the library has 16
-    /// combined image samplers in each stage.
+    /// descriptors count beside the library's under the device's limits: the library has 4
+    /// combined image samplers in each stage beside them.
     pub set_layout: vk::DescriptorSetLayout,
 }
 
@@ -329,8 +329,7 @@ impl HostShading {
                 return usage("set_layout", message);
             }
         }
-        let own = count(&[vk::DescriptorType::COMBINED_IMAGE_SAMPLER], EVERY);
-        let needed = own + self.shading.textures(HOST_SET);
+        let needed = HOST_TEXTURES.len() as u32 + self.shading.textures(HOST_SET);
         let has = (limits.max_per_stage_descriptor_samplers)
             .min(limits.max_per_stage_descriptor_sampled_images);
         if needed > has {

@@ -44,6 +44,8 @@ impl DeviceConstants {
 pub(crate) struct Pipelines {
     /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
+    /// The layout of [`descriptors::HOST_TEXTURES`].
+    host_textures: vk::DescriptorSetLayout,
     pub layout: vk::PipelineLayout,
     /// Shared while pipelines are compiled, exclusive while another cache is merged into it.
     cache: RwLock<vk::PipelineCache>,
@@ -138,6 +140,7 @@ impl Pipelines {
     ) -> Result<Self> {
         let mut all = Self {
             set_layouts: [vk::DescriptorSetLayout::null(); 3],
+            host_textures: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
             cache: cache.unwrap_or_default().into(),
             owns_cache: cache.is_none(),
@@ -152,8 +155,9 @@ impl Pipelines {
         };
         let raw = &all.raw;
         for (set, layout) in all.set_layouts.iter_mut().enumerate() {
-            *layout = descriptors::layout(raw, set)?;
+            *layout = descriptors::layout(raw, descriptors::SETS[set])?;
         }
+        all.host_textures = descriptors::layout(raw, descriptors::HOST_TEXTURES)?;
         all.layout = layout(raw, &all.set_layouts)?;
         if all.owns_cache {
             let empty = vk::PipelineCacheCreateInfo::default();
@@ -162,6 +166,13 @@ impl Pipelines {
             all.cache = made.call("vkCreatePipelineCache")?.into();
         }
         Ok(all)
+    }
+
+    /// The layouts of the library's sets under a host's shading.
+    pub fn host_layouts(&self) -> [vk::DescriptorSetLayout; 3] {
+        let mut all = self.set_layouts;
+        all[descriptors::TEXTURE_SET] = self.host_textures;
+        all
     }
 
     /// Returns the pipeline of `variant` and `kind` for an owner, compiled now if it is new.
@@ -205,7 +216,7 @@ impl Pipelines {
                 ..
             })
         );
-        let bound = |host| BoundShading::new(&self.raw, host, &self.set_layouts);
+        let bound = |host| BoundShading::new(&self.raw, host, &self.host_layouts());
         let number = || self.owners.fetch_add(1, Ordering::Relaxed) + 1;
         Ok(Owner {
             number: (of_host || host.is_some()).then(number).unwrap_or_default(),
@@ -242,6 +253,8 @@ impl Drop for Pipelines {
                 self.raw.destroy_pipeline_cache(*cache, None);
             }
             self.raw.destroy_pipeline_layout(self.layout, None);
+            self.raw
+                .destroy_descriptor_set_layout(self.host_textures, None);
             for layout in self.set_layouts {
                 self.raw.destroy_descriptor_set_layout(layout, None);
             }
