@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 use revmap::scene::{CameraFrame, Scene};
+use revmap_files::ProfileAxis;
 use std::path::PathBuf;
 
 fn folder() -> PathBuf {
@@ -100,4 +101,44 @@ fn light_and_dark_pieces_share_their_profiles() {
     };
     let names = ["pawn.svg", "rook.svg", "bishop.svg", "king.svg"];
     assert!(names.into_iter().all(find));
+}
+
+#[test]
+fn nothing_in_them_looks_unintended() {
+    for (name, scene) in scenes() {
+        assert_eq!(revmap_files::warnings(&scene, 800, 600), [""; 0], "{name}");
+    }
+}
+
+/// Pictures of every solid, whole and half, bring no warning about their form.
+#[test]
+fn pictures_of_their_solids_look_as_intended() {
+    for (name, scene) in scenes() {
+        for profile in scene.objects.iter().map(|o| &o.profile) {
+            let (rows, margin) = (240, 6);
+            let columns = (profile.radius * f64::from(rows)).ceil() as u32 + margin;
+            let half = revmap_files::raster::rasterize(&profile.outline, columns, rows);
+            let shade = |column: u32, row: u32| {
+                let coverage = half.coverage[(row * columns + column) as usize];
+                image::Luma([(255.0 * (1.0 - coverage)).round() as u8])
+            };
+            let whole = image::GrayImage::from_fn(2 * columns, rows, |x, y| {
+                let column = if x < columns {
+                    columns - 1 - x
+                } else {
+                    x - columns
+                };
+                shade(column, y)
+            });
+            let half = image::GrayImage::from_fn(columns, rows, shade);
+            for (picture, axis) in [(whole, ProfileAxis::Center), (half, ProfileAxis::Left)] {
+                let mut bytes = std::io::Cursor::new(Vec::new());
+                picture
+                    .write_to(&mut bytes, image::ImageFormat::Png)
+                    .unwrap();
+                let read = revmap_files::profile_from_bytes(bytes.get_ref(), axis).unwrap();
+                assert_eq!(read.warnings, [""; 0], "{name}, {axis:?}");
+            }
+        }
+    }
 }
