@@ -63,6 +63,12 @@ impl Grid {
         self.place(self.snap(p))
     }
 
+    /// Distance between neighbouring grid points, object units.
+    #[must_use]
+    pub fn step(self) -> f64 {
+        1.0 / self.scale
+    }
+
     fn snap(self, p: DVec2) -> IntPoint<i32> {
         let f = |v: f64| (v * self.scale).round().clamp(-LIMIT, LIMIT) as i32;
         IntPoint::new(f(p.x), f(p.y))
@@ -116,6 +122,46 @@ impl Region {
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         self.combine(other, OverlayRule::Union)
+    }
+
+    /// All points of a rectangle, corners rounded to the grid.
+    #[must_use]
+    pub fn rectangle(grid: Grid, low: DVec2, high: DVec2) -> Self {
+        let (low, high) = (grid.snap(low), grid.snap(high));
+        let corners = [
+            low,
+            IntPoint::new(high.x, low.y),
+            high,
+            IntPoint::new(low.x, high.y),
+        ];
+        Self {
+            contours: vec![corners.to_vec()],
+        }
+    }
+
+    /// The lowest and highest coordinates; `None` for a region without points.
+    #[must_use]
+    pub fn extent(&self, grid: Grid) -> Option<[DVec2; 2]> {
+        let mut points = self.contours.iter().flatten();
+        let &first = points.next()?;
+        let (low, high) = points.fold((first, first), |(low, high), p| {
+            (
+                IntPoint::new(low.x.min(p.x), low.y.min(p.y)),
+                IntPoint::new(high.x.max(p.x), high.y.max(p.y)),
+            )
+        });
+        Some([grid.place(low), grid.place(high)])
+    }
+
+    /// Returns true if the region is one rectangle along the axes.
+    #[must_use]
+    pub fn is_rectangle(&self) -> bool {
+        let [contour] = self.contours.as_slice() else {
+            return false;
+        };
+        let along = |a: &IntPoint<i32>, b: &IntPoint<i32>| a.x == b.x || a.y == b.y;
+        let next = contour.iter().cycle().skip(1);
+        contour.len() == 4 && contour.iter().zip(next).all(|(a, b)| along(a, b))
     }
 
     /// Returns true for a region without points.

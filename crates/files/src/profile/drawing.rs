@@ -2,21 +2,17 @@
 //!
 //! Every fill and stroke becomes a region of the plane, with curves flattened within 1e-5 of the
 //! drawing's height. Regions are laid over those painted before. The solid is everything darker
-//! than one half over white. Groups, `use`, transforms, opacity, clip paths, dashes, caps and joins
-//! count. A gradient counts as the mean of its stops, provided that these are all dark or all
-//! light. Text, pictures, patterns, masks, filters and blend modes have no outline here and are
-//! refused by name.
+//! than one half over white. Groups, `use`, transforms, opacity, clip paths, dashes, caps, joins
+//! and markers count. A gradient counts as the mean of its stops, provided that these are all dark
+//! or all light. Text, pictures, patterns, masks, filters and blend modes have no outline here and
+//! are refused by name.
 
-use super::paint::{Layer, Rgba, over};
-use super::svg::{
-    affine, curve, gradient, has_translucency, magnification, parse, rule, stroke_style,
-    unsupported,
-};
-use super::{ProfileAxis, empty_fault, full_fault};
+use super::paint::{Paint, Rgba, Tile, is_dark};
+use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
+use super::{ProfileAxis, empty_fault, full_fault, hints, svg};
 use crate::content_fault;
-use crate::pixels::luminance;
 use glam::DVec2;
-use kurbo::{Affine, BezPath, PathEl, Shape, StrokeOpts};
+use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region, loop_area};
 
@@ -25,48 +21,87 @@ const FLATNESS: f64 = 1e-5;
 
 /// A profile from the text of an SVG drawing (or its gzip-compressed form).
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
-    let tree = parse(bytes)?;
-    let (width, height) = (
-        f64::from(tree.size().width()),
-        f64::from(tree.size().height()),
-    );
-    let (left, radius) = match axis {
-        ProfileAxis::Left => (0.0, width / height),
-        ProfileAxis::Center => (0.5 * width, 0.5 * width / height),
-        ProfileAxis::At(fraction) => (fraction * width, (1.0 - fraction) * width / height),
+    let drawing = svg::read(bytes)?;
+    let (width, height) = drawing.size;
+    let (left, radius, from) = match axis {
+        ProfileAxis::Left => (0.0, width / height, 0.0),
+        ProfileAxis::Center => (0.5 * width, 0.5 * width / height, -0.5 * width / height),
+        ProfileAxis::At(fraction) => {
+            let wide = width / height;
+            (fraction * width, (1.0 - fraction) * wide, -fraction * wide)
+        }
     };
-    let to_profile = Affine::new([1.0 / height, 0.0, 0.0, -1.0 / height, -left / height, 1.0]);
+    let page = Affine::new([1.0 / height, 0.0, 0.0, -1.0 / height, -left / height, 1.0]);
     let canvas = Canvas {
-        radius,
+        low: DVec2::new(from, 0.0),
+        high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
-        two_tone: !has_translucency(tree.root()),
+        two_tone: !has_translucency(&drawing.content),
+        page,
     };
-    let mut layer = Layer::default();
-    let shapes = canvas.draw_children(tree.root(), to_profile, &mut layer)?;
-    if shapes == 0 {
+    let paints = canvas.paints(&drawing.content, page)?;
+    if paints.is_empty() {
         return Err(content_fault(
             "the drawing has no shape; draw the solid dark on white",
         ));
     }
-    let cells = layer.into_cells().into_iter();
-    let dark = cells.filter(|(color, _)| is_dark(*color));
-    let solid = Region::merged(dark.map(|(_, region)| region));
-    let mut outline = solid.outline(canvas.grid);
-    // The viewport's right border is the cylinder, to the last bit.
-    let edge = canvas.grid.rounded(DVec2::new(radius, 0.0)).x;
-    for p in outline.loops.iter_mut().flatten() {
-        if p.x == edge {
-            p.x = radius;
+    let tile = Tile {
+        grid: canvas.grid,
+        low: canvas.grid.rounded(canvas.low),
+        high: canvas.grid.rounded(canvas.high),
+    };
+    let whole = tile.dark(&paints)?;
+    let mut warnings = drawing.warnings;
+    let half = match axis {
+        ProfileAxis::Left => whole,
+        ProfileAxis::Center | ProfileAxis::At(_) => {
+            let rows = hints::rows(&whole.outline(canvas.grid));
+            let user = |r: f64| (drawing.to_user * page.inverse() * Point::new(r, 0.0)).x;
+            if let Some(at) = hints::other_axis(&rows) {
+                warnings.push(format!(
+                    "the halves of the drawing differ about the axis (x = {:.4}) and agree about x = {:.4}; \
+                     set profile_axis = {:.4}, or move the drawing or its viewBox so that this is the middle",
+                    user(0.0),
+                    user(at),
+                    (left + at * height) / width
+                ));
+            }
+            let right = Region::rectangle(canvas.grid, DVec2::ZERO, canvas.high);
+            whole.intersection(&right)
         }
-    }
-    let outline = without_slivers(outline);
+    };
+    let outline = on_borders(half.outline(canvas.grid), &canvas);
     if outline.area() <= 0.0 {
         return Err(empty_fault("drawing"));
     }
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
     }
-    Ok(Profile::new(outline, radius))
+    if hints::is_shell(&outline) {
+        warnings.push(
+            "the drawing is an outline: the solid is a thin shell about a hollow; fill the shape if it is meant to \
+             be solid"
+                .to_owned(),
+        );
+    }
+    let mut profile = Profile::new(outline, radius);
+    profile.warnings = warnings;
+    Ok(profile)
+}
+
+/// The outline with its points on the axis and on the cylinder. Points nearer to the axis than the
+/// flattening tolerance are on it: a gap there would be a bore.
+fn on_borders(mut outline: Outline, canvas: &Canvas) -> Outline {
+    // The viewport's right border is the cylinder, to the last bit.
+    let edge = canvas.grid.rounded(canvas.high).x;
+    for p in outline.loops.iter_mut().flatten() {
+        if p.x == edge {
+            p.x = canvas.high.x;
+        } else if p.x <= FLATNESS {
+            p.x = 0.0;
+        }
+    }
+    without_slivers(outline)
 }
 
 /// Drops loops thinner than the flattening tolerance. Rounding leaves cracks and specks between
@@ -80,145 +115,98 @@ fn without_slivers(mut outline: Outline) -> Outline {
     outline
 }
 
-/// Returns true for a colour darker than one half over white.
-fn is_dark(color: Rgba) -> bool {
-    let [r, g, b, _] = over(color, [1.0; 4]);
-    luminance([r, g, b]) < 0.5
-}
-
-/// The drawing area: the right half of the viewport, on the integer grid.
+/// The drawing area: the viewport or its right half, on the integer grid.
 struct Canvas {
-    radius: f64,
+    low: DVec2,
+    high: DVec2,
     grid: Grid,
     /// All paint is opaque, so dark and light are the only two colours needed.
     two_tone: bool,
+    /// Maps the page to `(r, z)`.
+    page: Affine,
 }
 
 impl Canvas {
-    /// Paints a group's children onto the layer. `to_profile` maps the group's coordinates to
-    /// `(r, z)`. Returns the number of fills and strokes.
-    fn draw_children(
-        &self,
-        group: &usvg::Group,
-        to_profile: Affine,
-        layer: &mut Layer,
-    ) -> Result<usize> {
-        let mut count = 0;
-        for node in group.children() {
-            count += match node {
-                usvg::Node::Group(inner) => {
-                    self.draw_group(inner, to_profile * affine(inner.transform()), layer)?
+    /// What nodes paint. `to_profile` maps their coordinates to `(r, z)`.
+    fn paints(&self, nodes: &[Node], to_profile: Affine) -> Result<Vec<Paint>> {
+        let mut paints = Vec::new();
+        for node in nodes {
+            match node {
+                Node::Group(group) => self.group(group, to_profile, &mut paints)?,
+                Node::Path(path) => {
+                    let region = match &path.band {
+                        None => {
+                            check_reach(&path.curve, to_profile)?;
+                            self.enclosed(&path.curve, to_profile, FLATNESS, path.rule)
+                        }
+                        Some(band) => self.band(path, band, to_profile)?,
+                    };
+                    paints.push(Paint::Region(region, self.tone(path.color)));
                 }
-                usvg::Node::Path(path) if path.is_visible() => {
-                    self.draw_path(path, to_profile, layer)?
-                }
-                usvg::Node::Path(_) => 0,
-                usvg::Node::Image(_) => return Err(unsupported("<image>", "trace it to paths")),
-                usvg::Node::Text(_) => return Err(unsupported("<text>", "convert it to paths")),
-            };
+            }
         }
-        Ok(count)
+        Ok(paints)
     }
 
-    fn draw_group(
-        &self,
-        group: &usvg::Group,
-        to_profile: Affine,
-        layer: &mut Layer,
-    ) -> Result<usize> {
-        if group.mask().is_some() {
-            return Err(unsupported("a mask", "clip with a path, or cut the shape"));
+    fn group(&self, group: &Group, to_parent: Affine, paints: &mut Vec<Paint>) -> Result<()> {
+        let to_profile = to_parent * group.transform;
+        let mut own = self.paints(&group.children, to_profile)?;
+        if group.opacity >= 1.0 && group.clip.is_none() {
+            paints.append(&mut own);
+            return Ok(());
         }
-        if !group.filters().is_empty() {
-            return Err(unsupported("a filter", "remove it"));
-        }
-        if group.blend_mode() != usvg::BlendMode::Normal {
-            return Err(unsupported("a blend mode", "set it to normal"));
-        }
-        let opacity = group.opacity().get();
-        let clip = match group.clip_path() {
+        let clip = match &group.clip {
             Some(clip) => Some(self.clip_region(clip, to_profile)?),
             None => None,
         };
-        if opacity >= 1.0 && clip.is_none() {
-            return self.draw_children(group, to_profile, layer);
-        }
-        let mut own = Layer::default();
-        let count = self.draw_children(group, to_profile, &mut own)?;
-        for (color, cell) in own.into_cells() {
-            let shown = clip.as_ref().map_or(cell.clone(), |c| cell.intersection(c));
-            layer.paint(shown, color.map(|v| v * opacity));
-        }
-        Ok(count)
+        paints.push(Paint::Group {
+            opacity: group.opacity,
+            clip,
+            paints: own,
+        });
+        Ok(())
     }
 
-    fn draw_path(&self, path: &usvg::Path, to_profile: Affine, layer: &mut Layer) -> Result<usize> {
-        let curve = curve(path.data());
+    /// The region that a stroke covers.
+    fn band(&self, path: &Path, band: &Band, to_profile: Affine) -> Result<Region> {
+        let (mut curve, mut to_profile) = (path.curve.clone(), to_profile);
+        if band.on_page {
+            curve.apply_affine(self.page.inverse() * to_profile);
+            to_profile = self.page;
+        }
         check_reach(&curve, to_profile)?;
-        let mut paints = Vec::new();
-        if let Some(fill) = path.fill() {
-            let region = self.enclosed(&curve, to_profile, FLATNESS, rule(fill.rule()));
-            paints.push((region, self.color(fill.paint(), fill.opacity().get())?));
-        }
-        if let Some(stroke) = path.stroke() {
-            let color = self.color(stroke.paint(), stroke.opacity().get())?;
-            // Half of the tolerance is for the stroke's outline, half for its flattening.
-            let tolerance = 0.5 * FLATNESS / magnification(to_profile);
-            check_dashes(&curve, stroke)?;
-            let (style, options) = (stroke_style(stroke), StrokeOpts::default());
-            let band = kurbo::stroke(curve.iter(), &style, &options, tolerance);
-            let region = self.enclosed(&band, to_profile, 0.5 * FLATNESS, FillRule::NonZero);
-            paints.push((region, color));
-        }
-        if path.paint_order() == usvg::PaintOrder::StrokeAndFill {
-            paints.reverse();
-        }
-        let count = paints.len();
-        for (region, color) in paints {
-            layer.paint(region, color);
-        }
-        Ok(count)
+        let mut style = band.style.clone();
+        check_dashes(&curve, &style.dash_pattern)?;
+        // Half of the tolerance is for the stroke's outline, half for its flattening.
+        let tolerance = 0.5 * FLATNESS / magnification(to_profile);
+        let (lines, dots) = with_dots(&curve, &mut style);
+        let options = StrokeOpts::default();
+        let mut shape = kurbo::stroke(lines.iter(), &style, &options, tolerance);
+        style.dash_pattern.clear();
+        shape.extend(kurbo::stroke(dots.iter(), &style, &options, tolerance));
+        Ok(self.enclosed(&shape, to_profile, 0.5 * FLATNESS, FillRule::NonZero))
     }
 
-    /// The union of a clip path's shapes, cut by its own clip path.
-    fn clip_region(&self, clip: &usvg::ClipPath, to_profile: Affine) -> Result<Region> {
-        let inner = to_profile * affine(clip.transform());
-        let region = self.union_of(clip.root(), inner)?;
-        match clip.clip_path() {
-            Some(outer) => Ok(region.intersection(&self.clip_region(outer, to_profile)?)),
+    /// The union of a clip's shapes, cut by its own clip.
+    fn clip_region(&self, clip: &Clip, to_parent: Affine) -> Result<Region> {
+        let to_profile = to_parent * clip.transform;
+        let mut regions = Vec::new();
+        for shape in &clip.shapes {
+            check_reach(&shape.curve, to_profile)?;
+            let mut region = self.enclosed(&shape.curve, to_profile, FLATNESS, shape.rule);
+            if let Some(clip) = &shape.clip {
+                region = region.intersection(&self.clip_region(clip, to_profile)?);
+            }
+            regions.push(region);
+        }
+        let region = Region::merged(regions);
+        match &clip.within {
+            Some(outer) => Ok(region.intersection(&self.clip_region(outer, to_parent)?)),
             None => Ok(region),
         }
     }
 
-    fn union_of(&self, group: &usvg::Group, to_profile: Affine) -> Result<Region> {
-        let mut regions = Vec::new();
-        for node in group.children() {
-            match node {
-                usvg::Node::Group(g) => {
-                    let inner = to_profile * affine(g.transform());
-                    let mut region = self.union_of(g, inner)?;
-                    if let Some(clip) = g.clip_path() {
-                        region = region.intersection(&self.clip_region(clip, inner)?);
-                    }
-                    regions.push(region);
-                }
-                usvg::Node::Path(path) => {
-                    if let Some(fill) = path.fill() {
-                        let (curve, rule) = (curve(path.data()), rule(fill.rule()));
-                        check_reach(&curve, to_profile)?;
-                        let region = self.enclosed(&curve, to_profile, FLATNESS, rule);
-                        regions.push(region);
-                    }
-                }
-                usvg::Node::Image(_) | usvg::Node::Text(_) => {
-                    return Err(unsupported("a clip that is no path", "clip with a path"));
-                }
-            }
-        }
-        Ok(Region::merged(regions))
-    }
-
-    /// The region of the viewport's right half that a path encloses.
+    /// The region of the drawing area that a path encloses.
     fn enclosed(
         &self,
         path: &BezPath,
@@ -229,7 +217,7 @@ impl Canvas {
         let mut loops: Vec<Vec<DVec2>> = Vec::new();
         let mut points: Vec<DVec2> = Vec::new();
         let mut finish = |points: &mut Vec<DVec2>| {
-            let inside = clip_to_box(std::mem::take(points), self.radius);
+            let inside = self.clip_to_box(std::mem::take(points));
             if inside.len() >= 3 {
                 loops.push(inside);
             }
@@ -246,36 +234,96 @@ impl Canvas {
         Region::enclosed(self.grid, &loops, rule)
     }
 
-    /// The colour of a paint, premultiplied.
-    fn color(&self, paint: &usvg::Paint, opacity: f32) -> Result<Rgba> {
-        let plain = |c: usvg::Color, a: f32| -> Rgba {
-            let [r, g, b] = [c.red, c.green, c.blue].map(|v| f32::from(v) / 255.0 * a);
-            [r, g, b, a]
-        };
-        let mut color = match (paint, gradient(paint)) {
-            (usvg::Paint::Color(c), _) => plain(*c, opacity),
-            (_, Some(gradient)) => {
-                let stops = gradient.stops().iter();
-                let stops: Vec<Rgba> = stops
-                    .map(|s| plain(s.color(), s.opacity().get() * opacity))
-                    .collect();
-                let dark = stops.iter().filter(|s| is_dark(**s)).count();
-                if dark != 0 && dark != stops.len() {
-                    return Err(unsupported(
-                        "a gradient from dark to light",
-                        "give the shape one flat colour",
-                    ));
-                }
-                std::array::from_fn(|k| stops.iter().map(|s| s[k] / stops.len() as f32).sum())
-            }
-            _ => return Err(unsupported("a pattern", "give the shape one flat colour")),
-        };
-        if self.two_tone {
-            let tone = if is_dark(color) { 0.0 } else { 1.0 };
-            color = [tone, tone, tone, 1.0];
+    /// The colour, or black or white if only its darkness counts.
+    fn tone(&self, color: Rgba) -> Rgba {
+        match (self.two_tone, is_dark(color)) {
+            (false, _) => color,
+            (true, true) => [0.0, 0.0, 0.0, 1.0],
+            (true, false) => [1.0; 4],
         }
-        Ok(color)
     }
+
+    /// A closed contour cut by the drawing area (Sutherland & Hodgman 1974). Pieces of it may run
+    /// along the border twice, there and back: they enclose nothing.
+    fn clip_to_box(&self, mut points: Vec<DVec2>) -> Vec<DVec2> {
+        for side in 0..4 {
+            let depth = |p: DVec2| match side {
+                0 => p.x - self.low.x,
+                1 => self.high.x - p.x,
+                2 => p.y - self.low.y,
+                _ => self.high.y - p.y,
+            };
+            if points.iter().all(|&p| depth(p) >= 0.0) {
+                continue;
+            }
+            let mut kept = Vec::with_capacity(points.len() + 4);
+            let Some(&last) = points.last() else {
+                return points;
+            };
+            let mut previous = last;
+            for &p in &points {
+                let (d0, d1) = (depth(previous), depth(p));
+                if (d0 < 0.0) != (d1 < 0.0) {
+                    kept.push(previous + (p - previous) * (d0 / (d0 - d1)));
+                }
+                if d1 >= 0.0 {
+                    kept.push(p);
+                }
+                previous = p;
+            }
+            points = kept;
+        }
+        points
+    }
+}
+
+/// Dots are lines of this part of the stroke's width.
+const DOT: f64 = 1e-5;
+
+/// Splits a path into lines and dots, which are subpaths of no length. With round and square caps
+/// they show, and so do dashes of no length. Both become short lines.
+fn with_dots(curve: &BezPath, style: &mut kurbo::Stroke) -> (BezPath, BezPath) {
+    if style.start_cap == Cap::Butt {
+        return (curve.clone(), BezPath::new());
+    }
+    let length = DOT * style.width;
+    let count = style.dash_pattern.len();
+    for k in (0..count).step_by(2) {
+        if style.dash_pattern[k] < length {
+            style.dash_pattern[k] = length;
+            style.dash_pattern[k + 1] = (style.dash_pattern[k + 1] - length).max(0.0);
+        }
+    }
+    let (mut lines, mut dots) = (BezPath::new(), BezPath::new());
+    for part in curve.subpaths() {
+        let Some(PathEl::MoveTo(start)) = part.first().copied() else {
+            continue;
+        };
+        let still = |p: Point| p == start;
+        let is_dot = part.len() > 1
+            && part.iter().all(|e| match *e {
+                PathEl::MoveTo(p) | PathEl::LineTo(p) => still(p),
+                PathEl::QuadTo(a, p) => still(a) && still(p),
+                PathEl::CurveTo(a, b, p) => still(a) && still(b) && still(p),
+                PathEl::ClosePath => true,
+            });
+        if is_dot {
+            dots.move_to(start - kurbo::Vec2::new(0.5 * length, 0.0));
+            dots.line_to(start + kurbo::Vec2::new(0.5 * length, 0.0));
+        } else {
+            lines.extend(part.iter().copied());
+        }
+    }
+    (lines, dots)
+}
+
+/// Largest factor by which lengths grow.
+fn magnification(t: Affine) -> f64 {
+    let [a, b, c, d, ..] = t.as_coeffs();
+    let (sum, det) = (a * a + b * b + c * c + d * d, a * d - b * c);
+    (0.5 * (sum + (sum * sum - 4.0 * det * det).max(0.0).sqrt()))
+        .sqrt()
+        .max(f64::MIN_POSITIVE)
 }
 
 /// Refuses curves so large that flattening them would use up all memory; next to nothing of them is
@@ -293,12 +341,12 @@ fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
 }
 
 /// Refuses strokes with more dashes than can be seen.
-fn check_dashes(curve: &BezPath, stroke: &usvg::Stroke) -> Result<()> {
+fn check_dashes(curve: &BezPath, dashes: &[f64]) -> Result<()> {
     const MOST: f64 = 1e5;
-    let Some(dashes) = stroke.dasharray() else {
+    if dashes.is_empty() {
         return Ok(());
-    };
-    let period: f64 = dashes.iter().map(|&d| f64::from(d)).sum();
+    }
+    let period: f64 = dashes.iter().sum();
     let count = curve.perimeter(1.0) / period * dashes.len() as f64;
     if count <= MOST {
         return Ok(());
@@ -306,35 +354,6 @@ fn check_dashes(curve: &BezPath, stroke: &usvg::Stroke) -> Result<()> {
     Err(content_fault(format!(
         "the drawing has a stroke of {count:.0} dashes; {MOST} are the most, make them longer"
     )))
-}
-
-/// A closed contour cut by the box `0 <= r <= radius`, `0 <= z <= 1` (Sutherland & Hodgman 1974).
-/// Pieces of it may run along the box's border twice, there and back: they enclose nothing.
-fn clip_to_box(mut points: Vec<DVec2>, radius: f64) -> Vec<DVec2> {
-    type Inside = fn(DVec2, f64) -> f64;
-    let sides: [Inside; 4] = [|p, _| p.x, |p, r| r - p.x, |p, _| p.y, |p, _| 1.0 - p.y];
-    for depth in sides {
-        if points.iter().all(|&p| depth(p, radius) >= 0.0) {
-            continue;
-        }
-        let mut kept = Vec::with_capacity(points.len() + 4);
-        let Some(&last) = points.last() else {
-            return points;
-        };
-        let mut previous = last;
-        for &p in &points {
-            let (d0, d1) = (depth(previous, radius), depth(p, radius));
-            if (d0 < 0.0) != (d1 < 0.0) {
-                kept.push(previous + (p - previous) * (d0 / (d0 - d1)));
-            }
-            if d1 >= 0.0 {
-                kept.push(p);
-            }
-            previous = p;
-        }
-        points = kept;
-    }
-    points
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Profiles from drawings and pictures.
 
 mod drawing;
+mod hints;
 mod image;
 mod noise;
 mod options;
@@ -51,7 +52,7 @@ pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Re
 pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Profile> {
     let options = options.into();
     options.check()?;
-    if is_drawing(bytes) {
+    if svg::is_markup(bytes) {
         drawing::profile(bytes, options.for_drawing()?)
     } else {
         image::profile(bytes, &options)

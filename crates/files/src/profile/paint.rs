@@ -1,13 +1,279 @@
-//! The visible result of paint laid over paint: a layer of disjoint cells, each of one colour.
+//! The visible result of paint laid over paint.
+//!
+//! A drawing is a list of paints, each a region and a colour. Within one tile of the plane, the
+//! list is laid down as a layer of disjoint cells, each of one colour. The number of cells grows
+//! with the square of the number of translucent borders that cross each other, so that a tile with
+//! many borders is split in two until each part has few.
 
-use revmap::profile::Region;
+use crate::content_fault;
+use crate::pixels::luminance;
+use glam::DVec2;
+use revmap::error::Result;
+use revmap::profile::{Grid, Outline, Region};
 
 /// Premultiplied red, green, blue and alpha, in the drawing's own (sRGB) values.
 pub(super) type Rgba = [f32; 4];
 
-/// Disjoint cells of colour; the layer is transparent elsewhere.
-#[derive(Debug, Default)]
-pub(super) struct Layer {
+/// Returns true for a colour darker than one half over white.
+pub(super) fn is_dark(color: Rgba) -> bool {
+    let [r, g, b, _] = over(color, [1.0; 4]);
+    luminance([r, g, b]) < 0.5
+}
+
+/// `top` over `below`, both premultiplied (Porter & Duff 1984).
+fn over(top: Rgba, below: Rgba) -> Rgba {
+    std::array::from_fn(|i| top[i] + below[i] * (1.0 - top[3]))
+}
+
+/// One step of painting.
+#[derive(Debug)]
+pub(super) enum Paint {
+    Region(Region, Rgba),
+    /// Paints that are laid down by themselves, clipped and then shown with an opacity.
+    Group {
+        opacity: f32,
+        clip: Option<Region>,
+        paints: Vec<Paint>,
+    },
+}
+
+/// A tile with at most this many changes of colour is laid down at once.
+const FEW: usize = 8;
+/// Tiles are halved this many times at most.
+const MOST_HALVINGS: usize = 24;
+/// Halvings without fewer borders, after which a tile is laid down as it is.
+const MOST_VAIN: usize = 8;
+/// Most borders that cross in one place, such as lines through one point.
+const MOST_CROSSING: usize = 400;
+
+/// A rectangle of the plane, corners on the grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tile {
+    pub grid: Grid,
+    pub low: DVec2,
+    pub high: DVec2,
+}
+
+impl Tile {
+    fn region(self) -> Region {
+        Region::rectangle(self.grid, self.low, self.high)
+    }
+
+    /// Two halves of the longer side.
+    fn halves(self) -> [Self; 2] {
+        let size = self.high - self.low;
+        let middle = self.grid.rounded(0.5 * (self.low + self.high));
+        let (mut end, mut start) = (self.high, self.low);
+        match size.x > size.y {
+            true => (end.x, start.x) = (middle.x, middle.x),
+            false => (end.y, start.y) = (middle.y, middle.y),
+        }
+        [Self { high: end, ..self }, Self { low: start, ..self }]
+    }
+
+    /// The part of a region in the tile; `None` for none.
+    fn part(self, region: &Region) -> Option<Region> {
+        let [low, high] = region.extent(self.grid)?;
+        if !overlap(Some([low, high]), Some([self.low, self.high])) {
+            return None;
+        }
+        if low.cmpge(self.low).all() && high.cmple(self.high).all() {
+            return Some(region.clone());
+        }
+        if region.is_rectangle() {
+            let (low, high) = (low.max(self.low), high.min(self.high));
+            return Some(Region::rectangle(self.grid, low, high));
+        }
+        Some(region.intersection(&self.region())).filter(|r| !r.is_empty())
+    }
+
+    /// Returns true if a region, which is within the tile, is all of it.
+    fn is_covered_by(self, region: &Region) -> bool {
+        region.is_rectangle() && region.extent(self.grid) == Some([self.low, self.high])
+    }
+
+    fn clipped(self, paints: &[Paint]) -> Vec<Paint> {
+        let mut parts = Vec::new();
+        for paint in paints {
+            match paint {
+                Paint::Region(region, color) => {
+                    let Some(part) = self.part(region) else {
+                        continue;
+                    };
+                    if color[3] >= 1.0 && self.is_covered_by(&part) {
+                        // Opaque paint hides everything below it.
+                        parts.clear();
+                    }
+                    parts.push(Paint::Region(part, *color));
+                }
+                Paint::Group {
+                    opacity,
+                    clip,
+                    paints,
+                } => {
+                    let clip = match clip {
+                        None => None,
+                        Some(clip) => match self.part(clip) {
+                            None => continue,
+                            Some(part) if self.is_covered_by(&part) => None,
+                            part => part,
+                        },
+                    };
+                    let paints = self.clipped(paints);
+                    if !paints.is_empty() {
+                        parts.push(Paint::Group {
+                            opacity: *opacity,
+                            clip,
+                            paints,
+                        });
+                    }
+                }
+            }
+        }
+        parts
+    }
+
+    /// Bounds of the luminance over white in the tile.
+    fn lightness(self, paints: &[Paint]) -> [f32; 2] {
+        let [mut least, mut most] = [1.0f32; 2];
+        for paint in paints {
+            let (low, high) = match paint {
+                Paint::Region(region, color) => {
+                    let [r, g, b, alpha] = *color;
+                    let laid = |below: f32| luminance([r, g, b]) + (1.0 - alpha) * below;
+                    let (low, high) = (laid(least), laid(most));
+                    if self.is_covered_by(region) {
+                        (least, most) = (low, high);
+                        continue;
+                    }
+                    (low, high)
+                }
+                Paint::Group { opacity, .. } => {
+                    let clear = 1.0 - opacity;
+                    (clear * least, opacity + clear * most)
+                }
+            };
+            (least, most) = (least.min(low), most.max(high));
+        }
+        // Rounding must not decide.
+        [least - 1e-5, most + 1e-5]
+    }
+
+    /// Number of borders in the tile at which the colour changes.
+    fn borders(self, paints: &[Paint]) -> usize {
+        let mut last = None;
+        let mut count = 0;
+        for paint in paints {
+            match paint {
+                Paint::Region(region, color) => {
+                    let merged = color[3] >= 1.0 && last == Some(*color);
+                    count += usize::from(!merged && !self.is_covered_by(region));
+                    last = Some(*color);
+                }
+                Paint::Group { clip, paints, .. } => {
+                    count += self.borders(paints) + usize::from(clip.is_some());
+                    last = None;
+                }
+            }
+        }
+        count
+    }
+
+    /// The dark regions in the tile, which may abut. The second value is true if it was split.
+    ///
+    /// # Errors
+    /// If many borders cross in one place.
+    fn dark_parts(
+        self,
+        paints: &[Paint],
+        halvings: usize,
+        vain: usize,
+    ) -> Result<(Vec<Region>, bool)> {
+        let [least, most] = self.lightness(paints);
+        if most < 0.5 {
+            return Ok((vec![self.region()], false));
+        }
+        if least >= 0.5 {
+            return Ok((Vec::new(), false));
+        }
+        let borders = self.borders(paints);
+        let thin = (self.high - self.low).min_element() <= 0.0;
+        if borders <= FEW || halvings == 0 || vain >= MOST_VAIN || thin {
+            if borders > MOST_CROSSING {
+                return Err(content_fault(format!(
+                    "the drawing has {borders} borders of translucent or alternating shapes in one place; at most \
+                     {MOST_CROSSING} can be resolved, make the shapes opaque"
+                )));
+            }
+            let mut layer = Layer::new(self);
+            layer.lay(paints);
+            let cells = layer.into_cells().into_iter();
+            let dark = cells.filter(|(color, _)| is_dark(*color));
+            return Ok((dark.map(|(_, region)| region).collect(), false));
+        }
+        let half = |tile: Self| {
+            let parts = tile.clipped(paints);
+            let vain = match 10 * tile.borders(&parts) > 9 * borders {
+                true => vain + 1,
+                false => 0,
+            };
+            let (parts, _) = tile.dark_parts(&parts, halvings - 1, vain)?;
+            Ok(parts)
+        };
+        let [a, b] = self.halves();
+        let (a, b) = rayon::join(|| half(a), || half(b));
+        let mut parts: Vec<Region> = a?;
+        parts.append(&mut b?);
+        Ok((parts, true))
+    }
+
+    /// The dark region of the tile.
+    ///
+    /// # Errors
+    /// If many borders cross in one place.
+    pub fn dark(self, paints: &[Paint]) -> Result<Region> {
+        let (parts, split) = self.dark_parts(&self.clipped(paints), MOST_HALVINGS, 0)?;
+        let merged = Region::merged(parts);
+        Ok(match split {
+            true => self.without_seams(&merged),
+            false => merged,
+        })
+    }
+
+    /// Removes the points that the borders of tiles left on straight lines.
+    fn without_seams(self, region: &Region) -> Region {
+        let slack = 4.0 * self.grid.step();
+        let Outline { mut loops } = region.outline(self.grid);
+        for points in &mut loops {
+            let mut kept: Vec<DVec2> = Vec::with_capacity(points.len());
+            for (i, &p) in points.iter().enumerate() {
+                let (Some(&before), next) = (kept.last(), points[(i + 1) % points.len()]) else {
+                    kept.push(p);
+                    continue;
+                };
+                let along = next - before;
+                let away = along.perp_dot(p - before).abs();
+                let between = along.dot(p - before) >= 0.0 && along.dot(next - p) >= 0.0;
+                if !(between && away <= slack * along.length()) {
+                    kept.push(p);
+                }
+            }
+            *points = kept;
+        }
+        Region::enclosed(self.grid, &loops, revmap::profile::FillRule::NonZero)
+    }
+}
+
+/// Returns true if two extents have area in common.
+fn overlap(a: Option<[DVec2; 2]>, b: Option<[DVec2; 2]>) -> bool {
+    a.zip(b)
+        .is_some_and(|(a, b)| a[0].cmplt(b[1]).all() && b[0].cmplt(a[1]).all())
+}
+
+/// Disjoint cells of colour that fill a tile.
+#[derive(Debug)]
+struct Layer {
+    tile: Tile,
     cells: Vec<(Rgba, Region)>,
     /// Opaque paint of one colour on top that is not yet merged. Merging many shapes at once costs
     /// far less than one after the other.
@@ -16,9 +282,42 @@ pub(super) struct Layer {
 }
 
 impl Layer {
+    /// A transparent layer.
+    fn new(tile: Tile) -> Self {
+        Self {
+            tile,
+            cells: vec![([0.0; 4], tile.region())],
+            pending: Vec::new(),
+            pending_color: [0.0; 4],
+        }
+    }
+
+    fn lay(&mut self, paints: &[Paint]) {
+        for paint in paints {
+            match paint {
+                Paint::Region(region, color) => self.paint(region, *color),
+                Paint::Group {
+                    opacity,
+                    clip,
+                    paints,
+                } => {
+                    let mut own = Self::new(self.tile);
+                    own.lay(paints);
+                    for (color, cell) in own.into_cells() {
+                        let color = color.map(|v| v * opacity);
+                        match clip {
+                            Some(clip) => self.paint(&cell.intersection(clip), color),
+                            None => self.paint(&cell, color),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// Lays `color` over `region`.
-    pub fn paint(&mut self, region: Region, color: Rgba) {
-        if region.is_empty() || color[3] <= 0.0 {
+    fn paint(&mut self, region: &Region, color: Rgba) {
+        if color[3] <= 0.0 || region.is_empty() {
             return;
         }
         if color[3] >= 1.0 {
@@ -26,15 +325,15 @@ impl Layer {
                 self.merge_pending();
                 self.pending_color = color;
             }
-            self.pending.push(region);
+            self.pending.push(region.clone());
         } else {
             self.merge_pending();
-            self.glaze(&region, color);
+            self.glaze(region, color);
         }
     }
 
     /// The layer's cells.
-    pub fn into_cells(mut self) -> Vec<(Rgba, Region)> {
+    fn into_cells(mut self) -> Vec<(Rgba, Region)> {
         self.merge_pending();
         self.cells
     }
@@ -62,25 +361,28 @@ impl Layer {
 
     /// Lays translucent paint: it mixes with the paint below, cell by cell.
     fn glaze(&mut self, region: &Region, color: Rgba) {
-        let mut bare = region.clone();
-        let mut cells = Vec::with_capacity(self.cells.len() * 2 + 1);
+        if self.tile.is_covered_by(region) {
+            for (below, _) in &mut self.cells {
+                *below = over(color, *below);
+            }
+            return;
+        }
+        let mut cells = Vec::with_capacity(self.cells.len() * 2);
+        let extent = region.extent(self.tile.grid);
         for (below, cell) in self.cells.drain(..) {
+            if !overlap(extent, cell.extent(self.tile.grid)) {
+                cells.push((below, cell));
+                continue;
+            }
             let both = cell.intersection(region);
             if both.is_empty() {
                 cells.push((below, cell));
                 continue;
             }
-            bare = bare.difference(&cell);
             cells.push((below, cell.difference(region)));
             cells.push((over(color, below), both));
         }
-        cells.push((color, bare));
         cells.retain(|(_, cell)| !cell.is_empty());
         self.cells = cells;
     }
-}
-
-/// `top` over `below`, both premultiplied (Porter & Duff 1984).
-pub(super) fn over(top: Rgba, below: Rgba) -> Rgba {
-    std::array::from_fn(|i| top[i] + below[i] * (1.0 - top[3]))
 }

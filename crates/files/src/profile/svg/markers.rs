@@ -1,0 +1,248 @@
+//! Markers: the content that is repeated at the corners of a line.
+
+use super::notes::{line, misled};
+use super::reader::{Place, Reader};
+use super::shapes::Curve;
+use super::style::{Style, Target};
+use super::tree::{Clip, Group, Node as Drawn};
+use super::value::{Value, length, split_number};
+use super::viewport::{fitted, view_box};
+use kurbo::{Affine, PathEl, Point, Rect, Vec2};
+use revmap::error::Result;
+use roxmltree::Node;
+use std::rc::Rc;
+
+/// A corner of a path with the directions of the line before and after it.
+struct Corner {
+    at: Point,
+    before: Option<Vec2>,
+    after: Option<Vec2>,
+}
+
+impl Corner {
+    /// The direction of a marker here, radians.
+    fn angle(&self) -> f64 {
+        let unit = |v: Option<Vec2>| v.map(Vec2::normalize);
+        match (unit(self.before), unit(self.after)) {
+            (Some(a), Some(b)) if (a + b).hypot() > 1e-9 => (a + b).atan2(),
+            (Some(a), _) => a.atan2(),
+            (None, Some(b)) => b.atan2(),
+            (None, None) => 0.0,
+        }
+    }
+}
+
+impl<'a> Reader<'a> {
+    /// Adds the markers of a shape. `width` is that of its stroke.
+    pub(super) fn markers(
+        &mut self,
+        node: Node<'a, 'a>,
+        style: &Style,
+        place: Place,
+        curve: &Curve,
+        width: f64,
+        out: &mut Vec<Drawn>,
+    ) -> Result<()> {
+        let marked = matches!(
+            node.tag_name().name(),
+            "path" | "line" | "polyline" | "polygon"
+        );
+        if !marked || style.markers.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let corners = corners(curve);
+        let last = corners.len().saturating_sub(1);
+        for (k, target) in style.markers.iter().enumerate() {
+            let Some(target) = target else { continue };
+            let Some(marker) = self.marker(target, node) else {
+                continue;
+            };
+            for (i, corner) in corners.iter().enumerate() {
+                let here = match k {
+                    0 => i == 0,
+                    1 => i > 0 && i < last,
+                    _ => i == last,
+                };
+                if here {
+                    self.marker_at(marker, corner, k == 0, style, place, width, out)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The marker that is referred to. Browsers ignore one that is missing.
+    fn marker(&mut self, target: &Target, node: Node) -> Option<Node<'a, 'a>> {
+        let found = target.as_ref().ok().and_then(|id| self.by_id(id));
+        let marker = found.filter(|n| n.tag_name().name() == "marker");
+        if marker.is_none() {
+            let (Ok(id) | Err(id)) = target;
+            self.notes.warn(format!(
+                "the drawing has a marker \"{id}\" (line {}), which is not in it and is left out",
+                line(node)
+            ));
+        }
+        marker
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one corner of one shape")]
+    fn marker_at(
+        &mut self,
+        marker: Node<'a, 'a>,
+        corner: &Corner,
+        is_start: bool,
+        of_shape: &Style,
+        place: Place,
+        width: f64,
+        out: &mut Vec<Drawn>,
+    ) -> Result<()> {
+        if self.open.contains(&marker.id()) {
+            let what = "a marker that contains itself";
+            return Err(misled(
+                what,
+                marker,
+                "without an end",
+                "remove the inner one",
+            ));
+        }
+        let mut style = self.style_of(marker)?;
+        let paints = (
+            of_shape.resolved(&of_shape.fill).clone(),
+            of_shape.resolved(&of_shape.stroke).clone(),
+        );
+        style.context = Rc::new(paints);
+        let size = |name: &str, whole: f64, usual: f64| {
+            let text = marker.attribute(name).map(str::trim);
+            let read = text.map(|t| length(t, style.fonts, true));
+            read.and_then(Value::ok).map_or(usual, |l| l.of(whole))
+        };
+        let own = (
+            size("markerWidth", place.viewport.0, 3.0),
+            size("markerHeight", place.viewport.1, 3.0),
+        );
+        if own.0 <= 0.0
+            || own.1 <= 0.0
+            || (width <= 0.0 && marker.attribute("markerUnits").is_none())
+        {
+            return Ok(());
+        }
+        let inner = view_box(marker, &mut self.notes);
+        let fit = inner.map_or(Affine::IDENTITY, |i| fitted(marker, i, own));
+        let whole = inner.map_or(own, |i| (i.width(), i.height()));
+        let reference = fit * Point::new(size("refX", whole.0, 0.0), size("refY", whole.1, 0.0));
+        let angle = match marker.attribute("orient").map(str::trim) {
+            Some("auto") => corner.angle(),
+            Some("auto-start-reverse") if is_start => corner.angle() + std::f64::consts::PI,
+            Some("auto-start-reverse") => corner.angle(),
+            text => match text.and_then(split_number) {
+                Some((v, "" | "deg")) => v.to_radians(),
+                Some((v, "rad")) => v,
+                Some((v, "grad")) => (0.9 * v).to_radians(),
+                Some((v, "turn")) => v * std::f64::consts::TAU,
+                _ => 0.0,
+            },
+        };
+        let scale = match marker.attribute("markerUnits") {
+            Some("userSpaceOnUse") => 1.0,
+            _ => width,
+        };
+        let transform = Affine::translate(corner.at.to_vec2())
+            * Affine::rotate(angle)
+            * Affine::scale(scale)
+            * Affine::translate(-reference.to_vec2());
+        self.open.push(marker.id());
+        let mut content = Vec::new();
+        let within = Place {
+            viewport: whole,
+            depth: place.depth + 1,
+        };
+        self.children(marker, &style, within, &mut content)?;
+        self.open.pop();
+        if content.is_empty() {
+            return Ok(());
+        }
+        let clip = (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, own.0, own.1)));
+        let inner = Drawn::Group(Group {
+            transform: fit,
+            opacity: 1.0,
+            clip: None,
+            children: content,
+        });
+        out.push(Drawn::Group(Group {
+            transform,
+            opacity: style.own.opacity,
+            clip,
+            children: vec![inner],
+        }));
+        Ok(())
+    }
+}
+
+/// The corners of a curve in their order.
+fn corners(curve: &Curve) -> Vec<Corner> {
+    let mut corners: Vec<Corner> = Vec::new();
+    let (mut at, mut first) = (Point::ZERO, 0);
+    for (i, element) in curve.path.elements().iter().enumerate() {
+        let inside = curve.within_arcs.binary_search(&i).is_ok();
+        let (out, back, to) = match *element {
+            PathEl::MoveTo(p) => {
+                first = corners.len();
+                corners.push(Corner {
+                    at: p,
+                    before: None,
+                    after: None,
+                });
+                at = p;
+                continue;
+            }
+            PathEl::LineTo(p) => (p - at, p - at, p),
+            PathEl::QuadTo(c, p) => (ways(&[c - at, p - at]), ways(&[p - c, p - at]), p),
+            PathEl::CurveTo(c, d, p) => (
+                ways(&[c - at, d - at, p - at]),
+                ways(&[p - d, p - c, p - at]),
+                p,
+            ),
+            PathEl::ClosePath => {
+                let Some(start) = corners.get(first).map(|c| c.at) else {
+                    continue;
+                };
+                (start - at, start - at, start)
+            }
+        };
+        let known = |v: Vec2| (v.hypot() > 0.0).then_some(v);
+        if let Some(previous) = corners.last_mut()
+            && previous.after.is_none()
+        {
+            previous.after = known(out);
+        }
+        at = to;
+        if inside {
+            continue;
+        }
+        corners.push(Corner {
+            at: to,
+            before: known(back),
+            after: None,
+        });
+        if *element == PathEl::ClosePath {
+            let last = corners.len() - 1;
+            // Both ends of a closed line have the direction of the corner there. A closing line of
+            // no length has the direction of the segment before it.
+            if corners[last].before.is_none() && last > first {
+                corners[last].before = corners[last - 1].before;
+            }
+            let (before, after) = (corners[last].before, corners[first].after);
+            corners[first].before = before;
+            corners[last].after = after;
+        }
+    }
+    corners
+}
+
+/// The first vector that is not zero.
+fn ways(list: &[Vec2]) -> Vec2 {
+    list.iter()
+        .copied()
+        .find(|v| v.hypot() > 0.0)
+        .unwrap_or(Vec2::ZERO)
+}

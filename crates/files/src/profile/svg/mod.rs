@@ -1,0 +1,102 @@
+//! Reads SVG as browsers draw it, into plain painted paths.
+//!
+//! The reader walks the elements that show and follows references from there, so that nothing
+//! hidden or unused is refused. Numbers stay in double precision. Properties that it does not know
+//! are those without influence on the outline. Everything else is drawn, warned of, or refused
+//! with its line and a remedy (`docs/drawings.md` has the list).
+
+mod cascade;
+mod color;
+mod css;
+mod encoding;
+mod markers;
+mod notes;
+mod reader;
+mod selector;
+mod shapes;
+mod style;
+mod transform;
+mod tree;
+mod value;
+mod viewport;
+
+pub(super) use encoding::is_markup;
+pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
+
+use crate::content_fault;
+use kurbo::{Affine, Rect, Shape};
+use reader::{Place, Reader, premultiplied, root_fault};
+use revmap::error::{Error, Result};
+use revmap::profile::FillRule;
+use style::Paint;
+
+/// Most nodes of the XML.
+const MOST_NODES: u32 = 4_000_000;
+
+/// Reads a drawing from the bytes of its file.
+pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
+    let text = encoding::text(bytes)?;
+    let options = roxmltree::ParsingOptions {
+        allow_dtd: true,
+        nodes_limit: MOST_NODES,
+        ..Default::default()
+    };
+    let document =
+        roxmltree::Document::parse_with_options(&text, options).map_err(|e| damaged(&e))?;
+    let root = document.root_element();
+    if root.tag_name().name() != "svg" {
+        return Err(root_fault(root.tag_name().name()));
+    }
+    let mut reader = Reader::new(&document);
+    let style = reader.style_of(root)?;
+    let inner = viewport::view_box(root, &mut reader.notes);
+    let size = viewport::page(&style, inner)?;
+    let fit = inner.map_or(Affine::IDENTITY, |i| viewport::fitted(root, i, size));
+    let viewport = inner.map_or(size, |i| (i.width(), i.height()));
+    let mut content = Vec::new();
+    if style.own.display && style.own.opacity > 0.0 {
+        reader.children(root, &style, Place { viewport, depth: 0 }, &mut content)?;
+    }
+    let children = vec![Node::Group(Group {
+        transform: fit,
+        opacity: 1.0,
+        clip: None,
+        children: content,
+    })];
+    let mut content = Vec::new();
+    reader.wrap(
+        root,
+        &style,
+        Place {
+            viewport: size,
+            depth: 0,
+        },
+        children,
+        &mut content,
+    )?;
+    if let Paint::Color(color) = style.own.background {
+        let color = premultiplied(color, 1.0);
+        let page = Rect::new(0.0, 0.0, size.0, size.1);
+        let path = Path {
+            curve: page.to_path(0.1),
+            band: None,
+            rule: FillRule::NonZero,
+            color,
+        };
+        content.insert(0, Node::Path(path));
+    }
+    Ok(Drawing {
+        size,
+        to_user: fit.inverse(),
+        content,
+        warnings: reader.notes.into_warnings(),
+    })
+}
+
+/// The failure of a file that cannot be parsed.
+fn damaged(e: &dyn std::fmt::Display) -> Error {
+    let text = e.to_string().replace('\n', " ");
+    content_fault(format!(
+        "the drawing is damaged ({text}); save it again as plain SVG"
+    ))
+}

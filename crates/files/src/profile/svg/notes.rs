@@ -1,0 +1,63 @@
+//! Warnings of a drawing, and its refusals with the line of the element.
+
+use crate::content_fault;
+use revmap::error::Error;
+use std::collections::HashSet;
+
+/// Most warnings of one drawing.
+const MOST: usize = 12;
+
+/// The warnings so far, each once.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    warnings: Vec<String>,
+    /// What is said without its line.
+    known: HashSet<String>,
+}
+
+impl Notes {
+    /// Adds a warning. Those that differ only in the line are given once.
+    pub fn warn(&mut self, text: String) {
+        let mut key = text.clone();
+        if let Some((before, after)) = text.split_once("(line ") {
+            key = format!(
+                "{before}{}",
+                after.trim_start_matches(|c: char| c.is_ascii_digit())
+            );
+        }
+        if self.known.insert(key) {
+            self.warnings.push(text);
+        }
+    }
+
+    pub fn into_warnings(mut self) -> Vec<String> {
+        if self.warnings.len() > MOST {
+            let more = self.warnings.len() - MOST;
+            self.warnings.truncate(MOST);
+            self.warnings
+                .push(format!("the drawing has {more} more such features"));
+        }
+        self.warnings
+    }
+}
+
+/// The line of the document on which an element begins.
+pub(super) fn line(node: roxmltree::Node) -> u32 {
+    node.document().text_pos_at(node.range().start).row
+}
+
+/// The refusal of a feature that has no outline.
+pub(super) fn unsupported(what: &str, node: roxmltree::Node, remedy: &str) -> Error {
+    content_fault(format!(
+        "the drawing uses {what} (line {}), which has no outline here; {remedy}",
+        line(node)
+    ))
+}
+
+/// The refusal of a reference that leads nowhere or in a circle.
+pub(super) fn misled(what: &str, node: roxmltree::Node, how: &str, remedy: &str) -> Error {
+    content_fault(format!(
+        "the drawing has {what} (line {}), {how}; {remedy}",
+        line(node)
+    ))
+}

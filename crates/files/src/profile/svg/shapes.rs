@@ -1,0 +1,344 @@
+//! The curves of basic shapes and of path data, in double precision.
+
+use super::style::Style;
+use super::value::Value;
+use kurbo::{BezPath, Ellipse, Point, RoundedRect, Shape, SvgArc, Vec2};
+use svgtypes::{PathParser, PathSegment};
+
+/// Curves of circles and arcs are within this part of their radius.
+const ROUNDNESS: f64 = 1e-7;
+
+/// The curve of a shape.
+#[derive(Default)]
+pub(super) struct Curve {
+    pub path: BezPath,
+    /// Elements of the path that end within an arc, where no marker is.
+    pub within_arcs: Vec<usize>,
+    /// A mistake after which the path ends.
+    pub mistake: Option<String>,
+}
+
+impl From<BezPath> for Curve {
+    fn from(path: BezPath) -> Self {
+        Self {
+            path,
+            ..Self::default()
+        }
+    }
+}
+
+/// The curve of a shape.
+pub(super) fn curve(node: roxmltree::Node, style: &Style, viewport: (f64, f64)) -> Curve {
+    let (width, height) = viewport;
+    let diagonal = (0.5 * (width * width + height * height)).sqrt();
+    let across = |name: &str| style.geometry(name).map(|l| l.of(width));
+    let down = |name: &str| style.geometry(name).map(|l| l.of(height));
+    let zero = |v: Option<f64>| v.unwrap_or(0.0);
+    match node.tag_name().name() {
+        "rect" => {
+            let (w, h) = (zero(across("width")), zero(down("height")));
+            if w <= 0.0 || h <= 0.0 {
+                return Curve::default();
+            }
+            let (rx, ry) = radii(across("rx"), down("ry"));
+            let corner = (zero(across("x")), zero(down("y")));
+            rectangle(corner, (w, h), (rx.min(0.5 * w), ry.min(0.5 * h))).into()
+        }
+        "circle" => {
+            let r = zero(style.geometry("r").map(|l| l.of(diagonal)));
+            ellipse((zero(across("cx")), zero(down("cy"))), (r, r))
+        }
+        "ellipse" => {
+            let radii = radii(across("rx"), down("ry"));
+            ellipse((zero(across("cx")), zero(down("cy"))), radii)
+        }
+        "line" => {
+            let mut path = BezPath::new();
+            path.move_to((zero(across("x1")), zero(down("y1"))));
+            path.line_to((zero(across("x2")), zero(down("y2"))));
+            path.into()
+        }
+        "polyline" => points(node.attribute("points").unwrap_or_default(), false),
+        "polygon" => points(node.attribute("points").unwrap_or_default(), true),
+        _ => path_data(style.own.path_data.as_deref().unwrap_or_default()),
+    }
+}
+
+/// The radii of corners or of an ellipse; one that is missing is as the other.
+fn radii(rx: Option<f64>, ry: Option<f64>) -> (f64, f64) {
+    let valid = |r: Option<f64>| r.filter(|r| *r >= 0.0);
+    match (valid(rx), valid(ry)) {
+        (Some(rx), Some(ry)) => (rx, ry),
+        (Some(r), None) | (None, Some(r)) => (r, r),
+        (None, None) => (0.0, 0.0),
+    }
+}
+
+fn ellipse(centre: (f64, f64), radii: (f64, f64)) -> Curve {
+    if radii.0 <= 0.0 || radii.1 <= 0.0 {
+        return Curve::default();
+    }
+    let tolerance = ROUNDNESS * radii.0.max(radii.1);
+    Ellipse::new(centre, radii, 0.0).to_path(tolerance).into()
+}
+
+fn rectangle(corner: (f64, f64), (w, h): (f64, f64), (rx, ry): (f64, f64)) -> BezPath {
+    let (x, y) = corner;
+    if rx <= 0.0 || ry <= 0.0 {
+        return kurbo::Rect::new(x, y, x + w, y + h).to_path(0.1);
+    }
+    // Corners of one radius, stretched.
+    let stretch = ry / rx;
+    let round = RoundedRect::new(0.0, 0.0, w, h / stretch, rx).to_path(ROUNDNESS * rx);
+    kurbo::Affine::new([1.0, 0.0, 0.0, stretch, x, y]) * round
+}
+
+fn points(text: &str, closed: bool) -> Curve {
+    let mut path = BezPath::new();
+    let mut numbers = Vec::new();
+    let mut wrong = None;
+    for number in svgtypes::NumberListParser::from(text) {
+        match number {
+            Ok(v) => numbers.push(v),
+            Err(_) => {
+                wrong = Some("points that are damaged".to_owned());
+                break;
+            }
+        }
+    }
+    if wrong.is_none() && numbers.len() % 2 == 1 {
+        wrong = Some("points with a coordinate too few".to_owned());
+    }
+    for pair in numbers.chunks_exact(2) {
+        let p = Point::new(pair[0], pair[1]);
+        match path.elements().is_empty() {
+            true => path.move_to(p),
+            false => path.line_to(p),
+        }
+    }
+    if closed && !path.elements().is_empty() {
+        path.close_path();
+    }
+    Curve {
+        path,
+        mistake: wrong,
+        ..Curve::default()
+    }
+}
+
+/// The path of the property `d`, which browsers read from CSS as `path("...")`.
+pub(super) fn css_path(text: &str) -> Value<Option<String>> {
+    if text == "none" {
+        return Value::Is(None);
+    }
+    let inner = text.strip_prefix("path(").and_then(|t| t.strip_suffix(')'));
+    let quoted = inner.map(|t| t.trim().trim_matches(['"', '\'']).to_owned());
+    Value::from_option(quoted.map(Some))
+}
+
+/// Reads path data up to the first mistake, as browsers do.
+pub(super) fn path_data(text: &str) -> Curve {
+    let text = text.trim();
+    let mut pen = Pen::default();
+    if text.is_empty() || text == "none" {
+        return Curve::default();
+    }
+    let mut mistake = None;
+    for (i, segment) in PathParser::from(text).enumerate() {
+        match segment {
+            Ok(segment) => pen.draw(segment),
+            Err(_) => {
+                mistake = Some(format!("path data with a mistake in segment {}", i + 1));
+                break;
+            }
+        }
+    }
+    Curve {
+        path: pen.path,
+        within_arcs: pen.within_arcs,
+        mistake,
+    }
+}
+
+#[derive(Default)]
+struct Pen {
+    path: BezPath,
+    within_arcs: Vec<usize>,
+    start: Point,
+    at: Point,
+    /// The last control point, of a cubic or a quadratic curve.
+    control: Option<(bool, Point)>,
+    /// The subpath was closed, and the next segment begins another one.
+    closed: bool,
+}
+
+impl Pen {
+    fn draw(&mut self, segment: PathSegment) {
+        let (from, control) = (self.at, self.control.take());
+        let base = |abs: bool| if abs { Vec2::ZERO } else { from.to_vec2() };
+        let place = |abs: bool, x: f64, y: f64| Point::new(x, y) + base(abs);
+        if self.closed
+            && !matches!(
+                segment,
+                PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }
+            )
+        {
+            self.path.move_to(from);
+            self.closed = false;
+        }
+        let mirrored = |cubic: bool| match control {
+            Some((kind, c)) if kind == cubic => from + (from - c),
+            _ => from,
+        };
+        match segment {
+            PathSegment::MoveTo { abs, x, y } => {
+                self.at = place(abs, x, y);
+                (self.start, self.closed) = (self.at, false);
+                self.path.move_to(self.at);
+            }
+            PathSegment::LineTo { abs, x, y } => self.line(place(abs, x, y)),
+            PathSegment::HorizontalLineTo { abs, x } => {
+                self.line(Point::new(x + base(abs).x, from.y));
+            }
+            PathSegment::VerticalLineTo { abs, y } => {
+                self.line(Point::new(from.x, y + base(abs).y));
+            }
+            PathSegment::CurveTo {
+                abs,
+                x1,
+                y1,
+                x2,
+                y2,
+                x,
+                y,
+            } => {
+                self.cubic(place(abs, x1, y1), place(abs, x2, y2), place(abs, x, y));
+            }
+            PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
+                self.cubic(mirrored(true), place(abs, x2, y2), place(abs, x, y));
+            }
+            PathSegment::Quadratic { abs, x1, y1, x, y } => {
+                self.quadratic(place(abs, x1, y1), place(abs, x, y));
+            }
+            PathSegment::SmoothQuadratic { abs, x, y } => {
+                self.quadratic(mirrored(false), place(abs, x, y));
+            }
+            PathSegment::EllipticalArc {
+                abs,
+                rx,
+                ry,
+                x_axis_rotation,
+                large_arc,
+                sweep,
+                x,
+                y,
+            } => {
+                let arc = SvgArc {
+                    from,
+                    to: place(abs, x, y),
+                    radii: Vec2::new(rx.abs(), ry.abs()),
+                    x_rotation: x_axis_rotation.to_radians(),
+                    large_arc,
+                    sweep,
+                };
+                self.arc(arc);
+            }
+            PathSegment::ClosePath { .. } => {
+                if !self.closed {
+                    self.path.close_path();
+                }
+                (self.at, self.closed) = (self.start, true);
+            }
+        }
+    }
+
+    fn line(&mut self, to: Point) {
+        self.path.line_to(to);
+        self.at = to;
+    }
+
+    fn cubic(&mut self, c1: Point, c2: Point, to: Point) {
+        self.path.curve_to(c1, c2, to);
+        (self.at, self.control) = (to, Some((true, c2)));
+    }
+
+    fn quadratic(&mut self, c: Point, to: Point) {
+        self.path.quad_to(c, to);
+        (self.at, self.control) = (to, Some((false, c)));
+    }
+
+    fn arc(&mut self, arc: SvgArc) {
+        if arc.from == arc.to {
+            return;
+        }
+        let to = arc.to;
+        match kurbo::Arc::from_svg_arc(&arc) {
+            Some(curve) if curve.radii.is_finite() && curve.center.is_finite() => {
+                let tolerance = ROUNDNESS * curve.radii.x.max(curve.radii.y);
+                let mut last = None;
+                curve.to_cubic_beziers(tolerance, |a, b, c| {
+                    if let Some((a, b, c)) = last.replace((a, b, c)) {
+                        self.within_arcs.push(self.path.elements().len());
+                        self.path.curve_to(a, b, c);
+                    }
+                });
+                // The end is exact.
+                if let Some((a, b, _)) = last {
+                    self.path.curve_to(a, b, to);
+                }
+            }
+            _ => self.path.line_to(to),
+        }
+        self.at = to;
+    }
+}
+
+/// Names of the attributes that are lengths of shapes.
+pub(super) const LENGTHS: [&str; 13] = [
+    "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2",
+];
+
+/// `auto` is a missing length.
+pub(super) fn is_auto(text: &str) -> bool {
+    text == "auto"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::ParamCurveArea;
+
+    fn area(text: &str) -> f64 {
+        path_data(text)
+            .path
+            .segments()
+            .map(|s| s.signed_area())
+            .sum::<f64>()
+            .abs()
+    }
+
+    #[test]
+    fn path_data_of_every_kind() {
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6 * b.max(1.0), "{a} for {b}");
+        near(area("M0 0H10V10H0Z"), 100.0);
+        near(area("m5,5 10,0 0,10 -10,0zm20 0h1v1h-1z"), 101.0);
+        near(
+            area("M10 0A10 10 0 0 1-10 0A10 10 0 0 1 10 0"),
+            100.0 * std::f64::consts::PI,
+        );
+        near(area("M0 0C0 10 10 10 10 0S20-10 20 0"), 0.0);
+        near(area("M0 0Q5 10 10 0T20 0"), 0.0);
+        near(area("M0 0A0 5 0 0 1 10 0V10Z"), 50.0);
+        // A segment after the end of a subpath begins at its start.
+        near(area("M0 0H10V10ZH-10V-10Z"), 100.0);
+    }
+
+    #[test]
+    fn mistakes_end_the_path() {
+        let curve = path_data("M0 0H10V10H0X5");
+        assert_eq!(curve.path.elements().len(), 4);
+        assert!(curve.mistake.is_some_and(|w| w.contains("segment 5")));
+        assert!(path_data("H5").mistake.is_some());
+        assert!(path_data("").mistake.is_none());
+    }
+}

@@ -1,0 +1,250 @@
+//! Transforms of attributes (`rotate(90 5 5)`) and of CSS (`rotate(90deg)`).
+
+use super::value::{Fonts, Value, length, list, number, split_number};
+use kurbo::{Affine, Vec2};
+
+/// What the lengths of a transform refer to.
+#[derive(Clone, Copy)]
+pub(super) struct Base {
+    pub fonts: Fonts,
+    /// Width and height of the reference box, for percentages.
+    pub size: (f64, f64),
+    /// The value is of CSS: lengths and angles have units.
+    pub css: bool,
+}
+
+impl Base {
+    pub fn length(&self, text: &str, whole: f64) -> Value<f64> {
+        length(text, self.fonts, !self.css).map(|v| v.of(whole))
+    }
+
+    /// An angle in radians.
+    pub fn angle(&self, text: &str) -> Value<f64> {
+        let Some((v, unit)) = split_number(text) else {
+            return match text.contains('(') {
+                true => Value::Unread("write a number"),
+                false => Value::Wrong,
+            };
+        };
+        match unit {
+            "" if !self.css || v == 0.0 => Value::Is(v.to_radians()),
+            "deg" if self.css => Value::Is(v.to_radians()),
+            "rad" if self.css => Value::Is(v),
+            "grad" if self.css => Value::Is((0.9 * v).to_radians()),
+            "turn" if self.css => Value::Is(v * std::f64::consts::TAU),
+            _ => Value::Wrong,
+        }
+    }
+}
+
+/// Reads a list of transform functions.
+pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
+    let mut rest = text.trim();
+    let mut product = Affine::IDENTITY;
+    if rest == "none" {
+        return Value::Is(product);
+    }
+    while !rest.is_empty() {
+        let Some((name, after)) = rest.split_once('(') else {
+            return Value::Wrong;
+        };
+        // Parentheses within are of functions such as calc(), which are not read.
+        let Some((arguments, after)) = after.split_once(')') else {
+            return Value::Wrong;
+        };
+        match function(name.trim(), &list(arguments), base) {
+            Value::Is(factor) => product *= factor,
+            other => return other,
+        }
+        rest = after.trim_start_matches(|c: char| c.is_ascii_whitespace() || c == ',');
+    }
+    match product.is_finite() {
+        true => Value::Is(product),
+        false => Value::Wrong,
+    }
+}
+
+/// The first value that is not read ends the function.
+macro_rules! read {
+    ($value:expr) => {
+        match $value {
+            Value::Is(v) | Value::Near(v, _) => v,
+            Value::Wrong => return Value::Wrong,
+            Value::Unread(remedy) => return Value::Unread(remedy),
+        }
+    };
+}
+
+fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
+    let (width, height) = base.size;
+    if arguments.iter().any(|a| a.contains('(')) {
+        return Value::Unread("write a number");
+    }
+    let name = match base.css {
+        true => name.to_ascii_lowercase(),
+        false => name.to_owned(),
+    };
+    Value::Is(match (name.as_str(), arguments) {
+        ("matrix", &[a, b, c, d, e, f]) => {
+            let mut values = [0.0; 6];
+            for (value, text) in values.iter_mut().zip([a, b, c, d, e, f]) {
+                *value = read!(number(text));
+            }
+            Affine::new(values)
+        }
+        ("translate", &[x]) | ("translatex" | "translateX", &[x]) => {
+            Affine::translate((read!(base.length(x, width)), 0.0))
+        }
+        ("translate", &[x, y]) => {
+            Affine::translate((read!(base.length(x, width)), read!(base.length(y, height))))
+        }
+        ("translatey" | "translateY", &[y]) => {
+            Affine::translate((0.0, read!(base.length(y, height))))
+        }
+        ("scale", &[s]) => Affine::scale(read!(factor(s))),
+        ("scale", &[x, y]) => Affine::scale_non_uniform(read!(factor(x)), read!(factor(y))),
+        ("scalex", &[x]) => Affine::scale_non_uniform(read!(factor(x)), 1.0),
+        ("scaley", &[y]) => Affine::scale_non_uniform(1.0, read!(factor(y))),
+        ("rotate", &[angle]) | ("rotatez", &[angle]) => Affine::rotate(read!(base.angle(angle))),
+        ("rotate", &[angle, x, y]) if !base.css => {
+            let centre = (read!(number(x)), read!(number(y)));
+            Affine::rotate_about(read!(base.angle(angle)), centre)
+        }
+        ("skewX" | "skewx" | "skew", &[x]) => Affine::skew(read!(base.angle(x)).tan(), 0.0),
+        ("skewY" | "skewy", &[y]) => Affine::skew(0.0, read!(base.angle(y)).tan()),
+        ("skew", &[x, y]) if base.css => {
+            Affine::skew(read!(base.angle(x)).tan(), read!(base.angle(y)).tan())
+        }
+        (name, _) if base.css && is_spatial(name) => {
+            return Value::Unread("write the transform with matrix(a, b, c, d, e, f)");
+        }
+        _ => return Value::Wrong,
+    })
+}
+
+fn is_spatial(name: &str) -> bool {
+    name.ends_with("3d")
+        || matches!(
+            name,
+            "rotatex" | "rotatey" | "translatez" | "scalez" | "perspective"
+        )
+}
+
+fn factor(text: &str) -> Value<f64> {
+    match split_number(text) {
+        Some((v, "%")) => Value::Is(v / 100.0),
+        _ => number(text),
+    }
+}
+
+/// The property `translate`.
+pub(super) fn translate(text: &str, base: Base) -> Value<Affine> {
+    property(text, "translate", base)
+}
+
+/// The property `scale`.
+pub(super) fn scale(text: &str, base: Base) -> Value<Affine> {
+    property(text, "scale", base)
+}
+
+/// The property `rotate`.
+pub(super) fn rotate(text: &str, base: Base) -> Value<Affine> {
+    property(text, "rotate", base)
+}
+
+fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
+    let arguments = list(text);
+    match arguments.as_slice() {
+        ["none"] => Value::Is(Affine::IDENTITY),
+        &[_, _, _] | &[_, _, _, _] => {
+            Value::Unread("write the transform with matrix(a, b, c, d, e, f)")
+        }
+        arguments => function(name, arguments, base),
+    }
+}
+
+/// The property `transform-origin`, within the reference box.
+pub(super) fn origin(text: &str, base: Base) -> Value<Vec2> {
+    let (width, height) = base.size;
+    let parts = list(text);
+    let (mut x, mut y) = match parts.as_slice() {
+        &[x] => (x, "center"),
+        &[x, y] | &[x, y, _] => (x, y),
+        _ => return Value::Wrong,
+    };
+    if matches!(x, "top" | "bottom") || matches!(y, "left" | "right") {
+        (x, y) = (y, x);
+    }
+    let place = |text: &str, whole: f64| match text {
+        "left" | "top" => Value::Is(0.0),
+        "center" => Value::Is(0.5 * whole),
+        "right" | "bottom" => Value::Is(whole),
+        text => base.length(text, whole),
+    };
+    Value::Is(Vec2::new(read!(place(x, width)), read!(place(y, height))))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use kurbo::Point;
+
+    fn base(css: bool) -> Base {
+        let fonts = Fonts {
+            own: 16.0,
+            root: 16.0,
+        };
+        Base {
+            fonts,
+            size: (200.0, 100.0),
+            css,
+        }
+    }
+
+    #[track_caller]
+    fn maps(text: &str, css: bool, wanted: (f64, f64)) {
+        let affine = transform(text, base(css)).ok().unwrap();
+        let got = affine * Point::new(10.0, 20.0);
+        assert!(got.distance(wanted.into()) < 1e-9, "{text}: {got:?}");
+    }
+
+    #[test]
+    fn attributes_and_css() {
+        maps("translate(5)", false, (15.0, 20.0));
+        maps("translate(5,-5) scale(2)", false, (25.0, 35.0));
+        maps("rotate(90 10 10)", false, (0.0, 10.0));
+        maps("matrix(1 0 0 1 3 4)", false, (13.0, 24.0));
+        maps("skewX(45)", false, (30.0, 20.0));
+        maps("translate(50%, 10px)", true, (110.0, 30.0));
+        maps("rotate(0.25turn)", true, (-20.0, 10.0));
+        maps("scaleY(50%)", true, (10.0, 10.0));
+        maps("none", true, (10.0, 20.0));
+        maps("", false, (10.0, 20.0));
+        for (text, css) in [
+            ("rotate(90deg)", false),
+            ("rotate(90)", true),
+            ("translate(5, 5)", true),
+            ("translate(a)", false),
+            ("spin(5)", true),
+            ("rotate(5", false),
+        ] {
+            assert_eq!(transform(text, base(css)), Value::Wrong, "{text}");
+        }
+        for text in ["rotate3d(1, 1, 1, 5deg)", "translateX(calc(1px + 2px))"] {
+            assert!(
+                matches!(transform(text, base(true)), Value::Unread(_)),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn origins() {
+        let at = |text| origin(text, base(true)).ok().unwrap();
+        assert_eq!(at("center"), Vec2::new(100.0, 50.0));
+        assert_eq!(at("bottom right"), Vec2::new(200.0, 100.0));
+        assert_eq!(at("10px 50%"), Vec2::new(10.0, 50.0));
+        assert_eq!(at("left"), Vec2::new(0.0, 50.0));
+    }
+}

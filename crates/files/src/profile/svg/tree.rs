@@ -1,0 +1,100 @@
+//! A drawing as plain painted paths: references followed, styles applied, lengths in user units.
+
+use super::super::paint::Rgba;
+use kurbo::{Affine, BezPath, Rect, Shape, Stroke};
+use revmap::profile::FillRule;
+
+/// A drawing's page and content.
+#[derive(Debug)]
+pub(in crate::profile) struct Drawing {
+    /// Width and height of the page in CSS pixels.
+    pub size: (f64, f64),
+    /// Maps the page to the coordinates of the outermost `viewBox`.
+    pub to_user: Affine,
+    pub content: Vec<Node>,
+    /// Features that are drawn otherwise than meant, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+#[derive(Debug)]
+pub(in crate::profile) enum Node {
+    Group(Group),
+    Path(Path),
+}
+
+#[derive(Debug)]
+pub(in crate::profile) struct Group {
+    /// Maps the group's coordinates to its parent's.
+    pub transform: Affine,
+    pub opacity: f32,
+    pub clip: Option<Clip>,
+    pub children: Vec<Node>,
+}
+
+#[derive(Debug)]
+pub(in crate::profile) struct Path {
+    pub curve: BezPath,
+    /// The stroke that is painted; `None` for the fill.
+    pub band: Option<Band>,
+    /// Inside of the fill.
+    pub rule: FillRule,
+    pub color: Rgba,
+}
+
+/// The shape of a stroke.
+#[derive(Debug)]
+pub(in crate::profile) struct Band {
+    pub style: Stroke,
+    /// The width is in pixels of the page (`vector-effect="non-scaling-stroke"`).
+    pub on_page: bool,
+}
+
+/// The union of shapes, cut by a further clip.
+#[derive(Debug)]
+pub(in crate::profile) struct Clip {
+    /// Maps the clip's coordinates to those of the clipped group.
+    pub transform: Affine,
+    pub shapes: Vec<ClipShape>,
+    pub within: Option<Box<Clip>>,
+}
+
+#[derive(Debug)]
+pub(in crate::profile) struct ClipShape {
+    pub curve: BezPath,
+    pub rule: FillRule,
+    pub clip: Option<Clip>,
+}
+
+impl Clip {
+    /// A clip to a rectangle.
+    pub fn to_rect(rect: Rect) -> Self {
+        let shape = ClipShape {
+            curve: rect.to_path(0.1),
+            rule: FillRule::NonZero,
+            clip: None,
+        };
+        Self {
+            transform: Affine::IDENTITY,
+            shapes: vec![shape],
+            within: None,
+        }
+    }
+}
+
+/// The box about the geometry of nodes, without strokes and clips.
+pub(super) fn bounds(nodes: &[Node], transform: Affine) -> Option<Rect> {
+    let boxes = nodes.iter().filter_map(|node| match node {
+        Node::Group(group) => bounds(&group.children, transform * group.transform),
+        Node::Path(path) if path.curve.elements().len() < 2 => None,
+        Node::Path(path) => Some((transform * &path.curve).bounding_box()),
+    });
+    boxes.reduce(|a, b| a.union(b))
+}
+
+/// Returns true if anything is translucent.
+pub(in crate::profile) fn has_translucency(nodes: &[Node]) -> bool {
+    nodes.iter().any(|node| match node {
+        Node::Group(group) => group.opacity < 1.0 || has_translucency(&group.children),
+        Node::Path(path) => path.color[3] < 1.0,
+    })
+}

@@ -1,0 +1,89 @@
+//! Viewports: the page, nested `svg` elements, symbols and markers.
+
+use super::notes::{Notes, line};
+use super::style::Style;
+use super::value::Length;
+use crate::content_fault;
+use kurbo::{Affine, Rect};
+use revmap::error::Result;
+use revmap::profile::Profile;
+use roxmltree::Node;
+use std::str::FromStr;
+use svgtypes::{Align, AspectRatio, ViewBox};
+
+/// The `viewBox` of an element.
+pub(super) fn view_box(node: Node, notes: &mut Notes) -> Option<Rect> {
+    let text = node.attribute("viewBox")?;
+    let read = ViewBox::from_str(text).ok();
+    let valid = read.filter(|v| v.w > 0.0 && v.h > 0.0);
+    if valid.is_none() {
+        notes.warn(format!(
+            "the drawing has viewBox=\"{text}\" (line {}), which is not valid; it is ignored, as browsers do",
+            line(node)
+        ));
+    }
+    valid.map(|v| Rect::new(v.x, v.y, v.x + v.w, v.y + v.h))
+}
+
+/// Maps a `viewBox` to a viewport of this size.
+pub(super) fn fitted(node: Node, inner: Rect, (width, height): (f64, f64)) -> Affine {
+    let aspect = node.attribute("preserveAspectRatio");
+    let aspect = aspect
+        .and_then(|a| AspectRatio::from_str(a).ok())
+        .unwrap_or_default();
+    let (sx, sy) = (width / inner.width(), height / inner.height());
+    let to_corner = Affine::translate((-inner.x0, -inner.y0));
+    let s = match (aspect.align, aspect.slice) {
+        (Align::None, _) => return Affine::scale_non_uniform(sx, sy) * to_corner,
+        (_, false) => sx.min(sy),
+        (_, true) => sx.max(sy),
+    };
+    use Align::{XMaxYMax, XMaxYMid, XMaxYMin, XMidYMax, XMidYMin, XMinYMax, XMinYMid, XMinYMin};
+    let x = match aspect.align {
+        XMinYMin | XMinYMid | XMinYMax => 0.0,
+        XMaxYMin | XMaxYMid | XMaxYMax => 1.0,
+        _ => 0.5,
+    };
+    let y = match aspect.align {
+        XMinYMin | XMidYMin | XMaxYMin => 0.0,
+        XMinYMax | XMidYMax | XMaxYMax => 1.0,
+        _ => 0.5,
+    };
+    let free = (width - s * inner.width(), height - s * inner.height());
+    Affine::translate((x * free.0, y * free.1)) * Affine::scale(s) * to_corner
+}
+
+/// Width and height of the page in pixels.
+pub(super) fn page(style: &Style, inner: Option<Rect>) -> Result<(f64, f64)> {
+    let given = |name: &str, whole: Option<f64>| match style.geometry(name) {
+        Some(Length::Px(v)) => Some(v),
+        Some(Length::Part(part)) => whole.map(|w| part * w),
+        None => None,
+    };
+    let width = given("width", inner.map(|i| i.width()));
+    let height = given("height", inner.map(|i| i.height()));
+    let size = match (width, height, inner) {
+        (Some(w), Some(h), _) => (w, h),
+        (Some(w), None, Some(i)) => (w, w * i.height() / i.width()),
+        (None, Some(h), Some(i)) => (h * i.width() / i.height(), h),
+        (None, None, Some(i)) => (i.width(), i.height()),
+        (_, _, None) => {
+            return Err(content_fault(
+                "the drawing gives no size; add viewBox, or width and height",
+            ));
+        }
+    };
+    let (width, height) = size;
+    let most = Profile::EXTENT;
+    if !(width > 0.0 && height > 0.0 && size.0.is_finite() && size.1.is_finite()) {
+        return Err(content_fault(format!(
+            "the drawing has a page of {width} x {height}; give a positive width and height"
+        )));
+    }
+    if width > most * height || height > most * width {
+        return Err(content_fault(format!(
+            "the drawing has a page of {width} x {height}; one side is at most {most} times the other"
+        )));
+    }
+    Ok(size)
+}
