@@ -168,8 +168,8 @@ fn modules_are_few_and_small() {
     assert!(packed < 530_000, "{packed} bytes in all");
 }
 
-/// Only shadows of searches on maps index an array of textures by a number that varies. Pipelines get
-/// the module with constants in its place, so that no device needs a feature for it.
+/// Only shadows of searches on maps index an array of textures by a number that varies. Devices
+/// without that feature get the module with constants in its place.
 #[test]
 fn pipelines_index_textures_by_constants() {
     let mut varying = 0;

@@ -92,6 +92,7 @@ impl Candidate {
             own_vectors: most.clamp(PATCH_VECTORS, MOST_OWN_VECTORS),
             large_points: self.large_points(),
             fetched_cells: self.properties.device_type != vk::PhysicalDeviceType::CPU,
+            indexes_textures: self.features.shader_sampled_image_array_dynamic_indexing == vk::TRUE,
         }
     }
 
@@ -103,6 +104,9 @@ impl Candidate {
             large_points: vk::Bool32::from(self.large_points()),
             sample_rate_shading: self.features.sample_rate_shading,
             shader_float64: self.features.shader_float64,
+            shader_sampled_image_array_dynamic_indexing: self
+                .features
+                .shader_sampled_image_array_dynamic_indexing,
             multi_draw_indirect: self.features.multi_draw_indirect,
             draw_indirect_first_instance: self.features.draw_indirect_first_instance,
             ..Default::default()

@@ -80,7 +80,10 @@ impl Pipelines {
     }
 
     fn shader(&self, words: &[u32], constants: &HashMap<u32, u32>) -> Result<ShaderModule<'_>> {
-        let words = with_constant_textures(&frozen(words, constants));
+        let mut words = frozen(words, constants);
+        if !self.constants.indexes_textures {
+            words = with_constant_textures(&words);
+        }
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
         // host promised.
