@@ -27,7 +27,7 @@ pub use outputs::{with_locations, with_outputs_for};
 pub use spirv::{depth_less, instructions, op};
 pub(crate) use technique::is_beveled;
 pub use technique::{HostLook, ShadowCasters, Technique};
-pub use textures::with_constant_textures;
+pub use textures::{with_constant_textures, with_varying_textures};
 pub use variant::{Kind, Speciality, Variant};
 pub use view_index::with_view_index;
 

@@ -55,6 +55,7 @@ pub mod op {
 
     pub const VIEW_INDEX: u32 = 4440;
     pub const MULTIVIEW: u32 = 4439;
+    pub const SAMPLED_IMAGE_ARRAY_DYNAMIC_INDEXING: u32 = 29;
     pub const DEPTH_GREATER: u32 = 14;
     pub const DEPTH_LESS: u32 = 15;
 

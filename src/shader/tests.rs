@@ -7,7 +7,7 @@ use crate::scene::{Lighting, Object};
 use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{Entry, Output, Search, modules};
-use crate::shader::textures::{varying_textures, with_constant_textures};
+use crate::shader::textures::{varying_textures, with_constant_textures, with_varying_textures};
 use crate::shader::{
     CasterNode, FrameBlock, HostLook, InstanceBlock, Kind, LightBlock, Module, OBJECT_STRIDE,
     ObjectBlock, ShadowCasters, Technique, Variant, depth_less, generated as g, instructions, op,
@@ -185,6 +185,8 @@ fn pipelines_index_textures_by_constants() {
         let constant = with_constant_textures(&words);
         assert_eq!(varying_textures(&constant), 0, "{}", module.name());
         assert!(found > 0 || constant == words, "{}", module.name());
+        let declared = with_varying_textures(&words).len() - words.len();
+        assert_eq!(declared, if found > 0 { 2 } else { 0 }, "{}", module.name());
     }
     assert!(varying > 0);
 }

@@ -89,6 +89,23 @@ pub fn varying_textures(words: &[u32]) -> usize {
     all.values().filter(|access| access.of == 0).count()
 }
 
+/// A module's words with the capability for indices that vary, which the compiler of GLSL leaves out,
+/// if there are any.
+#[must_use]
+pub fn with_varying_textures(words: &[u32]) -> Vec<u32> {
+    let (head, rest) = words.split_at(HEADER);
+    let mut out = head.to_vec();
+    if !Declared::new(words).varying.is_empty() {
+        put(
+            &mut out,
+            op::CAPABILITY,
+            &[op::SAMPLED_IMAGE_ARRAY_DYNAMIC_INDEXING],
+        );
+    }
+    out.extend(rest);
+    out
+}
+
 /// A module's words with a switch over constant indices in place of each look-up in an array of
 /// textures by an index that varies. A loop's header, which cannot be divided, keeps its look-ups.
 #[must_use]

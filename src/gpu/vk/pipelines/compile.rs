@@ -9,7 +9,7 @@ use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
     Kind, Module, Search, Variant, depth_less, frozen, with_constant_textures, with_locations,
-    with_outputs_for, with_view_index, words,
+    with_outputs_for, with_varying_textures, with_view_index, words,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -80,10 +80,11 @@ impl Pipelines {
     }
 
     fn shader(&self, words: &[u32], constants: &HashMap<u32, u32>) -> Result<ShaderModule<'_>> {
-        let mut words = frozen(words, constants);
-        if !self.constants.indexes_textures {
-            words = with_constant_textures(&words);
-        }
+        let words = frozen(words, constants);
+        let words = match self.constants.indexes_textures {
+            true => with_varying_textures(&words),
+            false => with_constant_textures(&words),
+        };
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
         // host promised.
