@@ -48,12 +48,18 @@ impl Recorder {
 /// records copies of new textures. The host calls it in every frame before
 /// revmap_renderer_record(). This function neither submits nor waits.
 ///
-/// The command buffer is recording, outside of a pass, for a queue of the device's family. The
-/// commands recorded for this slot before have run or were never submitted. Commands of other slots
-/// that were recorded before are submitted before these.
+/// The frame may be recorded once, several times or never, and its commands may be dropped: copies of
+/// a texture are recorded in every prepared frame until one of these frames has run. A call that
+/// fails records nothing, and the values that were set stay set: the next call tries them again.
 ///
-/// Fails with REVMAP_RESULT_CONTENT for an object that cannot be drawn; the object keeps its former
-/// values. The text begins with the object's number.
+/// The command buffer is recording, outside of a pass, for a queue of the device's family. Commands
+/// of revmap_renderer_record() and revmap_renderer_record_compute() for earlier frames of this slot
+/// have run, or are never submitted; those of earlier calls of this function may also be in
+/// command_buffer. Command buffers of prepared frames are submitted to one queue, in the order of
+/// this call.
+///
+/// Fails with REVMAP_RESULT_CONTENT for an object that cannot be drawn, until it is set right or
+/// removed. The text begins with the object's number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_prepare(
     renderer: *mut RevmapRenderer,
