@@ -3,7 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, HostBuffer, add, borrow_through, once, open, target, view_of};
+use crate::common::host::{
+    Checked, HostBuffer, add, borrow, borrow_through, once, open, target, view_of,
+};
 use crate::embedding::{options, three};
 use ash::vk;
 use glam::DVec3;
@@ -143,6 +145,34 @@ fn objects_are_added_beside_a_large_crowd() {
         fresh.add(crowd(50)).unwrap();
     }
     assert!(draw(&host, &mut drawn).unwrap().0 == draw(&host, &mut fresh).unwrap().0);
+}
+
+/// Of coincident copies the one of the earlier object shows, wherever its instances are.
+#[test]
+fn ties_do_not_depend_on_ranges() {
+    let host = open();
+    let device = borrow(&host);
+    let scene = |color: [f32; 3]| {
+        let mut object = three().objects[0].clone();
+        object.color = color;
+        object
+    };
+    let (first, second) = (scene([0.9, 0.1, 0.1]), scene([0.1, 0.1, 0.9]));
+    let empty = Scene {
+        objects: Vec::new(),
+        ..three()
+    };
+    let mut fresh = renderer(&device, &empty);
+    fresh.add(first.clone()).unwrap();
+    fresh.add(second.clone()).unwrap();
+    let wanted = draw(&host, &mut fresh).unwrap().0;
+    let mut drawn = renderer(&device, &empty);
+    // The second object takes the instance that a removed one leaves.
+    let gone = drawn.add(first.clone()).unwrap();
+    drawn.add(first).unwrap();
+    drawn.remove(gone).unwrap();
+    drawn.add(second).unwrap();
+    assert!(draw(&host, &mut drawn).unwrap().0 == wanted);
 }
 
 /// Tables fill nine tenths of the buffer before one is refused, and the place of those that are gone

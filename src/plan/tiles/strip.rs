@@ -76,10 +76,11 @@ impl Item {
         })
     }
 
-    /// Order of copies: by nearest depth, then by number. Depths are not negative, so the order of
-    /// their bits is theirs.
-    fn key(&self) -> u64 {
-        u64::from(self.bounds.near.to_bits()) << 32 | u64::from(self.copy)
+    /// Order of copies: by nearest depth, then by object and copy, wherever their instances are.
+    /// Depths are not negative, so the order of their bits is theirs.
+    fn key(&self) -> (u64, u32) {
+        let near = u64::from(self.bounds.near.to_bits());
+        (near << 32 | u64::from(self.batch), self.copy)
     }
 }
 
