@@ -110,3 +110,26 @@ fn what_has_no_surface_is_drawn_from_the_map() {
     }
     device().check().unwrap();
 }
+
+/// Under shadows the map's search replaces that of all objects. It is planned as if the others had
+/// never had a surface: their surfaces bound other solids than the map's.
+#[test]
+fn surfaces_of_another_search_are_not_planned() {
+    let mut scene = scene_of(shapes::vase(), eye(20.0, 2.2));
+    scene.shadow = Shadow::Hard;
+    let settings = drawn_by((200, 150), DrawStage::Compute, Solver::DEFAULT);
+    let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
+    renderer.draw().unwrap();
+    assert!(renderer.renderer().object_costs()[0].table_bytes > 0);
+    let mut other = Object::new("crossing", Arc::new(crossing()));
+    other.placement.position.x = -1.0;
+    scene.objects.push(other);
+    renderer.update(&scene).unwrap();
+    renderer.draw().unwrap();
+    let costs = renderer.renderer().object_costs();
+    assert_eq!(
+        (costs[0].table_bytes, costs[0].patches),
+        (0, 0),
+        "{costs:?}"
+    );
+}

@@ -257,6 +257,10 @@ impl Entry {
         else {
             return Ok(None);
         };
+        // Surfaces of another search may be left from before.
+        if derived.solver.reads_map() {
+            return Ok(None);
+        }
         let known = levels.iter().find(|(known, _)| *known == level);
         if known.is_some() || !derived.solver.follows_tolerance() {
             return Ok(known.map(|(_, surface)| surface.clone()));
