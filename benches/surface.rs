@@ -117,7 +117,7 @@ fn hull(bencher: Bencher, name: &str) {
 /// The outline of a picture of 512 rows, anti-aliased.
 #[divan::bench]
 fn picture(bencher: Bencher) {
-    let raster = revmap_files::raster::rasterize(&outline("king"), 128, 512);
+    let raster = revmap_files::raster::rasterize(&outline("king"), 128, 512).unwrap();
     bencher.bench(|| revmap_files::trace(black_box(&raster).clone()));
 }
 

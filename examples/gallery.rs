@@ -130,7 +130,7 @@ fn maps(root: &Path, target: &Path) -> Result<()> {
         rows: SIDE,
         reach: profile.radius,
     };
-    let shape = ShapeMap::bake(&profile, &options)?.encode(MapFormat::Rgba8);
+    let shape = ShapeMap::bake(&profile, &options)?.encode(MapFormat::Rgba8)?;
     let shape = RgbaImage::from_raw(shape.columns, shape.rows, shape.bytes);
     let shape = shape.expect("four bytes a texel");
     let brick = root.join("assets/heights/brick.png");

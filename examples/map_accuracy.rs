@@ -21,8 +21,8 @@ fn main() -> Result<(), revmap::Error> {
         let disc = Disc::default();
         let options = BakeOptions::new(MapSource::EXACT, rows);
         let mut map = ShapeMap::bake(&disc.polygon(1 << 16)?, &options)?;
-        map.distance = map.encode(MapFormat::R16).distances();
-        row(rows, "exact, r16", &disc.measure(&map));
+        map.distance = map.encode(MapFormat::R16)?.distances();
+        row(rows, "exact, r16", &disc.measure(&map)?);
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let file = out.join(&*name).with_extension("png");
                 let file = mark_projection(file, Projection::Cylindrical);
                 revmap_files::write_shape_map(&map, file)?;
-                let table = ArcLength::new(&profile)?.table(map.columns, map.rows);
+                let table = ArcLength::new(&profile)?.table(map.columns, map.rows)?;
                 let (columns, rows, texels) = (table.columns, table.rows, table.texels);
                 type Lengths = image::ImageBuffer<image::Luma<u16>, Vec<u16>>;
                 if let Some(picture) = Lengths::from_raw(columns, rows, texels) {

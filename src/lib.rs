@@ -143,6 +143,7 @@ pub mod cast;
 pub mod error;
 pub mod frame;
 pub mod gpu;
+pub mod host_memory;
 pub mod maps;
 mod names;
 mod plan;

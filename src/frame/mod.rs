@@ -1,11 +1,14 @@
 //! A drawn picture, pixel by pixel: the planes of a frame.
 
 use crate::error::{Error, ErrorKind, Result};
-use bytemuck::{Zeroable, allocation::try_zeroed_vec};
+use crate::host_memory::{filled, zeroed};
 
 /// Largest number of pixels in a frame: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
 /// is 9 GB.
 pub const MAX_PIXELS: u64 = 1 << 27;
+
+/// What needs memory, in messages.
+const PLANES: &str = "the pixels of a picture";
 
 /// All planes of a drawn picture; each has `width * height` values, row 0 on top.
 ///
@@ -92,13 +95,13 @@ impl Frame {
         Ok(Self {
             width,
             height,
-            color: plane(pixels, background)?,
-            distance: plane(pixels, f32::INFINITY)?,
-            normal: zeros(pixels)?,
-            shading_normal: zeros(pixels)?,
-            albedo: zeros(pixels)?,
-            uv: zeros(pixels)?,
-            steps: zeros(pixels)?,
+            color: filled(pixels, background, PLANES)?,
+            distance: filled(pixels, f32::INFINITY, PLANES)?,
+            normal: zeroed(pixels, PLANES)?,
+            shading_normal: zeroed(pixels, PLANES)?,
+            albedo: zeroed(pixels, PLANES)?,
+            uv: zeroed(pixels, PLANES)?,
+            steps: zeroed(pixels, PLANES)?,
             exhausted: 0,
         })
     }
@@ -244,27 +247,6 @@ pub fn linear_from_srgb(code: f64) -> f64 {
     } else {
         ((code + 0.055) / 1.055).powf(2.4)
     }
-}
-
-fn plane<T: Copy>(pixels: usize, value: T) -> Result<Vec<T>> {
-    let mut values = Vec::new();
-    values
-        .try_reserve_exact(pixels)
-        .map_err(|_| no_memory(pixels))?;
-    values.resize(pixels, value);
-    Ok(values)
-}
-
-/// A plane of zeros, whose pages use no memory before they are written.
-fn zeros<T: Zeroable>(pixels: usize) -> Result<Vec<T>> {
-    try_zeroed_vec(pixels).map_err(|()| no_memory(pixels))
-}
-
-fn no_memory(pixels: usize) -> Error {
-    Error::new(
-        ErrorKind::OutOfHostMemory,
-        format!("no memory for a picture of {pixels} pixels; give a smaller size"),
-    )
 }
 
 #[cfg(test)]

@@ -79,18 +79,20 @@ impl ArcLength {
     }
 
     /// The table for a map of `columns x rows` texels.
-    #[must_use]
-    pub fn table(&self, columns: u32, rows: u32) -> ArcTable {
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`].
+    pub fn table(&self, columns: u32, rows: u32) -> Result<ArcTable> {
         let (side, size) = (f64::from(rows), [columns, rows].map(|n| n as usize));
         let texels = for_each_texel(&self.segments, size, |i, j, _, k| {
             let p = DVec2::new(i as f64 + 0.5, side - (j as f64 + 0.5)) / side;
             (self.on_segment(k, p) * f64::from(u16::MAX)).round() as u16
-        });
-        ArcTable {
+        })?;
+        Ok(ArcTable {
             columns,
             rows,
             texels,
-        }
+        })
     }
 
     fn on_segment(&self, k: usize, p: DVec2) -> f64 {
@@ -210,7 +212,7 @@ mod tests {
         let (ball, ring) = (circle(0.0, 0.4, 0..181), circle(0.26, 0.2, 0..360));
         for points in [ball, ring] {
             let exact = arc(&points);
-            let table = exact.table(64, 128);
+            let table = exact.table(64, 128).unwrap();
             for (k, &texel) in table.texels.iter().enumerate() {
                 let p = DVec2::new((k % 64) as f64 + 0.5, 127.5 - (k / 64) as f64) / 128.0;
                 let (found, wanted) = (f64::from(texel) / 65535.0, exact.eta(p.x, p.y));

@@ -1,6 +1,10 @@
 //! Mip chains: each level is the area average of the next larger one, down to one texel.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::host_memory;
+
+/// What needs memory, in messages.
+const TEXELS: &str = "the texels of a texture";
 
 /// A level of a mip chain, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,12 +19,12 @@ pub struct Level<T> {
 
 impl<T> Level<T> {
     /// The same level with converted texels.
-    pub(super) fn map<U>(&self, convert: impl Fn(&T) -> U) -> Level<U> {
-        Level {
+    pub(super) fn map<U>(&self, convert: impl Fn(&T) -> U) -> Result<Level<U>> {
+        Ok(Level {
             width: self.width,
             height: self.height,
-            texels: self.texels.iter().map(convert).collect(),
-        }
+            texels: host_memory::collected(self.texels.iter().map(convert), TEXELS)?,
+        })
     }
 }
 
@@ -48,7 +52,7 @@ pub(super) fn chain<const N: usize>(
     width: u32,
     height: u32,
     texels: Vec<[f32; N]>,
-) -> Vec<Level<[f32; N]>> {
+) -> Result<Vec<Level<[f32; N]>>> {
     let mut last = Level {
         width,
         height,
@@ -58,16 +62,16 @@ pub(super) fn chain<const N: usize>(
     while last.width > 1 || last.height > 1 {
         let [w, h] = [last.width, last.height].map(|n| n as usize);
         let (half_w, half_h) = ((w / 2).max(1), (h / 2).max(1));
-        let narrow = shrink(&last.texels, w, half_w, h, 1, w);
+        let narrow = shrink(&last.texels, w, half_w, h, 1, w)?;
         let next = Level {
             width: half_w as u32,
             height: half_h as u32,
-            texels: shrink(&narrow, h, half_h, half_w, half_w, 1),
+            texels: shrink(&narrow, h, half_h, half_w, half_w, 1)?,
         };
         levels.push(std::mem::replace(&mut last, next));
     }
     levels.push(last);
-    levels
+    Ok(levels)
 }
 
 /// Averages `lines` lines of `from` texels to `to` each. A line's texels are `step` apart, and
@@ -79,9 +83,9 @@ fn shrink<const N: usize>(
     lines: usize,
     step: usize,
     stride: usize,
-) -> Vec<[f32; N]> {
+) -> Result<Vec<[f32; N]>> {
     let ratio = from as f64 / to as f64;
-    let mut out = vec![[0.0; N]; lines * to];
+    let mut out = host_memory::filled(lines * to, [0.0; N], TEXELS)?;
     let out_stride = if step == 1 { to } else { stride };
     for k in 0..to {
         let (start, end) = (k as f64 * ratio, (k + 1) as f64 * ratio);
@@ -96,11 +100,12 @@ fn shrink<const N: usize>(
             out[line * out_stride + k * step] = sum.map(|s| (s / ratio) as f32);
         }
     }
-    out
+    Ok(out)
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
@@ -116,7 +121,7 @@ mod tests {
                 })
             };
             let expected = mean(&base);
-            let levels = chain(w, h, base);
+            let levels = chain(w, h, base).unwrap();
             assert_eq!(levels.len(), u32::max(w, h).ilog2() as usize + 1);
             for level in &levels {
                 assert_eq!((level.width * level.height) as usize, level.texels.len());
@@ -130,9 +135,9 @@ mod tests {
     #[test]
     fn texels_stay_in_their_place() {
         let base: Vec<[f32; 1]> = (0..16).map(|k| [if k == 6 { 16.0 } else { 0.0 }]).collect();
-        let levels = chain(4, 4, base);
+        let levels = chain(4, 4, base).unwrap();
         assert_eq!(levels[1].texels, [[0.0], [4.0], [0.0], [0.0]]);
         let odd: Vec<[f32; 1]> = [0.0, 0.0, 3.0].map(|v| [v]).to_vec();
-        assert_eq!(chain(3, 1, odd)[1].texels, [[1.0]]);
+        assert_eq!(chain(3, 1, odd).unwrap()[1].texels, [[1.0]]);
     }
 }

@@ -13,6 +13,8 @@
 //! Squares of 4 x 4 texels keep a handful of segments, which are all measured. The result is exact,
 //! without approximation.
 
+use crate::error::Result;
+use crate::host_memory;
 use crate::profile::Segment;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -32,8 +34,9 @@ pub(crate) fn for_each_texel<T: Copy + Default + Send>(
     segments: &[Segment],
     [columns, rows]: [usize; 2],
     value: impl Fn(usize, usize, f64, usize) -> T + Sync,
-) -> Vec<T> {
-    let mut out = vec![T::default(); columns * rows];
+) -> Result<Vec<T>> {
+    let what = "the texels of a map";
+    let mut out = host_memory::filled(columns * rows, T::default(), what)?;
     let side = rows as f64;
     let search = Search {
         pieces: segments.iter().map(|s| Piece::new(s, side)).collect(),
@@ -53,7 +56,7 @@ pub(crate) fn for_each_texel<T: Copy + Default + Send>(
             stack.truncate(end);
         }
     });
-    out
+    Ok(out)
 }
 
 /// A segment in texels, y downwards, prepared for measuring.
@@ -181,6 +184,7 @@ impl<T, F: Fn(usize, usize, f64, usize) -> T> Search<F> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use proptest::prelude::*;
 
@@ -197,7 +201,7 @@ mod tests {
                 Segment { a, b: a + DVec2::new(dx, dy) }
             };
             let segments: Vec<Segment> = points.iter().map(segment).collect();
-            let found = for_each_texel(&segments, [columns, rows], |_, _, d, k| (d, k));
+            let found = for_each_texel(&segments, [columns, rows], |_, _, d, k| (d, k)).unwrap();
             let h = 1.0 / rows as f64;
             for (i, &(d, k)) in found.iter().enumerate() {
                 let p = DVec2::new(((i % columns) as f64 + 0.5) * h, 1.0 - ((i / columns) as f64 + 0.5) * h);
@@ -210,7 +214,7 @@ mod tests {
 
     #[test]
     fn no_segments_no_end() {
-        let found = for_each_texel(&[], [3, 2], |_, _, d, _| d);
+        let found = for_each_texel(&[], [3, 2], |_, _, d, _| d).unwrap();
         assert_eq!(found, [f64::INFINITY; 6]);
     }
 }

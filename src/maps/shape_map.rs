@@ -3,6 +3,7 @@
 use super::nearest::for_each_texel;
 use super::{MAX_SIDE, round_down};
 use crate::error::{Error, ErrorKind, Result};
+use crate::host_memory;
 use crate::profile::{Bounds, Profile, Segment};
 use glam::DVec2;
 use std::fmt;
@@ -16,7 +17,7 @@ pub struct MapSource {
     pub name: &'static str,
     /// Measures a profile on a grid of `columns` x `rows` texels, laid out as in
     /// [`ShapeMap`](super::ShapeMap).
-    pub measure: fn(profile: &Profile, columns: u32, rows: u32) -> Measured,
+    pub measure: fn(profile: &Profile, columns: u32, rows: u32) -> Result<Measured>,
 }
 
 /// The signed distance at each texel's centre, object units, and the rectangle that the solid
@@ -112,7 +113,7 @@ impl ShapeMap {
     ///
     /// # Errors
     /// [`ErrorKind::Content`]: rows outside 2 ..= 16384, a reach that is not finite or leads to
-    /// more than 16384 columns, a shape that leaves no texel solid.
+    /// more than 16384 columns, a shape that leaves no texel solid. [`ErrorKind::OutOfHostMemory`].
     pub fn bake(profile: &Profile, options: &BakeOptions) -> Result<Self> {
         let BakeOptions {
             source,
@@ -138,13 +139,14 @@ impl ShapeMap {
             return Err(fault(message).at_key("map_rows"));
         }
         let columns = wanted as u32;
-        let (distance, Some(bounds)) = (source.measure)(profile, columns, rows) else {
+        let (distance, Some(bounds)) = (source.measure)(profile, columns, rows)? else {
             let message = format!(
                 "at {rows} rows the shape covers no texel; take more rows or a thicker shape"
             );
             return Err(fault(message).at_key("map_rows"));
         };
-        let form = distance.iter().map(|&d| d <= 0.0).collect();
+        let form = distance.iter().map(|&d| d <= 0.0);
+        let form = host_memory::collected(form, "the form of a map")?;
         Ok(Self {
             columns,
             rows,
@@ -221,7 +223,7 @@ impl ShapeMap {
 
 /// Signed distance of each texel's centre to the outline's surface, object units, never greater
 /// than the true distance.
-fn exact(profile: &Profile, columns: u32, rows: u32) -> Measured {
+fn exact(profile: &Profile, columns: u32, rows: u32) -> Result<Measured> {
     let outline = &profile.outline;
     let (columns, rows) = (columns as usize, rows as usize);
     let segments: Vec<Segment> = outline.surface_segments().collect();
@@ -232,6 +234,6 @@ fn exact(profile: &Profile, columns: u32, rows: u32) -> Measured {
         let r = (column as f64 + 0.5) / rows as f64;
         let inside = crossings[row].partition_point(|&c| c <= r) % 2 == 1;
         round_down(if inside { -distance } else { distance })
-    });
-    (distances, outline.bounds())
+    })?;
+    Ok((distances, outline.bounds()))
 }

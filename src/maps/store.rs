@@ -2,6 +2,11 @@
 //! never make a stored distance exceed the true one.
 
 use super::{MapFormat, ShapeMap};
+use crate::error::Result;
+use crate::host_memory::reserved;
+
+/// What needs memory, in messages.
+const TEXELS: &str = "the texels of a map";
 
 /// A shape map's texels, row by row from the top, tightly packed, native byte order.
 ///
@@ -55,23 +60,27 @@ impl EncodedMap {
 
 impl ShapeMap {
     /// The map's texels in one of the GPU's formats.
-    #[must_use]
-    pub fn encode(&self, format: MapFormat) -> EncodedMap {
-        let (scale, bytes) = match format {
-            MapFormat::Rgba8 => self.encode_rgba8(),
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`](crate::error::ErrorKind::OutOfHostMemory).
+    pub fn encode(&self, format: MapFormat) -> Result<EncodedMap> {
+        let mut bytes = reserved(self.distance.len() * format.texel_bytes(), TEXELS)?;
+        let mut scale = 1.0;
+        match format {
+            MapFormat::Rgba8 => scale = self.encode_rgba8(&mut bytes),
             MapFormat::R16 => {
                 let halves = self.distance.iter().map(|&d| round_down_half(d));
-                (1.0, halves.flat_map(u16::to_ne_bytes).collect())
+                bytes.extend(halves.flat_map(u16::to_ne_bytes));
             }
-            MapFormat::R32 => (1.0, bytemuck::cast_slice(&self.distance).to_vec()),
-        };
-        EncodedMap {
+            MapFormat::R32 => bytes.extend_from_slice(bytemuck::cast_slice(&self.distance)),
+        }
+        Ok(EncodedMap {
             columns: self.columns,
             rows: self.rows,
             format,
             scale,
             bytes,
-        }
+        })
     }
 
     /// The largest distance in the map, object units. The papers give extension and bevel in this
@@ -82,23 +91,24 @@ impl ShapeMap {
         finite.fold(0.0, f32::max)
     }
 
-    fn encode_rgba8(&self) -> (f32, Vec<u8>) {
+    /// Appends the papers' texels, and returns their scale.
+    fn encode_rgba8(&self, bytes: &mut Vec<u8>) -> f32 {
         let largest = self.largest_distance();
         // A map without any empty texel stores zeros for every scale.
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let pack = |g: f32| ((g * 0.5 + 0.5) * 255.0).round() as u8;
-        let texels = self.gradients().into_iter().zip(&self.distance);
-        let bytes = texels.zip(&self.form).flat_map(|(([gr, gz], &d), &solid)| {
+        for (texel, (&d, &solid)) in self.distance.iter().zip(&self.form).enumerate() {
+            let [gr, gz] = self.gradient(texel);
             let form = if solid { 255 } else { 0 };
-            [pack(gr), pack(gz), pack_distance(d, scale), form]
-        });
-        (scale, bytes.collect())
+            bytes.extend([pack(gr), pack(gz), pack_distance(d, scale), form]);
+        }
+        scale
     }
 
-    /// Unit gradient `(g_r, g_z)` at each texel's centre: central differences of the distances
-    /// (one-sided at the border, mirrored at the axis), 0 where they cancel.
-    #[must_use]
-    pub fn gradients(&self) -> Vec<[f32; 2]> {
+    /// Unit gradient `(g_r, g_z)` at a texel's centre: central differences of the distances
+    /// (one-sided at the border, mirrored at the axis), 0 where they cancel. Texels are counted row by
+    /// row from the top.
+    fn gradient(&self, k: usize) -> [f32; 2] {
         let (columns, rows) = (self.columns as usize, self.rows as usize);
         let at = |i: usize, j: usize| f64::from(self.distance[j * columns + i]);
         let slope = |low: f64, high: f64, steps: usize| {
@@ -109,22 +119,25 @@ impl ShapeMap {
                 0.0
             }
         };
-        let gradient = |k: usize| {
-            let (i, j) = (k % columns, k / columns);
-            let i1 = (i + 1).min(columns - 1);
-            let (j0, j1) = (j.saturating_sub(1), (j + 1).min(rows - 1));
-            // The map is mirrored left of the first texel, one texel away.
-            let (i0, across) = if i == 0 { (0, 2) } else { (i - 1, i1 + 1 - i) };
-            let gr = slope(at(i0, j), at(i1, j), across);
-            let gz = slope(at(i, j1), at(i, j0), j1 - j0);
-            let length = gr.hypot(gz);
-            if length > 0.0 {
-                [(gr / length) as f32, (gz / length) as f32]
-            } else {
-                [0.0; 2]
-            }
-        };
-        (0..columns * rows).map(gradient).collect()
+        let (i, j) = (k % columns, k / columns);
+        let i1 = (i + 1).min(columns - 1);
+        let (j0, j1) = (j.saturating_sub(1), (j + 1).min(rows - 1));
+        // The map is mirrored left of the first texel, one texel away.
+        let (i0, across) = if i == 0 { (0, 2) } else { (i - 1, i1 + 1 - i) };
+        let gr = slope(at(i0, j), at(i1, j), across);
+        let gz = slope(at(i, j1), at(i, j0), j1 - j0);
+        let length = gr.hypot(gz);
+        if length > 0.0 {
+            [(gr / length) as f32, (gz / length) as f32]
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// Unit gradients `(g_r, g_z)` at the texels' centres, row by row from the top: central differences
+    /// of the distances (one-sided at the border, mirrored at the axis), 0 where they cancel.
+    pub fn gradients(&self) -> impl ExactSizeIterator<Item = [f32; 2]> {
+        (0..self.distance.len()).map(|texel| self.gradient(texel))
     }
 }
 

@@ -5,6 +5,7 @@ use super::mips::{self, Level, check_count};
 use super::store::to_half;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{linear_from_srgb, srgb_from_linear};
+use crate::host_memory::{collected, filled};
 use rayon::prelude::*;
 
 /// A texture of colours, `R8G8B8A8_SRGB`, row 0 (`v = 1`) on top.
@@ -23,8 +24,8 @@ impl ColorMap {
     /// top.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`](crate::error::ErrorKind::Content): no texels, or not `width * height`
-    /// of them.
+    /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
+    /// [`ErrorKind::OutOfHostMemory`].
     pub fn from_texels(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self> {
         check_count("colours", texels.len(), width, height)?;
         let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
@@ -33,7 +34,8 @@ impl ColorMap {
             let [r, g, b] = [r, g, b].map(|v| linear[usize::from(v)] * alpha);
             [r, g, b, alpha]
         };
-        let light = mips::chain(width, height, texels.iter().map(premultiplied).collect());
+        let light = collected(texels.iter().map(premultiplied), "the light of a texture")?;
+        let light = mips::chain(width, height, light)?;
         // The full size is stored unchanged, including the colours of transparent texels.
         let full = Level {
             width,
@@ -41,9 +43,8 @@ impl ColorMap {
             texels,
         };
         let smaller = light[1..].iter().map(|level| level.map(from_light));
-        Ok(Self {
-            levels: std::iter::once(full).chain(smaller).collect(),
-        })
+        let levels: Result<_> = std::iter::once(Ok(full)).chain(smaller).collect();
+        Ok(Self { levels: levels? })
     }
 
     /// Returns true if no texel is transparent.
@@ -54,8 +55,10 @@ impl ColorMap {
     }
 
     /// The opaque map that shows `color`, linear RGB from 0 to 1, where this map is transparent.
-    #[must_use]
-    pub fn over(&self, color: [f32; 3]) -> Self {
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`].
+    pub fn over(&self, color: [f32; 3]) -> Result<Self> {
         let linear: Vec<f32> = (0..=255u8).map(light_of_byte).collect();
         let opaque = |&[r, g, b, a]: &[u8; 4]| {
             let alpha = f32::from(a) / 255.0;
@@ -66,11 +69,12 @@ impl ColorMap {
             [light(r, below_r), light(g, below_g), light(b, below_b), 1.0]
         };
         let full = self.levels.first().map(|level| level.map(opaque));
-        let light = full.map(|full| mips::chain(full.width, full.height, full.texels));
-        let levels = light.iter().flatten();
-        Self {
-            levels: levels.map(|level| level.map(from_light)).collect(),
-        }
+        let light = full.transpose()?;
+        let light = light.map(|full| mips::chain(full.width, full.height, full.texels));
+        let light = light.transpose()?;
+        let levels = light.iter().flatten().map(|level| level.map(from_light));
+        let levels: Result<_> = levels.collect();
+        Ok(Self { levels: levels? })
     }
 
     /// Texels across and down of the full size.
@@ -139,7 +143,7 @@ impl DisplacementMap {
             SlopeFilter::Central => [0.0, 1.0, 0.0],
             SlopeFilter::Scharr => [3.0 / 16.0, 10.0 / 16.0, 3.0 / 16.0],
         };
-        let mut slopes = vec![[0.0f32; 2]; w * h];
+        let mut slopes = filled(w * h, [0.0f32; 2], "the slopes of a height map")?;
         slopes.par_chunks_mut(w).enumerate().for_each(|(row, out)| {
             // A picture's next row is lower, towards smaller v.
             let rows = [(row + h - 1) % h, row, (row + 1) % h].map(|j| &heights[j * w..][..w]);
@@ -164,8 +168,10 @@ impl DisplacementMap {
 
     /// The levels as `R16G16_SFLOAT` texels, native byte order, each rounded to the nearest half
     /// float.
-    #[must_use]
-    pub fn encode(&self) -> Vec<Level<[u16; 2]>> {
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`].
+    pub fn encode(&self) -> Result<Vec<Level<[u16; 2]>>> {
         let pack = |texel: &[f32; 2]| texel.map(to_half);
         self.levels.iter().map(|level| level.map(pack)).collect()
     }
@@ -186,7 +192,7 @@ impl DisplacementMap {
     /// [`ErrorKind::Content`]: no texels, or not `width * height` of them.
     pub fn from_slopes(width: u32, height: u32, slopes: Vec<[f32; 2]>) -> Result<Self> {
         check_count("slopes", slopes.len(), width, height)?;
-        let levels = mips::chain(width, height, slopes);
+        let levels = mips::chain(width, height, slopes)?;
         Ok(Self { levels })
     }
 }
@@ -235,7 +241,7 @@ mod tests {
         // Differences that wrap round cancel.
         let last = map.levels[6].texels[0];
         assert!(last.iter().all(|v| v.abs() < 1e-4));
-        assert_eq!(map.encode()[3].texels.len(), 12 * 5);
+        assert_eq!(map.encode().unwrap()[3].texels.len(), 12 * 5);
     }
 
     #[test]
@@ -286,7 +292,7 @@ mod tests {
         ];
         let map = ColorMap::from_texels(4, 1, texels).unwrap();
         assert!(!map.is_opaque());
-        let over = map.over([1.0, 0.0, 7.0]);
+        let over = map.over([1.0, 0.0, 7.0]).unwrap();
         let [first, second, third, _] = over.levels[0].texels[..] else {
             unreachable!()
         };
@@ -306,6 +312,6 @@ mod tests {
             }
         }
         assert!(over.is_opaque());
-        assert_eq!(over.over([0.0; 3]), over);
+        assert_eq!(over.over([0.0; 3]).unwrap(), over);
     }
 }

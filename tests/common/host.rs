@@ -271,15 +271,16 @@ impl Drop for Texture<'_> {
 
 /// Records commands, submits them and waits.
 pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
-    recorded(host, record, true);
+    commands(host, true, record);
 }
 
 /// Records commands and drops them.
 pub fn never(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
-    recorded(host, record, false);
+    commands(host, false, record);
 }
 
-fn recorded(host: &Host, record: impl FnOnce(vk::CommandBuffer), submits: bool) {
+/// Records commands. With `submits` submits them and waits.
+pub fn commands(host: &Host, submits: bool, record: impl FnOnce(vk::CommandBuffer)) {
     let device = &host.device;
     // SAFETY: everything is created here, waited for, then destroyed.
     unsafe {

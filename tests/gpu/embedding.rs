@@ -91,7 +91,10 @@ fn alone_it_draws_the_off_screen_frame() {
         ..sized(options().width, options().height)
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    let wanted = Picture::of(&next_frame(&mut offscreen)).rgba.concat();
+    let wanted = Picture::of(&next_frame(&mut offscreen))
+        .unwrap()
+        .rgba
+        .concat();
     let view = *offscreen.view();
     for dynamic in [true, false] {
         let options = Options {

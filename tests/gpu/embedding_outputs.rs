@@ -203,7 +203,7 @@ fn compute_writes_to_a_hosts_buffer() {
         ..in_compute(sized(width, height))
     };
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    let wanted = Picture::of(&next_frame(&mut offscreen)).rgba;
+    let wanted = Picture::of(&next_frame(&mut offscreen)).unwrap().rgba;
     let pixels = (width * height) as usize;
     let nearer = 0x0102_0304u32;
     // The left half is empty; the right half already holds a nearer depth.

@@ -69,7 +69,7 @@ fn images_with_the_texels_of_maps_give_their_pictures() {
         .map(|n| (n * 29 % 64) as f32 / 64.0)
         .collect();
     let slopes = DisplacementMap::from_heights(SIZE, SIZE, &heights, SlopeFilter::Scharr).unwrap();
-    let halves: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&slopes.encode()[0].texels);
+    let halves: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&slopes.encode().unwrap()[0].texels);
     let color = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &texels);
     let slope = Texture::new(&host, vk::Format::R16G16_SFLOAT, &halves);
 

@@ -71,7 +71,7 @@ fn kept(host: &Host, kind: u32, seed: u32) -> Kept<'_> {
     let (format, texels) = match kind {
         0 => (F::R8G8B8A8_SRGB, color_texels(seed)),
         1 => {
-            let slopes = slope_map(seed).encode();
+            let slopes = slope_map(seed).encode().unwrap();
             (
                 F::R16G16_SFLOAT,
                 bytemuck::pod_collect_to_vec(&slopes[0].texels),

@@ -282,7 +282,7 @@ pub unsafe extern "C" fn revmap_offscreen_read(
             // SAFETY: the caller's bytes, as many as it says.
             unsafe {
                 match plane {
-                    RevmapPlane::Srgb8 => copy(&Picture::of(frame).rgba, bytes, count),
+                    RevmapPlane::Srgb8 => copy(&Picture::of(frame)?.rgba, bytes, count),
                     RevmapPlane::Color => copy(&frame.color, bytes, count),
                     RevmapPlane::Distance => copy(&frame.distance, bytes, count),
                     RevmapPlane::Normal => copy(&frame.normal, bytes, count),

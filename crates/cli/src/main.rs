@@ -9,6 +9,7 @@ mod bench;
 mod compare;
 mod devices;
 mod failure;
+mod last_resort;
 mod levels;
 mod lists;
 mod options;

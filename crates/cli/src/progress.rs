@@ -87,41 +87,43 @@ pub fn ended_by_signal() -> Option<u8> {
 #[cfg(unix)]
 mod interrupt {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    use signal_hook::flag;
-    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-    use std::sync::{Arc, LazyLock};
+    use signal_hook::iterator::Signals;
+    use std::sync::LazyLock;
+    use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 
     /// Shells add this to the number of a signal.
     const SIGNALLED: i32 = 128;
 
-    static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+    static STOP: AtomicBool = AtomicBool::new(false);
     /// The last of the signals.
-    static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
-    static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
-        let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
-        for signal in watched.filter(|signal| !is_ignored(*signal)) {
-            watch(signal).map_err(|e| e.to_string())?;
-        }
-        Ok(&**STOP)
-    });
+    static SIGNAL: AtomicI32 = AtomicI32::new(0);
+    static SET: LazyLock<Result<&'static AtomicBool, String>> =
+        LazyLock::new(|| watch().map(|()| &STOP).map_err(|e| e.to_string()));
 
     pub fn flag() -> &'static Result<&'static AtomicBool, String> {
         &SET
     }
 
     pub fn code() -> Option<u8> {
-        let signal = i32::try_from(SIGNAL.load(Ordering::Relaxed)).ok()?;
+        let signal = SIGNAL.load(Ordering::SeqCst);
         let signal = Some(signal).filter(|s| [SIGTERM, SIGHUP].contains(s))?;
         u8::try_from(SIGNALLED + signal).ok()
     }
 
     /// The first signal sets the flag, a second one ends the program.
-    fn watch(signal: i32) -> std::io::Result<()> {
-        let number = usize::try_from(signal).unwrap_or_default();
-        flag::register_conditional_shutdown(signal, SIGNALLED + signal, STOP.clone())?;
-        flag::register_usize(signal, SIGNAL.clone(), number)?;
-        flag::register(signal, STOP.clone())?;
-        Ok(())
+    fn watch() -> std::io::Result<()> {
+        let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
+        let mut signals = Signals::new(watched.filter(|signal| !is_ignored(*signal)))?;
+        let wait = move || {
+            for signal in signals.forever() {
+                SIGNAL.store(signal, Ordering::SeqCst);
+                if STOP.swap(true, Ordering::SeqCst) {
+                    revmap_files::remove_unfinished();
+                    signal_hook::low_level::exit(SIGNALLED + signal);
+                }
+            }
+        };
+        std::thread::Builder::new().spawn(wait).map(drop)
     }
 
     /// Returns true for HUP under `nohup`, which is meant to be without effect.
@@ -146,6 +148,7 @@ mod interrupt {
     static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
         let stop = || {
             if STOP.swap(true, Ordering::Relaxed) {
+                revmap_files::remove_unfinished();
                 std::process::exit(INTERRUPTED);
             }
         };

@@ -103,10 +103,7 @@ impl Submit {
                 progress.say(what);
                 progress.report(gone as usize, all as usize);
             },
-            picture: &mut |seen| {
-                pictures.add(seen);
-                Ok(())
-            },
+            picture: &mut |seen| pictures.add(seen),
             passed: &mut |_| Ok(()),
         };
         let measured = measure(plan, &mut bench, &file.time, &mut observer)?;

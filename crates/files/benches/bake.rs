@@ -43,7 +43,7 @@ fn image(rows: u32) -> Profile {
         .chain([[0.0, 0.98], [0.0, 0.02]])
         .collect();
     let polygon = Profile::polygon(&points, 1.0).unwrap();
-    revmap_files::trace(rasterize(&polygon.outline, rows, rows)).unwrap()
+    revmap_files::trace(rasterize(&polygon.outline, rows, rows).unwrap()).unwrap()
 }
 
 fn bake(bencher: Bencher, source: MapSource, rows: u32) {

@@ -7,6 +7,18 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Files that are being written.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the files that [`write_atomically`] has begun: for a program that ends within a call.
+pub fn remove_unfinished() {
+    // Without the lock a file is being begun or ended at this moment.
+    for part in UNFINISHED.try_lock().iter().flat_map(|parts| parts.iter()) {
+        let _ = fs::remove_file(part);
+    }
+}
 
 /// Writes a file by `fill`, which gets a buffered writer that can seek.
 ///
@@ -46,6 +58,10 @@ pub fn write_atomically(
         return Err(file_fault("is not the name of a file").in_file(target));
     }
     let (file, part) = create_part(&real).map_err(|e| failed("cannot be created", &e))?;
+    let unfinished = |change: &dyn Fn(&mut Vec<PathBuf>)| {
+        change(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner));
+    };
+    unfinished(&|parts| parts.push(part.clone()));
     let mut writer = BufWriter::new(file);
     let written = fill(&mut writer)
         .map_err(|e| e.in_file(target))
@@ -65,6 +81,7 @@ pub fn write_atomically(
         // Best effort: the first failure is the one to report.
         let _ = fs::remove_file(&part);
     }
+    unfinished(&|parts| parts.retain(|other| *other != part));
     written
 }
 

@@ -1,5 +1,8 @@
 //! The orientation of a photograph, which cameras store beside the pixels (Exif 2.32, tag 274).
 
+use revmap::error::Result;
+use revmap::host_memory;
+
 /// A way to turn stored pixels into the upright picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Orientation {
@@ -46,13 +49,13 @@ impl Orientation {
     }
 
     /// The upright picture's samples, `channels` a pixel, from the stored ones.
-    pub fn turned<T: Copy>(self, size: [u32; 2], channels: usize, stored: &[T]) -> Vec<T> {
+    pub fn turned<T: Copy>(self, size: [u32; 2], channels: usize, stored: &[T]) -> Result<Vec<T>> {
         let [width, height] = self.turned_size(size).map(|n| n as usize);
         let from = |k: usize, count: usize, reversed: bool| match reversed {
             true => count - 1 - k,
             false => k,
         };
-        let mut turned = Vec::with_capacity(stored.len());
+        let mut turned = host_memory::reserved(stored.len(), "the pixels of an upright picture")?;
         for y in 0..height {
             for x in 0..width {
                 let (x, y) = (from(x, width, self.mirrored), from(y, height, self.flipped));
@@ -61,7 +64,7 @@ impl Orientation {
                 turned.extend(stored.iter().skip(pixel * channels).take(channels));
             }
         }
-        turned
+        Ok(turned)
     }
 }
 
@@ -149,7 +152,7 @@ mod tests {
         let stored = image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8, y as u8, 7]));
         for value in 1..=8 {
             let own = Orientation::of_tag(value);
-            let turned = own.turned([3, 2], 3, stored.as_raw());
+            let turned = own.turned([3, 2], 3, stored.as_raw()).unwrap();
             let mut wanted = image::DynamicImage::from(stored.clone());
             wanted.apply_orientation(Theirs::from_exif(value as u8).unwrap());
             assert_eq!(own.turned_size([3, 2]), [wanted.width(), wanted.height()]);

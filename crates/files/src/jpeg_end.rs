@@ -1,5 +1,8 @@
 //! Finds JPEG files that were cut off: decoders draw the missing part grey without an error.
 
+use revmap::error::Result;
+use revmap::host_memory;
+
 /// Second bytes of markers, each after a byte 0xff.
 const END_OF_IMAGE: u8 = 0xd9;
 const START_OF_SCAN: u8 = 0xda;
@@ -9,9 +12,17 @@ const START_OF_SCAN: u8 = 0xda;
 ///
 /// A decoder that has all data makes no use of more, so that its picture stays the same. If a
 /// program has put the marker behind a file that was cut off, the picture changes.
-pub(crate) fn lengthened(bytes: &[u8]) -> Option<Vec<u8>> {
-    let (before, end) = bytes.split_at(end(bytes)?);
-    Some([before, &[0x5a; 64], end].concat())
+pub(crate) fn lengthened(bytes: &[u8]) -> Result<Option<Vec<u8>>> {
+    const MORE: [u8; 64] = [0x5a; 64];
+    let Some(end) = end(bytes) else {
+        return Ok(None);
+    };
+    let (before, end) = bytes.split_at(end);
+    let mut longer = host_memory::reserved(bytes.len() + MORE.len(), "the bytes of a JPEG")?;
+    for part in [before, &MORE, end] {
+        longer.extend_from_slice(part);
+    }
+    Ok(Some(longer))
 }
 
 /// The position of the marker that ends the picture.

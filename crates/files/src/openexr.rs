@@ -7,6 +7,7 @@ use exr::prelude::{
 };
 use revmap::error::Result;
 use revmap::frame::{CHANNELS, Frame, pixel_count};
+use revmap::host_memory;
 use revmap::maps::MAX_SIDE;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, Write};
@@ -14,6 +15,9 @@ use std::path::Path;
 
 /// The channel `A` in [`CHANNELS`]; `R G B` stand before it.
 const ALPHA: usize = 3;
+
+/// What needs memory, in messages.
+const PLANES: &str = "the planes of a frame";
 
 /// A layer of an EXR file.
 type FloatLayer = Layer<AnyChannels<FlatSamples>>;
@@ -25,7 +29,10 @@ type FloatLayer = Layer<AnyChannels<FlatSamples>>;
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
 /// written.
 pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
-    let mut planes: [Vec<f32>; 17] = std::array::from_fn(|_| Vec::with_capacity(frame.pixels()));
+    let path = path.as_ref();
+    let plane = |_| host_memory::reserved(frame.pixels(), PLANES);
+    let planes: Result<Vec<Vec<f32>>> = CHANNELS.iter().map(plane).collect();
+    let mut planes = planes.map_err(|e| e.in_file(path))?;
     for index in 0..frame.pixels() {
         let mut pixel = frame.pixel(index);
         let alpha = pixel[ALPHA];
@@ -42,7 +49,7 @@ pub fn write_exr(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
     };
     let channels = CHANNELS.into_iter().zip(planes);
     let layer = layer([frame.width, frame.height], attributes, channels);
-    write_atomically(path.as_ref(), |writer| {
+    write_atomically(path, |writer| {
         write_layer(layer, writer).map_err(|e| file_fault(format!("cannot be written: {e}")))
     })
 }
@@ -106,7 +113,8 @@ fn read_checked(path: &Path) -> Result<Frame> {
         let channel = channels.find(|c| c.name.eq(name)).ok_or_else(|| {
             file_fault("there is no such channel; give a file that revmap wrote").at_key(name)
         })?;
-        let plane: Vec<f32> = channel.sample_data.values_as_f32().collect();
+        let mut plane: Vec<f32> = host_memory::reserved(channel.sample_data.len(), PLANES)?;
+        plane.extend(channel.sample_data.values_as_f32());
         if plane.len() != frame.pixels() {
             let message = "the channel is subsampled; write it at full size";
             return Err(file_fault(message).at_key(name));

@@ -4,6 +4,7 @@ use crate::pixels::decode;
 use crate::{file_fault, write_atomically};
 use revmap::error::Result;
 use revmap::frame::{Frame, linear_from_srgb};
+use revmap::host_memory;
 use std::io::Write;
 use std::path::Path;
 
@@ -14,7 +15,9 @@ use std::path::Path;
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File), with the file's name, if it cannot be
 /// written.
 pub fn write_png(frame: &Frame, path: impl AsRef<Path>) -> Result<()> {
-    Picture::of(frame).write_png(path)
+    Picture::of(frame)
+        .and_then(|picture| picture.write_png(&path))
+        .map_err(|e| e.in_file(&path))
 }
 
 /// A picture for viewing: sRGB with alpha, 8 bits each, row 0 on top.
@@ -30,16 +33,20 @@ pub struct Picture {
 
 impl Picture {
     /// The colour of a frame. Values are clamped to `[0, 1]`; alpha is linear.
-    #[must_use]
-    pub fn of(frame: &Frame) -> Self {
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+    pub fn of(frame: &Frame) -> Result<Self> {
         let codes = Codes::new();
-        Self {
+        let code = |&[r, g, b, a]: &[f32; 4]| {
+            let [r, g, b] = [r, g, b].map(|v| codes.code(v));
+            [r, g, b, alpha_code(a)]
+        };
+        Ok(Self {
             width: frame.width,
             height: frame.height,
-            rgba: (frame.color.iter())
-                .map(|&[r, g, b, a]| [codes.code(r), codes.code(g), codes.code(b), alpha_code(a)])
-                .collect(),
-        }
+            rgba: host_memory::collected(frame.color.iter().map(code), "a picture of 8 bits")?,
+        })
     }
 
     /// Reads a PNG or JPEG.
@@ -56,7 +63,7 @@ impl Picture {
         Ok(Self {
             width: pixels.width,
             height: pixels.height,
-            rgba: pixels.rgba8(),
+            rgba: pixels.rgba8().map_err(|e| e.in_file(path))?,
         })
     }
 
@@ -164,7 +171,7 @@ mod tests {
         assert_eq!(read.get_pixel(1, 0).0, [255, 188, 0, 255]);
         assert_eq!(read.get_pixel(0, 1).0, [0, 128, 255, 128]);
         assert_eq!(read.get_pixel(2, 1).0, [0, 0, 0, 0]);
-        assert_eq!(Picture::read(&path).unwrap(), Picture::of(&frame));
+        assert_eq!(Picture::read(&path).unwrap(), Picture::of(&frame).unwrap());
         std::fs::write(&path, "x").unwrap();
         let error = Picture::read(&path).unwrap_err().to_string();
         assert!(

@@ -5,11 +5,15 @@ use crate::file_fault;
 use crate::jpeg_end;
 use rayon::prelude::*;
 use revmap::error::Result;
+use revmap::host_memory;
 use revmap::maps::MAX_SIDE;
 use std::io::Cursor;
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
+
+/// What needs memory, in messages.
+const PICTURE: &str = "the pixels of a picture";
 
 /// Samples of 8 or of 16 bits.
 #[derive(Debug, PartialEq)]
@@ -34,7 +38,10 @@ pub(crate) struct Pixels {
 impl Pixels {
     /// Every pixel, turned by `to` from RGBA in `[0, 1]`, as stored; opaque where the file has no
     /// alpha.
-    pub fn map<T: Send>(&self, to: impl Fn([f32; 4]) -> T + Sync) -> Vec<T> {
+    pub fn map<T: Clone + Default + Send>(
+        &self,
+        to: impl Fn([f32; 4]) -> T + Sync,
+    ) -> Result<Vec<T>> {
         match &self.samples {
             Samples::Byte(v) => mapped(v, self.channels, 255.0, to),
             Samples::Word(v) => mapped(v, self.channels, 65_535.0, to),
@@ -42,45 +49,45 @@ impl Pixels {
     }
 
     /// Every pixel as RGBA of 8 bits.
-    pub fn rgba8(&self) -> Vec<[u8; 4]> {
+    pub fn rgba8(&self) -> Result<Vec<[u8; 4]>> {
         self.map(|p| p.map(|v| (v * 255.0).round() as u8))
     }
 
     /// Every pixel as RGB of 16 bits.
-    pub fn rgb16(&self) -> Vec<[u16; 3]> {
+    pub fn rgb16(&self) -> Result<Vec<[u16; 3]>> {
         self.map(|[r, g, b, _]| [r, g, b].map(|v| (v * 65_535.0).round() as u16))
     }
 
     /// The picture as its EXIF data turns it.
-    fn upright(self, exif: Option<&[u8]>) -> Self {
+    fn upright(self, exif: Option<&[u8]>) -> Result<Self> {
         let orientation = exif.map(Orientation::of_exif).unwrap_or_default();
         let (size, channels) = ([self.width, self.height], self.channels);
         let [width, height] = orientation.turned_size(size);
         let samples = match self.samples {
             samples if orientation == Orientation::default() => samples,
-            Samples::Byte(v) => Samples::Byte(orientation.turned(size, channels, &v)),
-            Samples::Word(v) => Samples::Word(orientation.turned(size, channels, &v)),
+            Samples::Byte(v) => Samples::Byte(orientation.turned(size, channels, &v)?),
+            Samples::Word(v) => Samples::Word(orientation.turned(size, channels, &v)?),
         };
-        Self {
+        Ok(Self {
             width,
             height,
             channels,
             samples,
-        }
+        })
     }
 
     /// Luminance of every pixel over black, in `[0, 1]`, as stored.
-    pub fn luminance(&self) -> Vec<f32> {
+    pub fn luminance(&self) -> Result<Vec<f32>> {
         self.map(|[r, g, b, alpha]| alpha * luminance([r, g, b]))
     }
 }
 
-fn mapped<S: Copy + Into<f32> + Sync, T: Send>(
+fn mapped<S: Copy + Into<f32> + Sync, T: Clone + Default + Send>(
     samples: &[S],
     channels: usize,
     full: f32,
     to: impl Fn([f32; 4]) -> T + Sync,
-) -> Vec<T> {
+) -> Result<Vec<T>> {
     let value = |s: S| s.into() / full;
     let pixels = samples.par_chunks_exact(channels);
     let rgba = |p: &[S]| match *p {
@@ -90,7 +97,10 @@ fn mapped<S: Copy + Into<f32> + Sync, T: Send>(
         [r, g, b, a, ..] => [r, g, b, a].map(value),
         [] => [1.0; 4], // no picture has pixels without a sample
     };
-    pixels.map(|p| to(rgba(p))).collect()
+    let mut out = host_memory::filled(pixels.len(), T::default(), PICTURE)?;
+    let both = out.par_iter_mut().zip(pixels);
+    both.for_each(|(out, p)| *out = to(rgba(p)));
+    Ok(out)
 }
 
 /// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
@@ -127,17 +137,15 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
     if bytes.starts_with(PNG) {
         let reader = Png::open(bytes).map_err(|e| broken(e.to_string()))?;
         checked(reader.size())?;
-        return reader.pixels().map_err(|e| broken(e.to_string()));
+        return reader.pixels()?.map_err(|e| broken(e.to_string()));
     }
     if bytes.starts_with(JPEG) {
         let mut reader = jpeg(bytes).map_err(|e| broken(e.to_string()))?;
         let (width, height) = reader.dimensions().unwrap_or_default();
         let (width, height) = (width as u32, height as u32); // at most 65535
         checked((width, height))?;
-        let samples = reader.decode().map_err(|e| broken(e.to_string()))?;
-        // Missing data are drawn grey, or as what stands in their place.
-        let longer = jpeg_end::lengthened(bytes).map(|b| jpeg(&b).and_then(|mut r| r.decode()));
-        if !matches!(longer, Some(Ok(same)) if same == samples) {
+        let samples = jpeg_samples(&mut reader)?.map_err(|e| broken(e.to_string()))?;
+        if !is_whole_jpeg(bytes, &samples)? {
             return Err(broken("it ends too early".to_owned()));
         }
         let pixels = Pixels {
@@ -146,7 +154,7 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
             channels: reader.output_colorspace().map_or(3, |c| c.num_components()),
             samples: Samples::Byte(samples),
         };
-        return Ok(pixels.upright(reader.exif().map(Vec::as_slice)));
+        return pixels.upright(reader.exif().map(Vec::as_slice));
     }
     Err(file_fault(format!(
         "is no picture that can be read; give a {kinds} file"
@@ -170,27 +178,35 @@ impl<'a> Png<'a> {
         self.0.info().size()
     }
 
-    pub fn pixels(mut self) -> std::result::Result<Pixels, png::DecodingError> {
+    /// The decoder's fault is within; the outer one is that of memory.
+    pub fn pixels(mut self) -> Result<std::result::Result<Pixels, png::DecodingError>> {
         // A size that overflows is that of a picture that does not fit into memory.
-        let size = self.0.output_buffer_size();
-        let mut bytes = vec![0; size.ok_or(png::DecodingError::LimitsExceeded)?];
-        let frame = self.0.next_frame(&mut bytes)?;
+        let size = self.0.output_buffer_size().unwrap_or(usize::MAX);
+        let mut bytes = host_memory::filled(size, 0, PICTURE)?;
+        let frame = match self.0.next_frame(&mut bytes) {
+            Ok(frame) => frame,
+            Err(fault) => return Ok(Err(fault)),
+        };
         bytes.truncate(frame.buffer_size());
         let samples = if frame.bit_depth == png::BitDepth::Sixteen {
             let words = bytes.as_chunks().0.iter();
-            Samples::Word(words.map(|w| u16::from_be_bytes(*w)).collect())
+            let words = words.map(|w| u16::from_be_bytes(*w));
+            Samples::Word(host_memory::collected(words, PICTURE)?)
         } else {
             Samples::Byte(bytes)
         };
         // EXIF data may follow the pixels.
-        self.0.finish()?;
+        if let Err(fault) = self.0.finish() {
+            return Ok(Err(fault));
+        }
         let pixels = Pixels {
             width: frame.width,
             height: frame.height,
             channels: frame.color_type.samples(),
             samples,
         };
-        Ok(pixels.upright(self.0.info().exif_metadata.as_deref()))
+        let exif = self.0.info().exif_metadata.as_deref();
+        pixels.upright(exif).map(Ok)
     }
 }
 
@@ -208,6 +224,28 @@ fn jpeg(bytes: &[u8]) -> std::result::Result<JpegDecoder<ZCursor<&[u8]>>, Decode
     };
     decoder.set_options(options.jpeg_set_out_colorspace(color));
     Ok(decoder)
+}
+
+/// The samples of a JPEG whose headers were read. The decoder's fault is within; the outer one is
+/// that of memory.
+fn jpeg_samples(
+    reader: &mut JpegDecoder<ZCursor<&[u8]>>,
+) -> Result<std::result::Result<Vec<u8>, DecodeErrors>> {
+    let size = reader.output_buffer_size().unwrap_or_default();
+    let mut samples = host_memory::filled(size, 0, PICTURE)?;
+    Ok(reader.decode_into(&mut samples).map(|()| samples))
+}
+
+/// Returns true if no data of the file are missing. The decoder draws missing data grey, or as what
+/// stands in their place.
+fn is_whole_jpeg(bytes: &[u8], samples: &[u8]) -> Result<bool> {
+    let Some(longer) = jpeg_end::lengthened(bytes)? else {
+        return Ok(false);
+    };
+    let Ok(mut reader) = jpeg(&longer) else {
+        return Ok(false);
+    };
+    Ok(jpeg_samples(&mut reader)?.is_ok_and(|same| same == samples))
 }
 
 #[cfg(test)]
@@ -243,8 +281,14 @@ mod tests {
                 (ours.width, ours.height, ours.channels),
                 (7, 5, number % 4 + 1)
             );
-            assert_eq!(ours.rgba8().as_flattened(), kind.to_rgba8().as_raw());
-            assert_eq!(ours.rgb16().as_flattened(), kind.to_rgb16().as_raw());
+            assert_eq!(
+                ours.rgba8().unwrap().as_flattened(),
+                kind.to_rgba8().as_raw()
+            );
+            assert_eq!(
+                ours.rgb16().unwrap().as_flattened(),
+                kind.to_rgb16().as_raw()
+            );
         }
     }
 
@@ -258,7 +302,10 @@ mod tests {
             kind.write_to(&mut file, ImageFormat::Jpeg).unwrap();
             let theirs = image::load_from_memory(file.get_ref()).unwrap();
             let ours = decode(file.get_ref(), "JPEG").unwrap();
-            assert_eq!(ours.rgba8().as_flattened(), theirs.to_rgba8().as_raw());
+            assert_eq!(
+                ours.rgba8().unwrap().as_flattened(),
+                theirs.to_rgba8().as_raw()
+            );
         }
     }
 
@@ -322,7 +369,7 @@ mod tests {
                 let file = png_with_exif(&picture, &exif, late);
                 let ours = decode(&file, "PNG").unwrap();
                 assert_eq!(
-                    ours.rgba8().as_flattened(),
+                    ours.rgba8().unwrap().as_flattened(),
                     upright(value).as_raw(),
                     "{value}"
                 );
@@ -338,7 +385,13 @@ mod tests {
             let ours = decode(&file, "JPEG").unwrap();
             let wanted = upright(value);
             assert_eq!((ours.width, ours.height), wanted.dimensions());
-            for (a, b) in ours.rgba8().as_flattened().iter().zip(wanted.as_raw()) {
+            for (a, b) in ours
+                .rgba8()
+                .unwrap()
+                .as_flattened()
+                .iter()
+                .zip(wanted.as_raw())
+            {
                 assert!(a.abs_diff(*b) < 60, "{value}");
             }
         }

@@ -64,12 +64,15 @@ impl Disc {
     /// Bakes the disc from a source and measures the map's errors.
     pub fn errors(&self, source: MapSource, rows: u32) -> Result<MapErrors> {
         let map = ShapeMap::bake(&self.polygon(1 << 16)?, &BakeOptions::new(source, rows))?;
-        Ok(self.measure(&map))
+        self.measure(&map)
     }
 
     /// Errors of a map of this disc. A binary map is measured outside only: the papers store no
     /// distances inside.
-    pub fn measure(&self, map: &ShapeMap) -> MapErrors {
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+    pub fn measure(&self, map: &ShapeMap) -> Result<MapErrors> {
         let side = f64::from(map.rows);
         let mut distance = Vec::new();
         for (k, &stored) in map.distance.iter().enumerate() {
@@ -79,7 +82,7 @@ impl Disc {
                 distance.push((f64::from(stored) - self.distance(p)) * side);
             }
         }
-        let stored = map.encode(MapFormat::Rgba8).bytes;
+        let stored = map.encode(MapFormat::Rgba8)?.bytes;
         let (mut cell, mut channels) = (Vec::new(), Vec::new());
         const AROUND: u32 = 20_000;
         for k in 0..AROUND {
@@ -93,7 +96,7 @@ impl Disc {
         let [mean, rms, max] = summary(&distance);
         let [_, gradient_rms, gradient_max] = summary(&cell);
         let [_, stored_gradient_rms, stored_gradient_max] = summary(&channels);
-        MapErrors {
+        Ok(MapErrors {
             mean,
             rms,
             max,
@@ -101,7 +104,7 @@ impl Disc {
             gradient_max,
             stored_gradient_rms,
             stored_gradient_max,
-        }
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use revmap::error::Result;
 use revmap::frame::Frame;
+use revmap::host_memory;
 use revmap::scene::Scene;
 
 /// Draws the scene through the middle of each pixel by `draw`; where `count`, a power of two, is
@@ -15,7 +16,7 @@ pub fn averaged(
     if count == 1 {
         return Ok(frame);
     }
-    let mut sums = vec![[0.0f32; 4]; frame.pixels()];
+    let mut sums = host_memory::filled(frame.pixels(), [0.0f32; 4], "the sums of samples")?;
     let mut shifted = scene.clone();
     for i in 0..count {
         let [x, y] = point(i, count);

@@ -7,8 +7,9 @@ use crate::read_back;
 use crate::target::{DEPTH, Target, color_formats};
 use ash::vk;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::frame::Frame;
+use revmap::frame::{Frame, pixel_count};
 use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::host_memory;
 use revmap::scene::{CameraFrame, Object, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
 
@@ -78,7 +79,7 @@ impl Offscreen {
     ///
     /// # Errors
     /// Errors of baking and of the scene's values ([`ErrorKind::Content`]); [`ErrorKind::TooLarge`]
-    /// for more pixels than the device takes; errors of Vulkan calls.
+    /// for more pixels than the device or a frame takes; errors of Vulkan calls.
     pub fn new(device: &Device, scene: &Scene, settings: &Settings) -> Result<Self> {
         Self::with(device, scene, settings, OffscreenOptions::default())
     }
@@ -98,6 +99,8 @@ impl Offscreen {
             samples,
             submission_ms,
         } = options;
+        // A frame holds so many; the device may draw more.
+        pixel_count(settings.width, settings.height).map_err(|e| e.at_key("size"))?;
         let planes = settings.planes;
         // Several samples smooth silhouettes by themselves.
         let settings = Settings {
@@ -250,7 +253,7 @@ impl Offscreen {
         }
         let planes = self.target.read(&self.commands)?;
         let colors = planes.first().copied().unwrap_or_default();
-        Ok(colors.as_chunks().0.to_vec())
+        host_memory::collected(colors.as_chunks().0.iter().copied(), "a picture of 8 bits")
     }
 
     pub(crate) fn check_whole(&self) -> Result<()> {

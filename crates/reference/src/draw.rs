@@ -7,6 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
+use revmap::host_memory;
 use revmap::scene::{CameraFrame, Scene};
 use revmap::settings::Settings;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,17 +31,19 @@ pub fn draw(
     let reference = Reference::new(scene)?;
     let colors = Colors::new(scene)?;
     let done = AtomicUsize::new(0);
-    let rows: Vec<Vec<(u32, [f32; 17])>> = (0..height)
+    let rows: Result<Vec<Vec<_>>> = (0..height)
         .into_par_iter()
         .map(|j| {
-            let row = (0..width)
-                .filter_map(|i| Some((i, pixel(scene, &reference, &colors, camera.pixel(i, j))?)))
-                .collect();
+            let mut row = host_memory::reserved(width as usize, "a row of the reference")?;
+            row.extend((0..width).filter_map(|i| {
+                let value = pixel(scene, &reference, &colors, camera.pixel(i, j))?;
+                Some((i, value))
+            }));
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, height as usize);
-            row
+            Ok(row)
         })
         .collect();
-    for (j, row) in rows.into_iter().enumerate() {
+    for (j, row) in rows?.into_iter().enumerate() {
         for (i, value) in row {
             let index = j * width as usize + i as usize;
             frame.set_pixel(index, value);

@@ -1,6 +1,7 @@
 //! The capabilities of each Vulkan device, and the choice of one.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::frame::MAX_PIXELS;
 use crate::gpu::device::instance::{API_VERSION, Instance, is_among};
 use crate::gpu::device::limits::lacking;
 use crate::gpu::vk::call::Call;
@@ -128,7 +129,10 @@ impl Candidate {
             flag("anisotropic filtering", self.anisotropy().is_some()),
             flag("quads of crowds as points", self.large_points()),
             ("largest map", format!("{side} texels a side")),
-            ("largest picture", format!("{width} x {height}")),
+            (
+                "largest picture",
+                format!("{width} x {height}, and {MAX_PIXELS} pixels in all"),
+            ),
         ]
         .map(|(what, which)| (what.to_owned(), which))
         .to_vec()

@@ -99,7 +99,7 @@ impl ShapeTexture {
             reach: f64::from(key.columns) / f64::from(key.rows),
         };
         let map = ShapeMap::bake(profile, &options)?;
-        let encoded = map.encode(key.format);
+        let encoded = map.encode(key.format)?;
         let format = match key.format {
             MapFormat::Rgba8 => vk::Format::R8G8B8A8_UNORM,
             MapFormat::R16 => vk::Format::R16_SFLOAT,
@@ -124,10 +124,11 @@ impl ArcTexture {
     /// Makes the lengths for a map with these facts.
     pub fn new(uploads: &mut Uploads, profile: &Arc<Profile>, facts: &MapFacts) -> Result<Self> {
         let lengths = ArcLength::new(profile)?;
-        let table = lengths.table(facts.columns, facts.rows);
+        let table = lengths.table(facts.columns, facts.rows)?;
         // Not every device has 16-bit normalised textures; all have 32-bit floats.
         let fraction = |texel: &u16| f32::from(*texel) / f32::from(u16::MAX);
-        let texels: Vec<f32> = table.texels.iter().map(fraction).collect();
+        let texels = table.texels.iter().map(fraction);
+        let texels = crate::host_memory::collected(texels, "the lengths of a profile")?;
         let size = (table.columns, table.rows);
         let bytes: &[u8] = bytemuck::cast_slice(&texels);
         let format = vk::Format::R32_SFLOAT;

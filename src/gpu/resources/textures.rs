@@ -190,7 +190,7 @@ impl Textures {
         let slopes = slope_map.map(|map| {
             let format = vk::Format::R16G16_SFLOAT;
             covering(coverings, map, || {
-                upload(uploads, "displacement map", format, &map.encode())
+                upload(uploads, "displacement map", format, &map.encode()?)
             })
         });
         let slopes = slopes.transpose()?;

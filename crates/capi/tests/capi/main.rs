@@ -77,6 +77,7 @@ mod layout;
 mod lists;
 mod pictures;
 mod programs;
+mod random;
 mod rays;
 mod recording;
 mod recording_compute;

@@ -150,7 +150,8 @@ fn the_picture_in_cpp_is_what_rust_draws() {
         &revmap_offscreen::draw(&device, &scene, &settings)
             .unwrap()
             .frame,
-    );
+    )
+    .unwrap();
     let file = std::io::BufReader::new(std::fs::File::open(&png).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
     let mut found = vec![0; reader.output_buffer_size().unwrap()];

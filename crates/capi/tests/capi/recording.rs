@@ -33,6 +33,15 @@ pub const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
 pub const RANGE: [f64; 2] = [0.1, 10.0];
 
 pub fn lend(host: &Host) -> *mut RevmapDevice {
+    lend_with(host, vk::Queue::null())
+}
+
+/// The same for pictures without a host, which submit by themselves.
+pub fn lend_with_queue(host: &Host) -> *mut RevmapDevice {
+    lend_with(host, host.queue)
+}
+
+fn lend_with(host: &Host, queue: vk::Queue) -> *mut RevmapDevice {
     let mut device = null_mut();
     // SAFETY: the host's own handles; every test destroys all that it makes before the host goes.
     unsafe {
@@ -46,7 +55,7 @@ pub fn lend(host: &Host) -> *mut RevmapDevice {
             instance: host.instance.handle(),
             physical_device: host.physical,
             device: host.device.handle(),
-            queue: vk::Queue::null(),
+            queue,
             features: &host.features,
             pipeline_cache: vk::PipelineCache::null(),
         };

@@ -79,7 +79,7 @@ fn compute_writes_what_rust_draws() {
     scene.background = BACKGROUND;
     let mut offscreen = Offscreen::new(&own, &scene, &settings).unwrap();
     offscreen.draw().unwrap();
-    let wanted = Picture::of(&offscreen.read().unwrap()).rgba;
+    let wanted = Picture::of(&offscreen.read().unwrap()).unwrap().rgba;
     let colors = &words.bytes()[4 * PIXELS..];
     assert!(colors == wanted.as_flattened(), "pixels differ");
     assert!(wanted.iter().filter(|p| p[3] == 255).count() > 3000);

@@ -7,6 +7,8 @@ mod bench_command;
 mod bench_compare;
 mod command_line;
 mod inputs;
+#[cfg(target_os = "linux")]
+mod memory;
 #[cfg(feature = "shaderc")]
 mod own_search;
 mod pictures;

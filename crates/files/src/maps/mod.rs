@@ -14,6 +14,7 @@ use crate::file_fault;
 use header::KEYWORD;
 use revmap::error::Result;
 use revmap::maps::Projection;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The projection in a file's name before its extension, in upper or lower case.
@@ -58,15 +59,15 @@ fn extension(path: &Path) -> Option<String> {
 
 /// A PNG with a header in its text.
 fn encode_png(
+    writer: impl Write,
     [width, height]: [u32; 2],
     color: png::ColorType,
     depth: png::BitDepth,
     header: &str,
     data: &[u8],
-) -> Result<Vec<u8>> {
-    let mut out = Vec::new();
-    let mut write = || -> std::result::Result<(), png::EncodingError> {
-        let mut encoder = png::Encoder::new(&mut out, width, height);
+) -> Result<()> {
+    let write = || -> std::result::Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(writer, width, height);
         encoder.set_color(color);
         encoder.set_depth(depth);
         encoder.add_text_chunk(KEYWORD.to_owned(), header.to_owned())?;
@@ -74,8 +75,7 @@ fn encode_png(
         writer.write_image_data(data)?;
         writer.finish()
     };
-    write().map_err(|e| file_fault(format!("the map cannot be written as PNG ({e})")))?;
-    Ok(out)
+    write().map_err(|e| file_fault(format!("the map cannot be written as PNG ({e})")))
 }
 
 #[cfg(test)]

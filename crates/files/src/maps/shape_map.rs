@@ -5,14 +5,18 @@ use super::source::{BINARY, binary_distances};
 use super::{encode_png, extension};
 use crate::openexr::{first_layer, layer, layer_sizes, write_layer};
 use crate::pixels::{Pixels, Png, Samples};
-use crate::{file_fault, raster, write_bytes};
+use crate::{file_fault, raster, write_atomically};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{FlatSamples, LayerAttributes, Text};
 use revmap::error::{Error, Result};
+use revmap::host_memory;
 use revmap::maps::{EncodedMap, MAX_SIDE, MapFormat, ShapeMap};
 use revmap::profile::Raster;
 use std::io::Cursor;
 use std::path::Path;
+
+/// What needs memory, in messages.
+const MAP: &str = "the texels of a map";
 
 /// Writes the map in the format of the file's extension:
 ///
@@ -27,16 +31,14 @@ use std::path::Path;
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File): another extension, or it cannot be written.
 pub fn write_shape_map(map: &ShapeMap, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
-    let bytes = match extension(path).as_deref() {
-        Some("png") => to_png(map),
-        Some("exr") => to_exr(map),
+    match extension(path).as_deref() {
+        Some("png") => write_png(map, path),
+        Some("exr") => write_exr(map, path),
         _ => Err(file_fault(
             "a shape map is written as .png (papers) or .exr (lossless); name it so",
         )),
-    };
-    bytes
-        .and_then(|b| write_bytes(path, &b))
-        .map_err(|e| e.in_file(path))
+    }
+    .map_err(|e| e.in_file(path))
 }
 
 /// Reads a map that [`write_shape_map`] wrote, or a papers' texture from elsewhere.
@@ -65,34 +67,36 @@ pub fn shape_map(path: impl AsRef<Path>) -> Result<ShapeMap> {
     read().map_err(|e: Error| e.in_file(path))
 }
 
-fn to_png(map: &ShapeMap) -> Result<Vec<u8>> {
-    let encoded = map.encode(MapFormat::Rgba8);
-    encode_png(
-        [map.columns, map.rows],
-        png::ColorType::Rgba,
-        png::BitDepth::Eight,
-        &shape_header(map, encoded.scale),
-        &encoded.bytes,
-    )
+fn write_png(map: &ShapeMap, path: &Path) -> Result<()> {
+    let encoded = map.encode(MapFormat::Rgba8)?;
+    write_atomically(path, |writer| {
+        encode_png(
+            writer,
+            [map.columns, map.rows],
+            png::ColorType::Rgba,
+            png::BitDepth::Eight,
+            &shape_header(map, encoded.scale),
+            &encoded.bytes,
+        )
+    })
 }
 
-fn to_exr(map: &ShapeMap) -> Result<Vec<u8>> {
+fn write_exr(map: &ShapeMap, path: &Path) -> Result<()> {
     let mut attributes = LayerAttributes::named("shape map");
     let header = AttributeValue::Text(Text::from(&*shape_header(map, 1.0)));
     attributes.other.insert(Text::from(KEYWORD), header);
-    let form = map.form.iter().map(|&s| f32::from(u8::from(s))).collect();
-    let channels = [("distance", map.distance.clone()), ("form", form)];
-    let mut out = Cursor::new(Vec::new());
-    write_layer(
-        layer([map.columns, map.rows], attributes, channels),
-        &mut out,
-    )
-    .map_err(|e| {
-        file_fault(format!(
-            "the map cannot be written as EXR ({e}); write a .png"
-        ))
-    })?;
-    Ok(out.into_inner())
+    let form = map.form.iter().map(|&s| f32::from(u8::from(s)));
+    let form = host_memory::collected(form, MAP)?;
+    let distance = host_memory::collected(map.distance.iter().copied(), MAP)?;
+    let channels = [("distance", distance), ("form", form)];
+    let layer = layer([map.columns, map.rows], attributes, channels);
+    write_atomically(path, |writer| {
+        write_layer(layer, writer).map_err(|e| {
+            file_fault(format!(
+                "the map cannot be written as EXR ({e}); write a .png"
+            ))
+        })
+    })
 }
 
 fn from_exr(bytes: &[u8]) -> Result<ShapeMap> {
@@ -111,7 +115,7 @@ fn from_exr(bytes: &[u8]) -> Result<ShapeMap> {
         if channel.name == *"distance" {
             distance = values;
         } else if channel.name == *"form" {
-            form = values.iter().map(|&v| v > 0.5).collect();
+            form = host_memory::collected(values.iter().map(|&v| v > 0.5), MAP)?;
         }
     }
     let texels = size.area();
@@ -139,7 +143,7 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
         .map_err(|e| file_fault(format!("is no map that can be read ({e}); bake it again")))?;
     let (columns, rows) = reader.size();
     checked_size(columns as usize, rows as usize)?;
-    let bytes = match reader.pixels() {
+    let bytes = match reader.pixels()? {
         Ok(Pixels {
             channels: 4,
             samples: Samples::Byte(bytes),
@@ -148,16 +152,17 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
         Ok(_) => return Err(no_map()),
         Err(e) => return Err(damaged(e.to_string())),
     };
-    let form: Vec<bool> = bytes.chunks_exact(4).map(|t| t[3] > 127).collect();
+    let form = bytes.chunks_exact(4).map(|t| t[3] > 127);
+    let form: Vec<bool> = host_memory::collected(form, MAP)?;
     if !form.contains(&true) || !form.contains(&false) {
         return Err(no_map());
     }
     let pixels = Raster {
         columns,
         rows,
-        coverage: form.iter().map(|&s| f32::from(u8::from(s))).collect(),
+        coverage: host_memory::collected(form.iter().map(|&s| f32::from(u8::from(s))), MAP)?,
     };
-    let mut distance = binary_distances(&pixels);
+    let mut distance = binary_distances(&pixels)?;
     let (radius, source, bounds) = match header {
         Some(header) => {
             let stored = EncodedMap {
@@ -167,7 +172,8 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
                 scale: header.number("scale")? as f32,
                 bytes,
             };
-            for ((d, outside), solid) in distance.iter_mut().zip(stored.distances()).zip(&form) {
+            let stored = stored.distances();
+            for ((d, outside), solid) in distance.iter_mut().zip(stored).zip(&form) {
                 if !solid {
                     *d = outside;
                 }

@@ -4,9 +4,14 @@ use super::transform::{NONE, squared_to_other};
 use crate::raster::{bounds, rasterize, resample, with_levels};
 use crate::trace::outline;
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::host_memory;
 use revmap::maps::{MapSource, Measured, round_down};
 use revmap::profile::{Profile, Raster};
 use std::borrow::Cow;
+
+/// What needs memory, in messages.
+const MAP: &str = "the distances of a map";
 
 /// The papers' source: exact Euclidean distance between the centres of a binary image's texels.
 ///
@@ -31,19 +36,19 @@ pub const MAP_SOURCES: [(&str, MapSource); 3] = [
     (MapSource::EXACT.name, MapSource::EXACT),
 ];
 
-fn coverage(profile: &Profile, columns: u32, rows: u32) -> Measured {
-    let seen = with_levels(rasterize(&profile.outline, columns, rows), 256);
+fn coverage(profile: &Profile, columns: u32, rows: u32) -> Result<Measured> {
+    let seen = with_levels(rasterize(&profile.outline, columns, rows)?, 256);
     let traced = Profile::new(outline(&seen), profile.radius);
     (MapSource::EXACT.measure)(&traced, columns, rows)
 }
 
-fn binary(profile: &Profile, columns: u32, rows: u32) -> Measured {
+fn binary(profile: &Profile, columns: u32, rows: u32) -> Result<Measured> {
     let raster = match &profile.raster {
         Some(r) if (r.columns, r.rows) == (columns, rows) => Cow::Borrowed(r),
-        Some(r) => Cow::Owned(resample(r, columns, rows)),
-        None => Cow::Owned(rasterize(&profile.outline, columns, rows)),
+        Some(r) => Cow::Owned(resample(r, columns, rows)?),
+        None => Cow::Owned(rasterize(&profile.outline, columns, rows)?),
     };
-    (binary_distances(&raster), bounds(&raster))
+    Ok((binary_distances(&raster)?, bounds(&raster)))
 }
 
 /// Signed distance of each texel's centre, object units. Outside: to the nearest solid texel's
@@ -51,16 +56,20 @@ fn binary(profile: &Profile, columns: u32, rows: u32) -> Measured {
 /// through the same zero: one texel less than the distance to the nearest empty texel's centre,
 /// negative. Everything beyond the right, top and bottom borders is empty; the axis at the left is
 /// not a boundary.
-pub(super) fn binary_distances(raster: &Raster) -> Vec<f32> {
-    let form: Vec<bool> = raster.coverage.par_iter().map(|&c| c > 0.5).collect();
-    let squared = squared_to_other(&form, raster.columns as usize);
+pub(super) fn binary_distances(raster: &Raster) -> Result<Vec<f32>> {
+    let form = raster.coverage.iter().map(|&c| c > 0.5);
+    let form: Vec<bool> = host_memory::collected(form, MAP)?;
+    let squared = squared_to_other(&form, raster.columns as usize)?;
     let texel = 1.0 / f64::from(raster.rows);
-    let signed = |(&squared, &solid): (&u32, &bool)| {
+    let signed = |squared: u32, solid: bool| {
         let distance = match squared {
             NONE => f64::INFINITY,
             squared => f64::from(squared).sqrt(),
         };
         round_down(if solid { 1.0 - distance } else { distance } * texel)
     };
-    squared.par_iter().zip(&form).map(signed).collect()
+    let mut out = host_memory::filled(form.len(), 0.0, MAP)?;
+    let each = out.par_iter_mut().zip(&squared).zip(&form);
+    each.for_each(|((out, &squared), &solid)| *out = signed(squared, solid));
+    Ok(out)
 }

@@ -3,8 +3,9 @@
 use super::header::Header;
 use super::{encode_png, extension};
 use crate::pixels::decode;
-use crate::{file_fault, write_bytes};
+use crate::{file_fault, write_atomically};
 use revmap::error::{Error, Result};
+use revmap::host_memory;
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
 use std::path::Path;
 
@@ -22,7 +23,7 @@ const ZERO: f32 = 32_768.0;
 pub fn color_map(path: impl AsRef<Path>) -> Result<ColorMap> {
     read(path.as_ref(), "colour map", |bytes| {
         let picture = decode(bytes, "PNG or JPEG")?;
-        ColorMap::from_texels(picture.width, picture.height, picture.rgba8())
+        ColorMap::from_texels(picture.width, picture.height, picture.rgba8()?)
     })
 }
 
@@ -39,12 +40,13 @@ pub fn displacement_map(path: impl AsRef<Path>, filter: SlopeFilter) -> Result<D
             let scale = header.number("scale")? as f32;
             let picture = decode(bytes, "PNG")?;
             let slope = |code: u16| (f32::from(code) - ZERO) / (ZERO - 1.0) * scale;
-            let texels = picture.rgb16();
-            let slopes = texels.iter().map(|p| [slope(p[0]), slope(p[1])]).collect();
+            let texels = picture.rgb16()?;
+            let slopes = texels.iter().map(|p| [slope(p[0]), slope(p[1])]);
+            let slopes = host_memory::collected(slopes, "a displacement map")?;
             return DisplacementMap::from_slopes(picture.width, picture.height, slopes);
         }
         let picture = decode(bytes, "PNG or JPEG")?;
-        let heights = picture.luminance();
+        let heights = picture.luminance()?;
         DisplacementMap::from_heights(picture.width, picture.height, &heights, filter)
     })
 }
@@ -74,18 +76,18 @@ pub fn write_displacement_map(map: &DisplacementMap, path: impl AsRef<Path>) -> 
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let code = |v: f32| (v / scale * (ZERO - 1.0) + ZERO).round() as u16;
         let texels = level.texels.iter();
-        let data: Vec<u8> = texels
-            .flat_map(|&[u, v]| [code(u), code(v), u16::MAX])
-            .flat_map(u16::to_be_bytes)
-            .collect();
-        let bytes = encode_png(
-            [level.width, level.height],
-            png::ColorType::Rgb,
-            png::BitDepth::Sixteen,
-            &format!("kind=displacement scale={scale}"),
-            &data,
-        )?;
-        write_bytes(path, &bytes)
+        let data = texels.map(|&[u, v]| [code(u), code(v), u16::MAX].map(u16::to_be_bytes));
+        let data = host_memory::collected(data, "a displacement map as PNG")?;
+        write_atomically(path, |writer| {
+            encode_png(
+                writer,
+                [level.width, level.height],
+                png::ColorType::Rgb,
+                png::BitDepth::Sixteen,
+                &format!("kind=displacement scale={scale}"),
+                data.as_flattened().as_flattened(),
+            )
+        })
     };
     write().map_err(|e: Error| e.in_file(path))
 }

@@ -11,9 +11,14 @@
 //! its left border counts: there is the axis.
 
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::host_memory;
 
 /// The result for a grid without any cell of the other value.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// What needs memory, in messages.
+const MAP: &str = "the distances of a map";
 
 /// Columns processed together: one cache line of distances per row.
 const STRIP: usize = 16;
@@ -23,22 +28,22 @@ const STRIP: usize = 16;
 ///
 /// The result is exact for grids up to 32768 cells on a side. Any number of threads gives the same
 /// result. An incomplete last row is left out.
-pub(super) fn squared_to_other(form: &[bool], columns: usize) -> Vec<u32> {
+pub(super) fn squared_to_other(form: &[bool], columns: usize) -> Result<Vec<u32>> {
     if columns == 0 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let rows = form.len() / columns;
-    let mut along_rows = vec![NONE; rows * columns];
+    let mut along_rows = host_memory::filled(rows * columns, NONE, MAP)?;
     along_rows
         .par_chunks_mut(columns)
         .zip(form.par_chunks(columns))
         .for_each(|(out, line)| count_along_row(line, out));
-    let strips: Vec<Vec<u32>> = (0..columns.div_ceil(STRIP))
+    let strips: Result<Vec<Vec<u32>>> = (0..columns.div_ceil(STRIP))
         .into_par_iter()
         .map(|s| {
             let from = s * STRIP;
             let width = STRIP.min(columns - from);
-            let mut strip = Vec::with_capacity(rows * STRIP);
+            let mut strip = host_memory::reserved(rows * STRIP, MAP)?;
             for line in along_rows.chunks_exact(columns) {
                 strip.extend_from_slice(&line[from..from + width]);
             }
@@ -47,9 +52,10 @@ pub(super) fn squared_to_other(form: &[bool], columns: usize) -> Vec<u32> {
                 let solid = |row: usize| form[row * columns + from + column];
                 envelope.transform_column(&mut strip, column, width, rows, solid);
             }
-            strip
+            Ok(strip)
         })
         .collect();
+    let strips = strips?;
     along_rows
         .par_chunks_mut(columns)
         .enumerate()
@@ -58,7 +64,7 @@ pub(super) fn squared_to_other(form: &[bool], columns: usize) -> Vec<u32> {
                 piece.copy_from_slice(&strip[row * piece.len()..][..piece.len()]);
             }
         });
-    along_rows
+    Ok(along_rows)
 }
 
 /// Distance along the row to the nearest cell of the other value; [`NONE`] if the row has none.
@@ -166,6 +172,7 @@ impl Envelope {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use proptest::prelude::*;
 
@@ -207,7 +214,7 @@ mod tests {
             let rows = noise.len().div_ceil(columns);
             let form: Vec<bool> =
                 (0..rows * columns).map(|k| noise[k % noise.len()] < density * density).collect();
-            prop_assert_eq!(squared_to_other(&form, columns), brute_force(&form, columns));
+            prop_assert_eq!(squared_to_other(&form, columns).unwrap(), brute_force(&form, columns));
         }
 
         /// The reference result searches all of a few solid pixels in a large picture.
@@ -222,7 +229,7 @@ mod tests {
             for (x, y) in &spots {
                 form[y * columns + x] = true;
             }
-            for (k, ours) in squared_to_other(&form, columns).into_iter().enumerate() {
+            for (k, ours) in squared_to_other(&form, columns).unwrap().into_iter().enumerate() {
                 let (x, y) = (k % columns, k / columns);
                 let to = |&(u, v): &(usize, usize)| u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2);
                 if !form[k] {
@@ -234,9 +241,9 @@ mod tests {
 
     #[test]
     fn one_value_alone_meets_the_borders() {
-        assert_eq!(squared_to_other(&[false; 12], 4), [NONE; 12]);
-        assert_eq!(squared_to_other(&[], 4), []);
-        let solid = squared_to_other(&[true; 9], 3);
+        assert_eq!(squared_to_other(&[false; 12], 4).unwrap(), [NONE; 12]);
+        assert_eq!(squared_to_other(&[], 4).unwrap(), []);
+        let solid = squared_to_other(&[true; 9], 3).unwrap();
         assert_eq!(solid, [1, 1, 1, 4, 4, 1, 1, 1, 1]);
     }
 
@@ -245,7 +252,7 @@ mod tests {
         let columns = 30_000;
         let mut form = vec![false; columns * 3];
         form[0] = true;
-        let d = squared_to_other(&form, columns);
+        let d = squared_to_other(&form, columns).unwrap();
         assert_eq!(d[columns * 3 - 1], 29_999 * 29_999 + 4);
     }
 

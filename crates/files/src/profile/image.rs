@@ -7,7 +7,11 @@ use crate::pixels::{decode, luminance};
 use crate::trace::{trace, trace_split};
 use rayon::prelude::*;
 use revmap::error::Result;
+use revmap::host_memory;
 use revmap::profile::{Profile, Raster};
+
+/// What needs memory, in messages.
+const PICTURE: &str = "the pixels of a picture";
 
 /// Files that profiles are read from.
 const KINDS: &str = "PNG, JPEG or SVG";
@@ -35,26 +39,35 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     let dark = picture.map(|[r, g, b, alpha]| {
         let grey = luminance([r, g, b]);
         alpha * if options.invert { grey } else { 1.0 - grey }
-    });
+    })?;
+    // What hints need; the picture is dropped before the next large list.
+    let solid = dark.iter().map(|&d| d > options.edge());
+    let solid = host_memory::collected(solid, PICTURE)?;
+    let opaque = picture.map(|[.., alpha]| alpha > 0.5)?;
+    drop(picture);
     // The axis is an edge of columns, or it splits the first column that is used.
     let halves = (2.0 * options.axis.fraction() * f64::from(width)).round() as u32;
     let halves = halves.min(2 * width - 2);
     let (first, split) = (halves / 2, !halves.is_multiple_of(2));
-    let rows = dark.par_chunks_exact(width as usize);
-    let half = rows.flat_map_iter(|row| row[first as usize..].iter().copied());
+    let columns = width - first;
+    let mut half = host_memory::reserved(columns as usize * height as usize, PICTURE)?;
+    for row in dark.chunks_exact(width as usize) {
+        half.extend_from_slice(&row[first as usize..]);
+    }
+    drop(dark);
     let half_plane = Raster {
-        columns: width - first,
+        columns,
         rows: height,
-        coverage: half.collect(),
+        coverage: half,
     };
-    let raster = options.apply(half_plane, split);
+    let raster = options.apply(half_plane, split)?;
     if raster.coverage.par_iter().all(|&c| c > 0.5) {
         return Err(full_fault("image"));
     }
-    let mut profile = trace_split(raster.clone(), split)?;
+    let coverage = host_memory::collected(raster.coverage.iter().copied(), PICTURE)?;
+    let traced = Raster { coverage, ..raster };
+    let mut profile = trace_split(traced, split)?;
     let of_form = || {
-        let solid: Vec<bool> = dark.par_iter().map(|&d| d > options.edge()).collect();
-        let opaque = picture.map(|[.., alpha]| alpha > 0.5);
         let axis_at = 0.5 * f64::from(halves);
         let beside = symmetry::hint(&solid, width as usize, axis_at, options.axis);
         let hints = [beside, transparency::hint(&solid, &opaque, options.invert)];
@@ -70,7 +83,7 @@ fn baked(bytes: &[u8], header: &Header) -> Result<Profile> {
     let raster = Raster {
         columns: picture.width,
         rows: picture.height,
-        coverage: picture.map(|[.., alpha]| alpha),
+        coverage: picture.map(|[.., alpha]| alpha)?,
     };
     Ok(Profile {
         radius: header.number("radius")?,

@@ -2,6 +2,8 @@
 
 use crate::trace::roughness;
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::host_memory;
 use revmap::profile::Raster;
 
 /// An outline that noise moves by this many texels (rms) or more is rough.
@@ -37,7 +39,7 @@ impl Default for Smooth {
 
 impl Smooth {
     /// Blurs a picture's right half. `split`: the axis is the middle of column 0.
-    pub(super) fn apply(self, raster: &mut Raster, split: bool) {
+    pub(super) fn apply(self, raster: &mut Raster, split: bool) -> Result<()> {
         let pixels = match self {
             Self::Pixels(pixels) => pixels,
             Self::Auto => match roughness(raster, split) {
@@ -46,22 +48,24 @@ impl Smooth {
             },
         };
         if pixels > 0.0 {
-            blur(raster, pixels, split);
+            blur(raster, pixels, split)?;
         }
+        Ok(())
     }
 }
 
 /// Blurs by a Gaussian. The blur continues the picture with its mirror image left of the axis, and
 /// with its border pixels beyond the other borders.
-fn blur(raster: &mut Raster, sigma: f64, split: bool) {
+fn blur(raster: &mut Raster, sigma: f64, split: bool) -> Result<()> {
     let reach = (3.0 * sigma).ceil() as isize;
     let weights: Vec<f32> = (-reach..=reach)
         .map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp() as f32)
         .collect();
     let total: f32 = weights.iter().sum();
     let (columns, rows) = (raster.columns as usize, raster.rows as usize);
+    let pixels = raster.coverage.len();
+    let mut across = host_memory::filled(pixels, 0.0f32, "the pixels of a blurred picture")?;
     let before = std::mem::take(&mut raster.coverage);
-    let mut across = vec![0.0f32; before.len()];
     let mirrored = |i: isize| match i {
         0.. => i as usize,
         _ if split => -i as usize,
@@ -91,6 +95,7 @@ fn blur(raster: &mut Raster, sigma: f64, split: bool) {
             }
         });
     raster.coverage = down;
+    Ok(())
 }
 
 #[cfg(test)]

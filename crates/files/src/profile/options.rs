@@ -139,7 +139,7 @@ impl ProfileOptions {
 
     /// The darkness of a picture's half-plane as coverage, with the threshold at one half and noise
     /// blurred away. `split`: the axis is the middle of column 0.
-    pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Raster {
+    pub(super) fn apply(&self, mut raster: Raster, split: bool) -> Result<Raster> {
         let edge = self.edge();
         let (below, above) = (0.5 / edge, 0.5 / (1.0 - edge));
         raster.coverage.par_iter_mut().for_each(|c| {
@@ -151,8 +151,8 @@ impl ProfileOptions {
                 };
             }
         });
-        self.smooth.apply(&mut raster, split);
-        raster
+        self.smooth.apply(&mut raster, split)?;
+        Ok(raster)
     }
 }
 

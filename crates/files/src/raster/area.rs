@@ -7,12 +7,16 @@
 //! is that of the boundary plus one pass over the pixels.
 
 use rayon::prelude::*;
+use revmap::error::Result;
+use revmap::host_memory;
 use revmap::profile::{Outline, Raster};
 
 /// Coverage on a grid of `columns x rows` square pixels of side `1 / rows`, with the axis at
 /// its left edge and `z = 1` at its top. Parts of the outline beyond the grid are cut off.
-#[must_use]
-pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Raster {
+///
+/// # Errors
+/// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Result<Raster> {
     let (width, height) = (columns as usize, rows as usize);
     let side = f64::from(rows);
     // Segments in pixels with y downwards, sorted into the rows they touch.
@@ -29,13 +33,13 @@ pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Raster {
             bin.push([x0, y0, x1, y1]);
         }
     }
-    let mut coverage = vec![0.0; width * height];
+    let mut coverage = host_memory::filled(width * height, 0.0, super::PIXELS)?;
     if width == 0 {
-        return Raster {
+        return Ok(Raster {
             columns,
             rows,
             coverage,
-        };
+        });
     }
     coverage
         .par_chunks_mut(width)
@@ -55,11 +59,11 @@ pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Raster {
                 *value = total.clamp(0.0, 1.0) as f32;
             }
         });
-    Raster {
+    Ok(Raster {
         columns,
         rows,
         coverage,
-    }
+    })
 }
 
 /// Adds the part of a segment inside the row `[top, top + 1]` to the row's differences.
@@ -115,6 +119,7 @@ fn spread(sums: &mut [f64], x0: f64, x1: f64, height: f64) {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use glam::DVec2;
     use proptest::prelude::*;
@@ -133,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_rectangle_covers_what_it_covers() {
-        let raster = rasterize(&square([0.125, 0.3125], [0.5, 0.875]), 4, 4);
+        let raster = rasterize(&square([0.125, 0.3125], [0.5, 0.875]), 4, 4).unwrap();
         let expected = [
             [0.25, 0.5, 0.0, 0.0],
             [0.5, 1.0, 0.0, 0.0],
@@ -145,7 +150,7 @@ mod tests {
 
     #[test]
     fn what_lies_beyond_the_grid_is_cut_off() {
-        let raster = rasterize(&square([0.0, -3.0], [7.0, 9.0]), 3, 5);
+        let raster = rasterize(&square([0.0, -3.0], [7.0, 9.0]), 3, 5).unwrap();
         assert!(raster.coverage.iter().all(|&c| c == 1.0));
     }
 
@@ -159,7 +164,7 @@ mod tests {
                 points.reverse();
             }
             let outline = Outline { loops: vec![points] };
-            let raster = rasterize(&outline, 7, 7);
+            let raster = rasterize(&outline, 7, 7).unwrap();
             let sum: f64 = raster.coverage.iter().map(|&c| f64::from(c)).sum();
             prop_assert!((sum / 49.0 - outline.area()).abs() < 1e-5);
             let n = 24;

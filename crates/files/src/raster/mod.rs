@@ -7,20 +7,27 @@ pub use area::rasterize;
 use crate::trace;
 use rayon::prelude::*;
 use revmap::error::Result;
+use revmap::host_memory;
 use revmap::maps::Bounds;
 use revmap::profile::{Profile, Raster};
 
+/// What needs memory, in messages.
+const PIXELS: &str = "the pixels of an outline";
+
 /// Coverage on another grid of square pixels, `rows` to the object unit. Each new pixel is the
 /// mean, by area, of the old pixels that it covers. Everything beyond the picture is empty.
-#[must_use]
-pub fn resample(raster: &Raster, columns: u32, rows: u32) -> Raster {
-    let mut coverage = vec![0.0; columns as usize * rows as usize];
+///
+/// # Errors
+/// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+pub fn resample(raster: &Raster, columns: u32, rows: u32) -> Result<Raster> {
+    let pixels = columns as usize * rows as usize;
+    let mut coverage = host_memory::filled(pixels, 0.0, PIXELS)?;
     if coverage.is_empty() || raster.coverage.is_empty() {
-        return Raster {
+        return Ok(Raster {
             columns,
             rows,
             coverage,
-        };
+        });
     }
     let (width, ratio) = (
         raster.columns as usize,
@@ -43,11 +50,11 @@ pub fn resample(raster: &Raster, columns: u32, rows: u32) -> Raster {
             *value = (sum / (ratio * ratio)).clamp(0.0, 1.0) as f32;
         }
     });
-    Raster {
+    Ok(Raster {
         columns,
         rows,
         coverage,
-    }
+    })
 }
 
 /// Coverage in `levels` even steps, as a picture stores it: 256 for 8 bits, 2 for a binary
@@ -67,7 +74,7 @@ pub fn with_levels(mut raster: Raster, levels: u16) -> Raster {
 /// # Errors
 /// The errors of [`trace`](crate::trace()).
 pub fn pictured(profile: &Profile, columns: u32, rows: u32, levels: u16) -> Result<Profile> {
-    let seen = rasterize(&profile.outline, columns, rows);
+    let seen = rasterize(&profile.outline, columns, rows)?;
     Ok(Profile {
         radius: profile.radius,
         ..trace(with_levels(seen, levels))?
@@ -111,6 +118,7 @@ fn covered(k: usize, ratio: f64, length: usize) -> impl Iterator<Item = (usize, 
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn ramp() -> Raster {
@@ -127,13 +135,13 @@ mod tests {
         let total = |r: &Raster| {
             r.coverage.iter().map(|&c| f64::from(c)).sum::<f64>() / f64::from(r.rows).powi(2)
         };
-        assert_eq!(resample(&r, 6, 4), r);
+        assert_eq!(resample(&r, 6, 4).unwrap(), r);
         for rows in [1, 3, 5, 8, 10, 17, 64] {
             // Wide enough for the whole picture, and beyond it.
-            let resampled = resample(&r, rows * 2, rows);
+            let resampled = resample(&r, rows * 2, rows).unwrap();
             assert!((total(&resampled) - total(&r)).abs() < 1e-6, "{rows}");
         }
-        let double = resample(&r, 12, 8);
+        let double = resample(&r, 12, 8).unwrap();
         assert_eq!(double.coverage[13], r.coverage[0]);
         assert_eq!(double.coverage[14], r.coverage[1]);
     }
@@ -145,7 +153,7 @@ mod tests {
             rows: 2,
             coverage: vec![1.0; 4],
         };
-        let wide = resample(&full, 5, 2);
+        let wide = resample(&full, 5, 2).unwrap();
         assert_eq!(wide.coverage, [1.0, 1.0, 0.0, 0.0, 0.0].repeat(2));
     }
 

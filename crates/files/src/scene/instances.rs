@@ -5,6 +5,7 @@ use super::decoded;
 use crate::{content_fault, file_fault};
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
+use revmap::host_memory;
 use revmap::scene::Placement;
 use std::path::Path;
 
@@ -26,8 +27,8 @@ pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let bytes = std::fs::read(file)
         .map_err(|e| file_fault(format!("cannot be read ({e}); give a CSV file")).in_file(file))?;
     let no_text = || file_fault("is no text in UTF-8; save it as CSV in UTF-8");
-    let text = decoded(&bytes).ok_or_else(no_text);
-    text.and_then(|text| parse(&text))
+    decoded(&bytes)
+        .and_then(|text| parse(&text.ok_or_else(no_text)?))
         .map_err(|e| e.in_file(file))
 }
 
@@ -61,7 +62,8 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
             continue;
         }
         let read = row(line, order.as_ref()).and_then(|copy| copy.check().map(|()| copy));
-        copies.push(read.map_err(at_line)?);
+        let read = read.map_err(at_line)?;
+        host_memory::push(&mut copies, read, "the copies of an object")?;
         if copies.len() > MAX_COPIES {
             return Err(content_fault(format!(
                 "holds more than {MAX_COPIES} copies, the most of one object; give the rest to another [[object]]"
@@ -77,42 +79,36 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
 }
 
 /// The fields of a line, without the quotes that some programs put about names.
-fn fields(line: &str) -> Vec<&str> {
+fn fields(line: &str) -> impl Iterator<Item = &str> {
     fn bare(field: &str) -> &str {
         let field = field.trim();
         let inner = field.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
         inner.unwrap_or(field).trim()
     }
-    line.split(',').map(bare).collect()
+    line.split(',').map(bare)
 }
 
 /// Returns true for a line with the name of a column, or of words alone.
 fn is_heading(line: &str) -> bool {
-    let is_word = |field: &&str| field.parse::<f64>().is_err();
-    let is_name = |field: &&str| NAMES.iter().any(|name| name.eq_ignore_ascii_case(field));
-    let fields = fields(line);
-    fields.iter().all(|field| is_word(field)) || fields.iter().any(|field| is_name(field))
+    let is_word = |field: &str| field.parse::<f64>().is_err();
+    let is_name = |field: &str| NAMES.iter().any(|name| name.eq_ignore_ascii_case(field));
+    fields(line).all(is_word) || fields(line).any(is_name)
 }
 
 /// The column of each of [`NAMES`].
 fn heading(line: &str) -> Result<[usize; COLUMNS]> {
-    let fields = fields(line);
-    let found = |name: &str| {
-        fields
-            .iter()
-            .position(|field| field.eq_ignore_ascii_case(name))
-    };
+    let found = |name: &str| fields(line).position(|field| field.eq_ignore_ascii_case(name));
     let columns: Vec<usize> = NAMES.iter().filter_map(|name| found(name)).collect();
     let missing = || {
         let names = NAMES.iter().filter(|name| found(name).is_none());
         names.copied().collect::<Vec<_>>().join(", ")
     };
-    let stranger = (0..fields.len()).find(|column| !columns.contains(column));
+    let mut numbered = fields(line).enumerate();
+    let stranger = numbered.find(|(column, _)| !columns.contains(column));
     match (columns.as_slice().try_into(), stranger) {
         (Ok(columns), None) => Ok(columns),
-        (_, Some(column)) => Err(content_fault(format!(
-            "the heading has a column {:?} that is not known or stands there twice; the columns are {ALL}",
-            fields[column]
+        (_, Some((_, field))) => Err(content_fault(format!(
+            "the heading has a column {field:?} that is not known or stands there twice; the columns are {ALL}"
         ))),
         (Err(_), None) => Err(content_fault(format!(
             "the heading lacks {}; the columns are {ALL}",
@@ -123,15 +119,14 @@ fn heading(line: &str) -> Result<[usize; COLUMNS]> {
 
 /// A row, whose columns have the usual order or the one given.
 fn row(line: &str, order: Option<&[usize; COLUMNS]>) -> Result<Placement> {
-    let fields = fields(line);
     let wrong_count =
         |count: String, remedy: &str| content_fault(format!("has {count}{remedy}: {ALL}"));
     let mut read = [0.0; COLUMNS];
-    for (slot, field) in read.iter_mut().zip(&fields) {
+    for (slot, field) in read.iter_mut().zip(fields(line)) {
         let number = field.parse();
         *slot = number.map_err(|_| content_fault(format!("{field:?} is not a number")))?;
     }
-    match fields.len() {
+    match fields(line).count() {
         COLUMNS => {}
         n @ ..COLUMNS => return Err(wrong_count(format!("{n} values"), "; give 10")),
         _ => return Err(wrong_count(format!("more than {COLUMNS} values"), "")),

@@ -15,11 +15,12 @@ pub use keys::decimal_comma;
 pub use warnings::warnings;
 
 use crate::profile::is_profile;
-use crate::{ProfileOptions, Smooth, file_fault};
+use crate::{ProfileOptions, Smooth, file_fault, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::{Camera, Scene};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -60,7 +61,8 @@ impl SceneFile {
         }
         let no_text =
             || file_fault("is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it");
-        let text = decoded(&bytes).ok_or_else(no_text);
+        let text = decoded(&bytes).map_err(|e| e.in_file(file))?;
+        let text = text.ok_or_else(no_text);
         match text.and_then(|text| Self::parse(&text, folder)) {
             Ok(scene) if !scene.root.is_empty() || !is_named_profile(file) => Ok(Self {
                 file: Some(file.to_owned()),
@@ -165,20 +167,18 @@ fn is_named_profile(file: &Path) -> bool {
 }
 
 /// The text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one.
-fn decoded(bytes: &[u8]) -> Option<String> {
-    let wide = |read: fn([u8; 2]) -> u16| {
-        let (pairs, rest) = bytes.as_chunks();
-        let units: Vec<u16> = pairs.iter().skip(1).map(|pair| read(*pair)).collect();
-        rest.is_empty()
-            .then(|| String::from_utf16(&units).ok())
-            .flatten()
+fn decoded(bytes: &[u8]) -> Result<Option<Cow<'_, str>>> {
+    let wide = |units: &[u8], read| {
+        let (units, rest) = units.as_chunks();
+        let text = text::of_utf16(units, read)?;
+        Ok(text.filter(|_| rest.is_empty()).map(Cow::Owned))
     };
     match bytes {
-        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
-        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        [0xff, 0xfe, units @ ..] => wide(units, u16::from_le_bytes),
+        [0xfe, 0xff, units @ ..] => wide(units, u16::from_be_bytes),
         _ => {
             let plain = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-            String::from_utf8(plain.to_vec()).ok()
+            Ok(std::str::from_utf8(plain).ok().map(Cow::Borrowed))
         }
     }
 }

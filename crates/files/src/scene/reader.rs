@@ -15,6 +15,7 @@ use revmap::scene::{
     Texturing,
 };
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Table;
@@ -257,8 +258,14 @@ impl Reader {
                         self.opaque_maps.clear();
                     }
                     let key = (file, color.map(f32::to_bits));
-                    let opaque = self.opaque_maps.entry(key);
-                    opaque.or_insert_with(|| Arc::new(map.over(color))).clone()
+                    match self.opaque_maps.entry(key) {
+                        Entry::Occupied(known) => known.get().clone(),
+                        Entry::Vacant(new) => {
+                            let opaque = map.over(color);
+                            let opaque = opaque.map_err(|e| e.at_key(keys.place("color_map")));
+                            new.insert(Arc::new(opaque?)).clone()
+                        }
+                    }
                 }
             });
         }

@@ -51,11 +51,11 @@ fn check(profile: &Profile) {
 fn disc_errors(change: impl Fn(&mut Raster)) -> (f64, f64) {
     let disc = Disc::default();
     let polygon = disc.polygon(1 << 14).unwrap();
-    let mut raster = with_levels(rasterize(&polygon.outline, 128, 128), 256);
+    let mut raster = with_levels(rasterize(&polygon.outline, 128, 128).unwrap(), 256);
     change(&mut raster);
     let profile = trace(raster).unwrap();
     let map = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 128)).unwrap();
-    let e = disc.measure(&map);
+    let e = disc.measure(&map).unwrap();
     (e.rms, e.max)
 }
 

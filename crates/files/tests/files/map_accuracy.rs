@@ -52,12 +52,12 @@ fn planted_errors_are_found() {
     let disc = Disc::default();
     let profile = disc.polygon(1 << 12).unwrap();
     let good = ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 256)).unwrap();
-    let clean = disc.measure(&good);
+    let clean = disc.measure(&good).unwrap();
     let mut shifted = good.clone();
     for d in &mut shifted.distance {
         *d += 0.25 / 256.0;
     }
-    let e = disc.measure(&shifted);
+    let e = disc.measure(&shifted).unwrap();
     assert!((e.mean - clean.mean - 0.25).abs() < 1e-4 && (e.rms - 0.25).abs() < 1e-2);
     // A field that leans to the right by s turns gradients by s sin(phi): s / sqrt(2) in the mean
     // square.
@@ -66,7 +66,7 @@ fn planted_errors_are_found() {
     for (k, d) in leaning.distance.iter_mut().enumerate() {
         *d += (lean * ((k % 256) as f64 + 0.5) / 256.0) as f32;
     }
-    let e = disc.measure(&leaning);
+    let e = disc.measure(&leaning).unwrap();
     assert!((e.gradient_rms - 4.0 / 2f64.sqrt()).abs() < 0.1, "{e:?}");
     assert!((e.gradient_max - 4.0).abs() < 0.4, "{e:?}");
 }

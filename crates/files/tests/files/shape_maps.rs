@@ -123,9 +123,9 @@ fn balls() -> Vec<ShapeMap> {
 #[test]
 fn a_stored_distance_never_exceeds_the_true_one() {
     for map in balls() {
-        let half = map.encode(MapFormat::R16);
-        let single = map.encode(MapFormat::R32);
-        let byte = map.encode(MapFormat::Rgba8);
+        let half = map.encode(MapFormat::R16).unwrap();
+        let single = map.encode(MapFormat::R32).unwrap();
+        let byte = map.encode(MapFormat::Rgba8).unwrap();
         assert_eq!(half.bytes.len(), map.distance.len() * 2);
         let [half, single, bytes] = [half, single, byte.clone()].map(|e| e.distances());
         for (k, &d) in map.distance.iter().enumerate() {
@@ -149,7 +149,7 @@ fn a_stored_distance_never_exceeds_the_true_one() {
 fn gradients_point_away_from_the_middle_of_a_ball() {
     for map in balls() {
         let g = map.gradients();
-        for (k, [gr, gz]) in g.into_iter().enumerate() {
+        for (k, [gr, gz]) in g.enumerate() {
             let (i, j) = (k % map.columns as usize, k / map.columns as usize);
             let r = (i as f64 + 0.5) * map.texel();
             let z = 1.0 - (j as f64 + 0.5) * map.texel();
@@ -169,7 +169,7 @@ fn gradients_point_away_from_the_middle_of_a_ball() {
 #[test]
 fn a_raster_has_the_same_lengths() {
     let cone = Profile::polygon(&[[0.0, 0.1], [0.4, 0.1], [0.0, 0.9]], 0.5).unwrap();
-    let picture = trace(rasterize(&cone.outline, 128, 256)).unwrap();
+    let picture = trace(rasterize(&cone.outline, 128, 256).unwrap()).unwrap();
     let by_pixels = ArcLength::new(&picture).unwrap();
     let exact = ArcLength::new(&cone).unwrap();
     for k in 1..20 {

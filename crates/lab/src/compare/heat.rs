@@ -129,7 +129,7 @@ pub fn heat_sheet(reference: &Frame, frame: &Frame, options: &CompareOptions) ->
     )?;
     let maps = Heat::ALL.map(|kind| heat_map(reference, frame, options, kind));
     let mut tiles: Vec<Picture> = maps.into_iter().collect::<Result<_>>()?;
-    tiles.push(Picture::of(frame));
+    tiles.push(Picture::of(frame)?);
     Ok(tiled(&tiles, 3, 0))
 }
 

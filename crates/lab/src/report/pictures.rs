@@ -73,7 +73,7 @@ impl Album {
             self.shown.push(view);
             let widest = if many { NARROW } else { WIDEST };
             let caption = format!("{name}: the reference");
-            self.keep((view, widest), name, &Picture::of(seen.truth), caption)?;
+            self.keep((view, widest), name, &Picture::of(seen.truth)?, caption)?;
         }
         let place = self.shown.iter().position(|v| *v == view).unwrap_or(0);
         let heated = if many { 1 } else { HEATED_VIEWS };
@@ -196,7 +196,7 @@ impl Sheets {
             let name = format!("antialiasing-{view}-{}", settings.stage.name());
             self.name = self.files.add(&name) + ".png";
             self.of = of;
-            self.truth = Some(Picture::of(seen.truth));
+            self.truth = Some(Picture::of(seen.truth)?);
         }
         if settings.method == Method::DEFAULT && settings.edges == Edges::OneRay {
             let flip = flip_map(seen.truth, seen.frame, PIXELS_PER_DEGREE);
@@ -204,7 +204,7 @@ impl Sheets {
             let size = [seen.frame.width, seen.frame.height].map(|side| side as usize);
             self.worst = worst_part(&flip, size, PART, PART).1;
         }
-        self.pictures.push(Picture::of(seen.frame));
+        self.pictures.push(Picture::of(seen.frame)?);
         Ok(())
     }
 

@@ -136,7 +136,7 @@ pub fn run(
             write_text(&plan.folder.join(file), &step.scene)?;
             let scene = step.read(plan.folder)?;
             let truth = Truth::new(&scene, &step)?;
-            let reference = Picture::of(&truth.frame);
+            let reference = Picture::of(&truth.frame)?;
             for &solver in plan.solvers {
                 for mut one in both_stages(device, &step, &scene, &truth, solver)? {
                     if let (true, Ok((_, faults, judged))) = (case.motion, &mut one.result) {
@@ -163,7 +163,7 @@ pub fn run(
                         judged,
                     });
                     if let Ok((frame, ..)) = one.result {
-                        let picture = Picture::of(&frame);
+                        let picture = Picture::of(&frame)?;
                         let spot = Spot::worst(&picture, &reference);
                         if shown.as_ref().is_none_or(|shown| spot.seen > shown.seen) {
                             let strip = spot.strip(&picture, &reference, &truth.heat(&frame)?);

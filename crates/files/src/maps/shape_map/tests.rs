@@ -68,7 +68,7 @@ fn a_foreign_texture_is_measured_from_its_form() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("foreign.png");
     let ours = map(BINARY);
-    let texels = ours.encode(MapFormat::Rgba8).bytes;
+    let texels = ours.encode(MapFormat::Rgba8).unwrap().bytes;
     image::RgbaImage::from_raw(ours.columns, ours.rows, texels)
         .unwrap()
         .save(&file)

@@ -17,7 +17,7 @@ fn vase(waves: [f64; 2], phase: f64) -> Raster {
     });
     let points: Vec<[f64; 2]> = wall.chain([[0.0, 0.95], [0.0, 0.05]]).collect();
     let polygon = Profile::polygon(&points, 0.4).unwrap();
-    rasterize(&polygon.outline, ROWS * 2 / 5, ROWS)
+    rasterize(&polygon.outline, ROWS * 2 / 5, ROWS).unwrap()
 }
 
 /// The picture of a half profile in greys, `shade` applied to each.

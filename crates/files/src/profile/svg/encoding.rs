@@ -1,12 +1,15 @@
 //! The bytes of a drawing as text: gzip, UTF-8, UTF-16 and the encodings of one byte per letter.
 
 use crate::content_fault;
+use crate::text::{ReadUnit, TEXT, of_latin1, of_utf16};
 use flate2::read::GzDecoder;
 use revmap::error::Result;
+use revmap::host_memory;
+use std::borrow::Cow;
 use std::io::Read;
 
 /// Most bytes that a compressed drawing may unpack to.
-const MOST_UNPACKED: u64 = 1 << 28;
+const MOST_UNPACKED: usize = 1 << 28;
 /// The first bytes of a gzip file.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
@@ -19,40 +22,39 @@ pub(in crate::profile) fn is_markup(bytes: &[u8]) -> bool {
     text.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'<')
 }
 
-/// The text of a drawing.
-pub(super) fn text(bytes: &[u8]) -> Result<String> {
+/// The bytes of a drawing, unpacked if they are gzip.
+pub(super) fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
     if !bytes.starts_with(&GZIP) {
-        return decoded(bytes);
+        return Ok(Cow::Borrowed(bytes));
     }
     let mut unpacked = Vec::new();
-    let mut reader = GzDecoder::new(bytes).take(MOST_UNPACKED + 1);
-    reader
-        .read_to_end(&mut unpacked)
-        .map_err(|e| super::damaged(&e))?;
-    if unpacked.len() as u64 > MOST_UNPACKED {
-        return Err(content_fault(
-            "the drawing unpacks to more than 256 MiB; save it smaller",
-        ));
+    let mut reader = GzDecoder::new(bytes);
+    let mut piece = [0; 1 << 14];
+    loop {
+        let count = reader.read(&mut piece).map_err(|e| super::damaged(&e))?;
+        if count == 0 {
+            return Ok(Cow::Owned(unpacked));
+        }
+        host_memory::extend(&mut unpacked, &piece[..count], TEXT)?;
+        if unpacked.len() > MOST_UNPACKED {
+            return Err(content_fault(
+                "the drawing unpacks to more than 256 MiB; save it smaller",
+            ));
+        }
     }
-    decoded(&unpacked)
 }
 
-fn decoded(bytes: &[u8]) -> Result<String> {
-    if let Some((big_endian, mark)) = wide(bytes) {
-        let units = bytes[mark..].chunks_exact(2).map(|pair| {
-            let pair = [pair[0], pair[1]];
-            if big_endian {
-                u16::from_be_bytes(pair)
-            } else {
-                u16::from_le_bytes(pair)
-            }
-        });
-        let letters: std::result::Result<String, _> = char::decode_utf16(units).collect();
-        return letters.map_err(|_| not_utf8("is damaged UTF-16"));
+/// The text of a drawing.
+pub(super) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
+    if let Some((read, mark)) = wide(bytes) {
+        let text = of_utf16(bytes[mark..].as_chunks().0, read)?;
+        return text
+            .map(Cow::Owned)
+            .ok_or_else(|| not_utf8("is damaged UTF-16"));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let wrong = match std::str::from_utf8(bytes) {
-        Ok(text) => return Ok(text.to_owned()),
+        Ok(text) => return Ok(Cow::Borrowed(text)),
         Err(e) => e,
     };
     match declared(bytes).as_deref() {
@@ -62,7 +64,7 @@ fn decoded(bytes: &[u8]) -> Result<String> {
         ) => {
             // These encodings differ from Unicode in 0x80 to 0x9f and eight letters, which occur
             // only in names and comments.
-            Ok(bytes.iter().map(|&b| char::from(b)).collect())
+            Ok(Cow::Owned(of_latin1(bytes)?.unwrap_or_default()))
         }
         Some(other) if !other.starts_with("utf-8") => {
             Err(not_utf8(&format!("is written in {other}")))
@@ -74,13 +76,13 @@ fn decoded(bytes: &[u8]) -> Result<String> {
     }
 }
 
-/// `(is big endian, bytes of the mark)` of UTF-16.
-fn wide(bytes: &[u8]) -> Option<(bool, usize)> {
+/// How a unit of UTF-16 is read, and the bytes of the mark.
+fn wide(bytes: &[u8]) -> Option<(ReadUnit, usize)> {
     match bytes {
-        [0xff, 0xfe, ..] => Some((false, 2)),
-        [0xfe, 0xff, ..] => Some((true, 2)),
-        [b'<', 0, _, 0, ..] => Some((false, 0)),
-        [0, b'<', 0, _, ..] => Some((true, 0)),
+        [0xff, 0xfe, ..] => Some((u16::from_le_bytes, 2)),
+        [0xfe, 0xff, ..] => Some((u16::from_be_bytes, 2)),
+        [b'<', 0, _, 0, ..] => Some((u16::from_le_bytes, 0)),
+        [0, b'<', 0, _, ..] => Some((u16::from_be_bytes, 0)),
         _ => None,
     }
 }

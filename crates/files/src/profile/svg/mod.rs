@@ -35,7 +35,8 @@ const MOST_NODES: u32 = 4_000_000;
 
 /// Reads a drawing from the bytes of its file.
 pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
-    let text = encoding::text(bytes)?;
+    let bytes = encoding::unpacked(bytes)?;
+    let text = encoding::text(&bytes)?;
     let options = roxmltree::ParsingOptions {
         allow_dtd: true,
         nodes_limit: MOST_NODES,

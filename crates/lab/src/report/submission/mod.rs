@@ -271,10 +271,14 @@ pub struct Pictures(Vec<(usize, MethodSettings, u64)>);
 
 impl Pictures {
     /// Takes a picture.
-    pub fn add(&mut self, seen: &RenderedCase) {
-        let rgba = Picture::of(seen.frame).rgba.concat();
-        self.0
-            .push((seen.case.view, seen.case.settings, fnv1a_64(&rgba)));
+    ///
+    /// # Errors
+    /// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+    pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
+        let picture = Picture::of(seen.frame)?;
+        let sum = fnv1a_64(picture.rgba.as_flattened());
+        self.0.push((seen.case.view, seen.case.settings, sum));
+        Ok(())
     }
 
     /// The checksum of a view drawn in one way, in hexadecimal; empty if it was not drawn.

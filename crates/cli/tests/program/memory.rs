@@ -1,0 +1,79 @@
+//! Runs with little memory: exit code 1, one line, no file.
+
+use crate::run::{Bench, CAMERA, SVG};
+use std::fmt::Write;
+use std::process::Command;
+
+/// The program with at most so many MiB of addresses.
+fn limited(bench: &Bench, mib: u32, arguments: &str) -> Command {
+    let own = bench.command(arguments);
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v \"$0\" && exec \"$@\""]);
+    command
+        .arg((mib << 10).to_string())
+        .arg(own.get_program())
+        .args(own.get_args());
+    command
+        .current_dir(bench.path(""))
+        .env_remove("RUST_BACKTRACE")
+        .env_remove("REVMAP_DEVICE");
+    command
+}
+
+/// Wants a command refused at each of these limits, MiB.
+#[track_caller]
+fn refused_at(bench: &Bench, limits: &[u32], arguments: &str) {
+    for &mib in limits {
+        println!("{mib} MiB: {arguments}");
+        bench.refused_by(&mut limited(bench, mib, arguments), 1, &["no memory"]);
+    }
+}
+
+#[test]
+fn large_maps_and_pictures() {
+    let bench = Bench::new();
+    bench.file("rod.svg", SVG);
+    refused_at(
+        &bench,
+        &[250, 600, 1000],
+        "bake rod.svg -o m.exr --map-rows 16384",
+    );
+    refused_at(
+        &bench,
+        &[250, 800],
+        "bake rod.svg -o m.png --map-rows 16384 --map-source binary",
+    );
+    let solid = |x, y| x < 6000 && y > 300;
+    bench.grey(
+        "big.png",
+        16_384,
+        16_384,
+        |x, y| if solid(x, y) { 0 } else { 255 },
+    );
+    refused_at(
+        &bench,
+        &[250, 500, 1200],
+        "bake big.png -o m.png --map-rows 64",
+    );
+    let render = "render scene.toml -o out.png --stage reference --size 16x12";
+    for key in ["color_map", "height_map"] {
+        bench.object(&format!(
+            "polygon = [[0, 0], [0.3, 0.5], [0, 1]]\n{key} = \"big.png\""
+        ));
+        refused_at(&bench, &[250, 500, 1200], render);
+    }
+}
+
+#[test]
+fn a_million_copies() {
+    let bench = Bench::new();
+    let mut rows = String::new();
+    for n in 0..1_000_000 {
+        writeln!(rows, "{},{},0,0,0,0,1,0.01,0.01,0.01", n % 1000, n / 1000).unwrap();
+    }
+    bench.file("copies.csv", rows);
+    let object = "[[object]]\npolygon = [[0, 0], [0.3, 0.5], [0, 1]]\ninstances = \"copies.csv\"\n";
+    bench.file("scene.toml", format!("{CAMERA}{object}"));
+    let render = "render scene.toml -o out.png --stage reference --size 16x12";
+    refused_at(&bench, &[150, 200, 250], render);
+}
