@@ -30,6 +30,7 @@ mod view;
 mod view;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use revmap::error::{Error, ErrorKind};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -92,6 +93,12 @@ impl Command {
 /// A panic is a bug of the program, reported in one line like every failure.
 const FAILED: u8 = 1;
 
+fn no_threads(error: rayon::ThreadPoolBuildError) -> Error {
+    let message =
+        format!("no threads can be begun ({error}); give more memory, or allow more threads");
+    Error::new(ErrorKind::OutOfHostMemory, message)
+}
+
 fn main() -> ExitCode {
     let program = match Program::try_parse() {
         Ok(program) => program,
@@ -103,7 +110,14 @@ fn main() -> ExitCode {
     if std::env::var_os("RUST_BACKTRACE").is_none() {
         std::panic::set_hook(Box::new(|_| ()));
     }
-    let run = || revmap_searches::watchdog::set_limit().and_then(|_| program.command.run());
+    let run = || {
+        // Threads need memory, so all crates' threads are begun while there is some.
+        rayon::ThreadPoolBuilder::new()
+            .build_global()
+            .map_err(no_threads)?;
+        revmap_searches::watchdog::set_limit()?;
+        program.command.run()
+    };
     match catch_unwind(AssertUnwindSafe(run)) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => failure::report(error),
