@@ -64,6 +64,9 @@ struct Made {
     slots: u32,
     objects: Vec<RevmapObject>,
     prewarms: Vec<*mut RevmapPrewarm>,
+    /// True if the next frame may record copies of new textures, which are lost if its commands are
+    /// not submitted.
+    copies: bool,
 }
 
 struct Driver<'a> {
@@ -167,7 +170,10 @@ impl<'a> Driver<'a> {
         }
         let number = match self.below(3) {
             0 => 0,
-            1 if !self.dead.is_empty() => self.dead[self.below(self.dead.len())],
+            1 if !self.dead.is_empty() => {
+                let number = self.below(self.dead.len());
+                self.dead[number]
+            }
             _ => self.below(1 << 20),
         };
         without_provenance_mut(number)
@@ -365,6 +371,7 @@ impl<'a> Driver<'a> {
             slots,
             objects: Vec::new(),
             prewarms: Vec::new(),
+            copies: true,
         });
     }
 
@@ -389,7 +396,8 @@ impl<'a> Driver<'a> {
             ..
         } = self.renderers[number];
         let slot = self.of(slots as usize);
-        let submits = self.chance(0.8);
+        let submits = self.chance(0.7) || self.renderers[number].copies;
+        self.renderers[number].copies = false;
         let records = self.chance(0.9);
         let warms = self.chance(0.1);
         let by_camera = self.chance(0.2);
@@ -471,6 +479,7 @@ impl<'a> Driver<'a> {
 
     /// A change of an object, or of all.
     fn change(&mut self, number: usize) {
+        self.renderers[number].copies = true;
         let renderer = self.handle(&[self.renderers[number].handle]);
         let objects = match self.chance(0.05) {
             true => self
