@@ -230,7 +230,7 @@ impl<'a> Driver<'a> {
             info.offset = self.offset();
         }
         if self.chance(0.2) {
-            info.repeat = [0; 3].map(|_: i32| 1 + self.of(3));
+            info.repeat = [0; 3].map(|_: i32| self.of(3).wrapping_add(1));
             info.mirror = [0; 3].map(|_: i32| self.of(2));
         }
         if self.chance(0.2) {
@@ -312,7 +312,7 @@ impl<'a> Driver<'a> {
     }
 
     fn make_renderer(&mut self) {
-        let (search, slots) = (self.search(), 1 + self.of(3));
+        let (search, slots) = (self.search(), self.of(3).wrapping_add(1));
         let kind = [Kind::Color, Kind::List, Kind::Depth, Kind::Compute][self.below(4)];
         let mut handle = null_mut();
         let search = if self.chance(0.5) {
@@ -717,7 +717,7 @@ impl<'a> Driver<'a> {
         scene.camera.eye[1] = self.number();
         scene.size = self.size::<RevmapScene>();
         let mut picture = defaults!(revmap_picture_defaults, RevmapPicture);
-        (picture.width, picture.height) = (self.of(40), 1 + self.of(30));
+        (picture.width, picture.height) = (self.of(40), self.of(30).wrapping_add(1));
         (picture.stage, picture.planes) = (self.of(2), self.of(2));
         if self.pictures.len() < 2 {
             let (device, mut made) = (self.handle(&[self.device]), null_mut());
