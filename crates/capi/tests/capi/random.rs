@@ -397,7 +397,6 @@ impl<'a> Driver<'a> {
         } = self.renderers[number];
         let slot = self.of(slots as usize);
         let submits = self.chance(0.7) || self.renderers[number].copies;
-        self.renderers[number].copies = false;
         let records = self.chance(0.9);
         let warms = self.chance(0.1);
         let by_camera = self.chance(0.2);
@@ -414,6 +413,7 @@ impl<'a> Driver<'a> {
             } else {
                 call!(self, revmap_renderer_prepare(renderer, cmd, slot, &view))
             };
+            self.renderers[number].copies &= !ready;
             let mut statistics = sized!(RevmapFrameStatistics);
             let known = call!(
                 self,
@@ -479,7 +479,10 @@ impl<'a> Driver<'a> {
 
     /// A change of an object, or of all.
     fn change(&mut self, number: usize) {
-        self.renderers[number].copies = true;
+        // A number that is no handle may be that of another renderer.
+        self.renderers
+            .iter_mut()
+            .for_each(|made| made.copies = true);
         let renderer = self.handle(&[self.renderers[number].handle]);
         let objects = match self.chance(0.05) {
             true => self
