@@ -26,10 +26,10 @@ const ACTIONS: [(&str, f64); 28] = [
     ("set_lighting", 4.0),
     ("remove and add", 3.0),
     ("add and remove", 1.0),
-    ("add a thousand", 0.4),
+    ("add a thousand", 0.2),
     ("remove most", 3.0),
     ("remove all", 0.3),
-    ("thousands of copies", 0.6),
+    ("thousands of copies", 0.3),
     ("prewarm", 2.0),
     ("prewarm on a thread", 1.0),
     ("hide_until_compiled", 1.0),
@@ -43,6 +43,9 @@ const ACTIONS: [(&str, f64); 28] = [
 
 /// More objects than this are removed again.
 const MANY: usize = 16;
+
+/// Software drivers take seconds for shadows of more copies than this.
+const SLOW: usize = 800;
 
 impl Episode<'_> {
     /// Does some actions on each player.
@@ -61,8 +64,11 @@ impl Episode<'_> {
         if self.players[n].spoilt {
             return Ok(());
         }
-        let (name, _) = ACTIONS[self.dice.weighed(ACTIONS.iter().map(|a| a.1))];
+        let (mut name, _) = ACTIONS[self.dice.weighed(ACTIONS.iter().map(|a| a.1))];
         let count = self.players[n].model.things.len();
+        if count > MANY && self.dice.chance(0.2) {
+            name = "remove most";
+        }
         let thing = self.dice.below(count);
         self.log.note(format!("{n}: {name}, {thing} of {count}"));
         self.log.tally.count(name, 1);
@@ -90,6 +96,7 @@ impl Episode<'_> {
         let count = self.players[n].model.things.len();
         self.players[n].changed = true;
         self.players[n].prewarmed &= name == "remove all";
+        let shadows = self.players[n].model.lighting.shadow != Shadow::Off;
         match name {
             "add" if count < MANY => {
                 let object = self.palette.object(&mut self.dice);
@@ -105,7 +112,7 @@ impl Episode<'_> {
                 self.add(n, object)?;
                 self.remove(n, count)?;
             }
-            "add a thousand" if count < MANY => {
+            "add a thousand" if count < MANY && !shadows => {
                 let one = self.palette.object(&mut self.dice);
                 for _ in 0..1000 {
                     let mut place = placement(&mut self.dice);
@@ -115,7 +122,7 @@ impl Episode<'_> {
                     self.add(n, object)?;
                 }
             }
-            "thousands of copies" if count > 0 => {
+            "thousands of copies" if count > 0 && !shadows => {
                 let few = self.dice.below(2000);
                 let all = many(&mut self.dice, 1500 + few);
                 self.set_instances(n, thing, all)?;
@@ -129,7 +136,10 @@ impl Episode<'_> {
             }
             "remove all" => (0..count).try_for_each(|_| self.remove(n, 0))?,
             "set_lighting" => {
-                let lighting = self.palette.lighting(&mut self.dice);
+                let mut lighting = self.palette.lighting(&mut self.dice);
+                if self.players[n].model.copies() > SLOW {
+                    lighting.shadow = Shadow::Off;
+                }
                 self.players[n].renderer.set_lighting(&lighting)?;
                 self.players[n].model.lighting = lighting;
             }

@@ -48,8 +48,12 @@ fn a_random_host_draws_what_fresh_renderers_draw() {
     let (start, mut tally) = (Instant::now(), Tally::default());
     let mut next = seed;
     while start.elapsed() < Duration::from_secs(seconds) {
+        let began = Instant::now();
         match episode(next, Fault::None) {
-            Ok(counted) => tally.add(counted),
+            Ok(counted) => {
+                println!("episode {next}: {:.1} s", began.elapsed().as_secs_f64());
+                tally.add(counted);
+            }
             Err(found) => panic!("REVMAP_SOAK_SEED={next} repeats it: {found}"),
         }
         next += 1;
