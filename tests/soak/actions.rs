@@ -160,7 +160,7 @@ impl Episode<'_> {
         let id = player.model.things.remove(thing).id;
         player.renderer.remove(id)?;
         if player.model.lighting.shadow != Shadow::Off && !mended("removed under shadows") {
-            // Each change of the number of lights makes all objects anew.
+            // A change of the number of lights makes all objects anew.
             let mut other = player.model.lighting.clone();
             other.lights = vec![Light::default(); (other.lights.len() + 1) % 2];
             player.renderer.set_lighting(&other)?;

@@ -23,7 +23,7 @@ pub struct Drawn {
     pub name: String,
 }
 
-/// What the comparison does wrong, to test that it fails.
+/// An error of the comparison, planted to test that it fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     None,
@@ -33,7 +33,7 @@ pub enum Fault {
     Texture,
     /// It lacks an object.
     Object,
-    /// One copy is where another is.
+    /// Its second copy is at the place of the first.
     Copy,
 }
 

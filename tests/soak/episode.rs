@@ -17,7 +17,7 @@ pub struct Flight {
     /// other commands than they are recorded in.
     pub cmd: [vk::CommandBuffer; 2],
     pub fence: vk::Fence,
-    /// What the commands draw, with the player and the slot.
+    /// The views that the commands draw, each with the player and the slot.
     pub drawn: Vec<(usize, usize, Drawn)>,
 }
 
@@ -99,7 +99,7 @@ impl<'a> Episode<'a> {
         }
     }
 
-    /// Loses the device. Whatever fails after that fails by that.
+    /// Loses the device. Errors of later calls must name the loss.
     fn lose(&mut self) -> Result<(), Finding> {
         self.log.note("the device is lost");
         self.layer.lose(Some("vkAllocateMemory"));

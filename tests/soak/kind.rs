@@ -21,7 +21,7 @@ pub struct Kind {
 
 impl Kind {
     pub fn random(dice: &mut Dice) -> Self {
-        let (width, height) = dice.pick(&[(40, 32), (40, 32), (33, 17), (20, 50), (64, 48)]);
+        let (width, height) = dice.pick(&[(24, 20), (33, 17), (20, 36), (24, 20), (64, 48)]);
         let mut kind = Self {
             options: Options {
                 width,

@@ -1,15 +1,13 @@
 //! Faults of the library that the host avoids.
 
 /// Name of a fault, and true once it is mended: the host then does what showed it.
-pub const KNOWN: [(&str, bool); 9] = [
+pub const KNOWN: [(&str, bool); 8] = [
     // A slot that is prepared twice in one command buffer, with new textures in the first.
     ("prepared twice", true),
     // The copies of new textures are lost with a command buffer that is not submitted.
     ("never submitted", true),
     // `prepare` that fails loses copies of textures, and hides new objects.
     ("failed prepare", true),
-    // More copies than a buffer holds are refused, and so is every later frame.
-    ("too many copies", true),
     // A viewport that begins left of the picture or above it.
     ("viewport outside", true),
     // The second `record_compute` of a frame clears bins that the first may still read.
@@ -18,8 +16,8 @@ pub const KNOWN: [(&str, bool); 9] = [
     ("prewarm", true),
     // `record_prewarm` binds sets of textures that no slot keeps.
     ("record prewarm", true),
-    // With shadows, the search of all objects follows from facts of all. Those are not found again
-    // when an object is removed.
+    // Under shadows, the search of every object depends on facts of all objects. `remove` does not
+    // find these facts again.
     ("removed under shadows", true),
 ];
 

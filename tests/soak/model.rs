@@ -1,4 +1,4 @@
-//! What the host believes that a renderer holds.
+//! The content of a renderer, as the host has set it.
 
 use revmap::gpu::{HostImage, ObjectId, Renderer};
 use revmap::scene::{Lighting, Object};

@@ -46,7 +46,7 @@ impl<'a> Player<'a> {
         frames: usize,
     ) -> Result<Self, Finding> {
         let kind = Rc::new(Kind::random(dice));
-        let views = dice.pick(&[1, 1, 2, 3]);
+        let views = dice.pick(&[1, 1, 1, 2, 3]);
         let slots = frames * views;
         let surfaces: Vec<_> = (0..slots).map(|_| Surface::new(host, &kind)).collect();
         let renderer = renderer(device, &kind, &surfaces[0], slots)?;

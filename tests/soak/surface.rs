@@ -1,4 +1,4 @@
-//! What a slot's frame is drawn into, and read from.
+//! The memory that a slot's frame is drawn into, read by the host afterwards.
 
 use crate::common::host::{Attachments, Host, HostBuffer, barrier};
 use crate::kind::Kind;
@@ -13,7 +13,7 @@ pub enum Surface<'a> {
     Words(HostBuffer<'a>),
 }
 
-/// How often the frame is recorded, and what is refused before.
+/// The recording of a prepared frame, after tokens that must be refused.
 pub struct Recording<'a> {
     pub renderer: &'a Renderer,
     pub frame: &'a PreparedFrame,
@@ -106,7 +106,7 @@ impl<'a> Surface<'a> {
 
 impl Recording<'_> {
     /// # Safety
-    /// As for the record of a frame.
+    /// `cmd` is recording where the frame may be recorded.
     unsafe fn warm(&self, cmd: vk::CommandBuffer) -> revmap::Result<()> {
         match self.warms {
             // SAFETY: as the caller promised.

@@ -14,7 +14,7 @@ use revmap::scene::{
 };
 use std::sync::Arc;
 
-/// What objects of an episode share, and the techniques that it has.
+/// Data that the objects of an episode share, and the techniques of the episode.
 pub struct Palette<'a> {
     profiles: Vec<Arc<Profile>>,
     colors: Vec<Arc<ColorMap>>,
