@@ -3,11 +3,11 @@
 //! Every fill and stroke becomes a region of the plane, with curves flattened within 1e-5 of the
 //! drawing's height. Regions are laid over those painted before. The solid is everything darker
 //! than one half over white. Groups, `use`, transforms, opacity, clip paths, dashes, caps, joins
-//! and markers count. A gradient counts as the mean of its stops, provided that these are all dark
-//! or all light. Text, pictures, patterns, masks, filters and blend modes have no outline here and
+//! and markers count. A gradient counts if its stops are all dark or all light, or make no
+//! difference. Text, pictures, patterns, masks, filters and blend modes have no outline here and
 //! are refused by name.
 
-use super::paint::{Paint, Rgba, Tile, is_dark};
+use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened};
 use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
 use super::{ProfileAxis, empty_fault, full_fault, hints, svg};
 use crate::content_fault;
@@ -51,6 +51,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
         high: canvas.grid.rounded(canvas.high),
     };
     let whole = tile.dark(&paints)?;
+    check_gradients(&paints, &whole, tile)?;
     let mut warnings = drawing.warnings;
     let half = match axis {
         ProfileAxis::Left => whole,
@@ -87,6 +88,30 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     let mut profile = Profile::new(outline, radius);
     profile.warnings = warnings;
     Ok(profile)
+}
+
+/// Refuses gradients whose light parts would be solid, or whose dark parts would not.
+fn check_gradients(paints: &[Paint], darkest: &Region, tile: Tile) -> Result<()> {
+    let lines = gradients(paints);
+    let differs = |chosen: &dyn Fn(u32) -> bool| -> Result<bool> {
+        let lighter = tile.dark(&lightened(paints, chosen))?;
+        let difference = darkest.difference(&lighter).outline(tile.grid);
+        Ok(difference.area() > FLATNESS)
+    };
+    if lines.is_empty() || !differs(&|_| true)? {
+        return Ok(());
+    }
+    let mut named = lines[0];
+    for &line in lines.iter().take(8) {
+        if differs(&|l| l == line)? {
+            named = line;
+            break;
+        }
+    }
+    Err(content_fault(format!(
+        "the drawing uses a gradient from dark to light (line {named}), which has no outline here; give the shape \
+         one flat colour"
+    )))
 }
 
 /// The outline with its points on the axis and on the cylinder. Points nearer to the axis than the
@@ -141,7 +166,8 @@ impl Canvas {
                         }
                         Some(band) => self.band(path, band, to_profile)?,
                     };
-                    paints.push(Paint::Region(region, self.tone(path.color)));
+                    let lightest = path.lightest.map(|(color, line)| (self.tone(color), line));
+                    paints.push(Paint::Region(region, self.tone(path.color), lightest));
                 }
             }
         }

@@ -18,6 +18,8 @@ const ALIKE: f64 = 0.02;
 /// A silhouette is symmetric about another axis if its halves there differ by less than this part
 /// of their difference about the middle.
 const CLEARLY: f64 = 0.25;
+/// An axis nearer to the middle than this part of the silhouette's width is the middle.
+const NEAR: f64 = 0.005;
 /// A wall below this part of the height is thin.
 const THIN: f64 = 0.05;
 /// A shape is an outline drawing if its walls are thin along this part of its border.
@@ -56,7 +58,8 @@ pub(super) fn other_axis(rows: &[Row]) -> Option<f64> {
     } else {
         valued[1]
     };
-    (least < ALIKE && least < CLEARLY * of_middle).then_some(at)
+    let apart = at.abs() > NEAR * (high - low);
+    (apart && least < ALIKE && least < CLEARLY * of_middle).then_some(at)
 }
 
 /// The part of a silhouette that its mirror image about `at` does not cover.

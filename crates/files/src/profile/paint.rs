@@ -28,13 +28,68 @@ fn over(top: Rgba, below: Rgba) -> Rgba {
 /// One step of painting.
 #[derive(Debug)]
 pub(super) enum Paint {
-    Region(Region, Rgba),
+    /// A region with its darkest colour, and the lightest with its line for a gradient between.
+    Region(Region, Rgba, Option<(Rgba, u32)>),
     /// Paints that are laid down by themselves, clipped and then shown with an opacity.
     Group {
         opacity: f32,
         clip: Option<Region>,
         paints: Vec<Paint>,
     },
+}
+
+/// The lines of the gradients whose darkness is not the same throughout.
+pub(super) fn gradients(paints: &[Paint]) -> Vec<u32> {
+    let mut lines: Vec<u32> = Vec::new();
+    for paint in paints {
+        match paint {
+            Paint::Region(_, _, lightest) => lines.extend(lightest.map(|(_, line)| line)),
+            Paint::Group { paints, .. } => lines.append(&mut gradients(paints)),
+        }
+    }
+    lines.dedup();
+    lines
+}
+
+/// The paints with the lightest colour of the gradients that `chosen` is true for.
+pub(super) fn lightened(paints: &[Paint], chosen: &dyn Fn(u32) -> bool) -> Vec<Paint> {
+    let lighter = |paint: &Paint| match paint {
+        Paint::Region(region, color, lightest) => {
+            let lightest = lightest.filter(|(_, line)| chosen(*line));
+            let color = lightest.map_or(*color, |(color, _)| color);
+            Paint::Region(region.clone(), color, None)
+        }
+        Paint::Group {
+            opacity,
+            clip,
+            paints,
+        } => Paint::Group {
+            opacity: *opacity,
+            clip: clip.clone(),
+            paints: lightened(paints, chosen),
+        },
+    };
+    paints.iter().map(lighter).collect()
+}
+
+/// Bounds of the colours of a gradient's stops: the darkest and, if that makes a difference, the
+/// lightest. Over every ground, each stop is between the two.
+pub(super) fn bounds(stops: &[Rgba]) -> Option<(Rgba, Option<Rgba>)> {
+    let count = stops.len() as f32;
+    let mean = std::array::from_fn(|k| stops.iter().map(|c| c[k] / count).sum());
+    let over_black = |c: &Rgba| luminance([c[0], c[1], c[2]]);
+    let over_white = |c: &Rgba| over_black(c) + 1.0 - c[3];
+    let least = |value: &dyn Fn(&Rgba) -> f32| stops.iter().map(value).reduce(f32::min);
+    let most = |value: &dyn Fn(&Rgba) -> f32| stops.iter().map(value).reduce(f32::max);
+    let grey = |black: f32, white: f32| [black, black, black, 1.0 - (white - black)];
+    let (low, low_white) = (least(&over_black)?, least(&over_white)?);
+    let (high, high_white) = (most(&over_black)?, most(&over_white)?);
+    let opaque = stops.iter().all(|c| c[3] >= 1.0);
+    let even = high - low < 1e-3 && high_white - low_white < 1e-3;
+    if even || (opaque && (high < 0.5 || low >= 0.5)) {
+        return Some((mean, None));
+    }
+    Some((grey(low, low_white), Some(grey(high, high_white))))
 }
 
 /// A tile with at most this many changes of colour is laid down at once.
@@ -96,7 +151,7 @@ impl Tile {
         let mut parts = Vec::new();
         for paint in paints {
             match paint {
-                Paint::Region(region, color) => {
+                Paint::Region(region, color, _) => {
                     let Some(part) = self.part(region) else {
                         continue;
                     };
@@ -104,7 +159,7 @@ impl Tile {
                         // Opaque paint hides everything below it.
                         parts.clear();
                     }
-                    parts.push(Paint::Region(part, *color));
+                    parts.push(Paint::Region(part, *color, None));
                 }
                 Paint::Group {
                     opacity,
@@ -138,7 +193,7 @@ impl Tile {
         let [mut least, mut most] = [1.0f32; 2];
         for paint in paints {
             let (low, high) = match paint {
-                Paint::Region(region, color) => {
+                Paint::Region(region, color, _) => {
                     let [r, g, b, alpha] = *color;
                     let laid = |below: f32| luminance([r, g, b]) + (1.0 - alpha) * below;
                     let (low, high) = (laid(least), laid(most));
@@ -165,7 +220,7 @@ impl Tile {
         let mut count = 0;
         for paint in paints {
             match paint {
-                Paint::Region(region, color) => {
+                Paint::Region(region, color, _) => {
                     let merged = color[3] >= 1.0 && last == Some(*color);
                     count += usize::from(!merged && !self.is_covered_by(region));
                     last = Some(*color);
@@ -295,7 +350,7 @@ impl Layer {
     fn lay(&mut self, paints: &[Paint]) {
         for paint in paints {
             match paint {
-                Paint::Region(region, color) => self.paint(region, *color),
+                Paint::Region(region, color, _) => self.paint(region, *color),
                 Paint::Group {
                     opacity,
                     clip,

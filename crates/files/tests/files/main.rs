@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod damaged_files;
+mod drawings;
 mod map_accuracy;
 mod profiles;
 mod scenes;

@@ -83,6 +83,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
             band: None,
             rule: FillRule::NonZero,
             color,
+            lightest: None,
         };
         content.insert(0, Node::Path(path));
     }

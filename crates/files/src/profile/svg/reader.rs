@@ -1,6 +1,6 @@
 //! Walks the elements that show, follows their references, and makes plain painted paths of them.
 
-use super::super::paint::{Rgba, is_dark};
+use super::super::paint::{self, Rgba};
 use super::cascade::Sheets;
 use super::color::Color;
 use super::notes::{Notes, line, misled, unsupported};
@@ -64,6 +64,9 @@ const UNSEEN: [&str; 33] = [
     "meshGradient",
     "namedview",
 ];
+
+/// A colour, or the darkest and the lightest of a gradient.
+type Shade = (Rgba, Option<Rgba>);
 
 /// Where an element is: what percentages refer to, and how deep.
 #[derive(Clone, Copy)]
@@ -436,6 +439,10 @@ impl<'a> Reader<'a> {
         if !style.visible {
             return Ok(());
         }
+        for child in node.children().filter(|c| is_svg(*c)) {
+            // Children of shapes are descriptions and animations.
+            self.is_seen(child);
+        }
         let curve = self.curve(node, style, place)?;
         if curve.path.elements().len() < 2 {
             return Ok(());
@@ -445,7 +452,7 @@ impl<'a> Reader<'a> {
         let diagonal = (0.5 * (width * width + height * height)).sqrt();
         let thickness = style.stroke_width.of(diagonal);
         for part in style.order {
-            let (paint, opacity, band) = match part {
+            let (shade, opacity, band) = match part {
                 0 => (&style.fill, style.fill_opacity, None),
                 1 if thickness > 0.0 => {
                     let band = band(node, style, &curve, thickness, diagonal);
@@ -457,12 +464,13 @@ impl<'a> Reader<'a> {
                     continue;
                 }
             };
-            if let Some(color) = self.solid(paint, opacity, style, bounds, node)? {
+            if let Some((color, lightest)) = self.solid(shade, opacity, style, bounds, node)? {
                 out.push(Drawn::Path(Path {
                     curve: curve.path.clone(),
                     band,
                     rule: style.fill_rule,
                     color,
+                    lightest: lightest.map(|color| (color, line(node))),
                 }));
             }
         }
@@ -488,7 +496,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The colour that stands for a paint, premultiplied.
+    /// The colour of a paint, premultiplied, with the lightest one of a gradient.
     fn solid(
         &mut self,
         paint: &Paint,
@@ -496,13 +504,13 @@ impl<'a> Reader<'a> {
         style: &Style,
         bounds: Rect,
         node: Node,
-    ) -> Result<Option<Rgba>> {
+    ) -> Result<Option<Shade>> {
         if opacity <= 0.0 {
             return Ok(None);
         }
         let (target, fallback) = match style.resolved(paint) {
             Paint::None | Paint::Current | Paint::Context(_) => return Ok(None),
-            Paint::Color(color) => return Ok(Some(premultiplied(*color, opacity))),
+            Paint::Color(color) => return Ok(Some((premultiplied(*color, opacity), None))),
             Paint::Fault(text) => return Err(content_fault(text.to_string())),
             Paint::Server(target, fallback) => (target.clone(), fallback.clone()),
         };
@@ -517,7 +525,7 @@ impl<'a> Reader<'a> {
             }
             Some("linearGradient" | "radialGradient") => {
                 if let Some(gradient) = found
-                    && let Some(color) = self.gradient(gradient, opacity, bounds, node)?
+                    && let Some(color) = self.gradient(gradient, opacity, bounds)?
                 {
                     return Ok(Some(color));
                 }
@@ -540,15 +548,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The mean of a gradient's stops, provided that these are all dark or all light. `None` for a
-    /// gradient that paints nothing.
+    /// The colours of a gradient's stops; `None` for a gradient that paints nothing.
     fn gradient(
         &mut self,
         gradient: Node<'a, 'a>,
         opacity: f32,
         bounds: Rect,
-        node: Node,
-    ) -> Result<Option<Rgba>> {
+    ) -> Result<Option<Shade>> {
         let (mut stops, mut units, mut at) = (Vec::new(), None, Some(gradient));
         for _ in 0..MOST_LINKS {
             let Some(n) = at else { break };
@@ -575,14 +581,7 @@ impl<'a> Reader<'a> {
                 _ => {}
             }
         }
-        let dark = colors.iter().filter(|c| is_dark(**c)).count();
-        if dark != 0 && dark != colors.len() {
-            let what = "a gradient from dark to light";
-            return Err(unsupported(what, node, "give the shape one flat colour"));
-        }
-        let count = colors.len() as f32;
-        Ok((!colors.is_empty())
-            .then(|| std::array::from_fn(|k| colors.iter().map(|c| c[k] / count).sum())))
+        Ok(paint::bounds(&colors))
     }
 
     /// Adds an element's content under its transform, clip and opacity.
@@ -822,6 +821,7 @@ impl<'a> Reader<'a> {
             band: None,
             rule: style.clip_rule,
             color: [0.0; 4],
+            lightest: None,
         })];
         let own = outer * self.transform(node, &style, place, &content)?;
         curve.apply_affine(own);

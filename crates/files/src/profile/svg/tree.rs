@@ -38,7 +38,10 @@ pub(in crate::profile) struct Path {
     pub band: Option<Band>,
     /// Inside of the fill.
     pub rule: FillRule,
+    /// The colour, or the darkest colour of a gradient.
     pub color: Rgba,
+    /// The lightest colour of a gradient from dark to light, and its line.
+    pub lightest: Option<(Rgba, u32)>,
 }
 
 /// The shape of a stroke.
@@ -95,6 +98,8 @@ pub(super) fn bounds(nodes: &[Node], transform: Affine) -> Option<Rect> {
 pub(in crate::profile) fn has_translucency(nodes: &[Node]) -> bool {
     nodes.iter().any(|node| match node {
         Node::Group(group) => group.opacity < 1.0 || has_translucency(&group.children),
-        Node::Path(path) => path.color[3] < 1.0,
+        Node::Path(path) => {
+            path.color[3] < 1.0 || path.lightest.is_some_and(|(color, _)| color[3] < 1.0)
+        }
     })
 }
