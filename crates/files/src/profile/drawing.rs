@@ -19,6 +19,9 @@ use revmap::profile::{FillRule, Grid, Outline, Profile, Region, loop_area};
 /// Largest distance between a curve and its chords, object units.
 const FLATNESS: f64 = 1e-5;
 
+/// Places of less than this area are small, square object units.
+const SMALL: f64 = 2e-3;
+
 /// A profile from the text of an SVG drawing (or its gzip-compressed form).
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     let drawing = svg::read(bytes)?;
@@ -51,8 +54,8 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
         high: canvas.grid.rounded(canvas.high),
     };
     let whole = tile.dark(&paints)?;
-    check_gradients(&paints, &whole, tile)?;
     let mut warnings = drawing.warnings;
+    warnings.extend(check_gradients(&paints, &whole, tile)?);
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
@@ -90,27 +93,37 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     Ok(profile)
 }
 
-/// Refuses gradients whose light parts would be solid, or whose dark parts would not.
-fn check_gradients(paints: &[Paint], darkest: &Region, tile: Tile) -> Result<()> {
+/// Refuses gradients whose light parts would be solid, or whose dark parts would not. Small places
+/// bring a warning: the dark colour counts there.
+fn check_gradients(paints: &[Paint], darkest: &Region, tile: Tile) -> Result<Option<String>> {
     let lines = gradients(paints);
-    let differs = |chosen: &dyn Fn(u32) -> bool| -> Result<bool> {
+    let difference = |chosen: &dyn Fn(u32) -> bool| -> Result<f64> {
         let lighter = tile.dark(&lightened(paints, chosen))?;
-        let difference = darkest.difference(&lighter).outline(tile.grid);
-        Ok(difference.area() > FLATNESS)
+        Ok(darkest.difference(&lighter).outline(tile.grid).area())
     };
-    if lines.is_empty() || !differs(&|_| true)? {
-        return Ok(());
+    if lines.is_empty() {
+        return Ok(None);
     }
-    let mut named = lines[0];
+    let all = difference(&|_| true)?;
+    if all <= FLATNESS {
+        return Ok(None);
+    }
+    let mut named = (0.0, lines[0]);
     for &line in lines.iter().take(8) {
-        if differs(&|l| l == line)? {
-            named = line;
-            break;
+        let own = difference(&|l| l == line)?;
+        if own > named.0 {
+            named = (own, line);
         }
     }
+    let line = named.1;
+    if all <= SMALL {
+        return Ok(Some(format!(
+            "the drawing has a gradient (line {line}) that is light in small places; its dark colour counts there"
+        )));
+    }
     Err(content_fault(format!(
-        "the drawing uses a gradient from dark to light (line {named}), which has no outline here; give the shape \
-         one flat colour"
+        "the drawing uses a gradient from dark to light (line {line}), which has no outline here; give the shape one \
+         flat colour"
     )))
 }
 
@@ -167,6 +180,7 @@ impl Canvas {
                         Some(band) => self.band(path, band, to_profile)?,
                     };
                     let lightest = path.lightest.map(|(color, line)| (self.tone(color), line));
+                    let lightest = lightest.filter(|(color, _)| *color != self.tone(path.color));
                     paints.push(Paint::Region(region, self.tone(path.color), lightest));
                 }
             }

@@ -84,9 +84,7 @@ pub(super) fn bounds(stops: &[Rgba]) -> Option<(Rgba, Option<Rgba>)> {
     let grey = |black: f32, white: f32| [black, black, black, 1.0 - (white - black)];
     let (low, low_white) = (least(&over_black)?, least(&over_white)?);
     let (high, high_white) = (most(&over_black)?, most(&over_white)?);
-    let opaque = stops.iter().all(|c| c[3] >= 1.0);
-    let even = high - low < 1e-3 && high_white - low_white < 1e-3;
-    if even || (opaque && (high < 0.5 || low >= 0.5)) {
+    if high - low < 1e-3 && high_white - low_white < 1e-3 {
         return Some((mean, None));
     }
     Some((grey(low, low_white), Some(grey(high, high_white))))
