@@ -16,6 +16,11 @@ pub use region::{FillRule, Grid, Region};
 use crate::error::Result;
 use glam::DVec2;
 
+/// Points this close to the axis, on either side, in units of the radius, are moved onto it.
+/// `0.5 * sin(pi)` is not quite 0, and files keep six digits. A sliver along the axis would count
+/// as surface, and a negative offset would open a bore there.
+const AXIS_SLACK: f64 = 1e-6;
+
 /// The solid's boundary as closed chains of straight segments.
 ///
 /// The loops do not cross. The solid is on the **left** of every segment: outer loops run
@@ -81,10 +86,16 @@ impl Profile {
         polygon::profile(points, radius)
     }
 
-    /// A profile with a known outline. The loops are used unchanged; [`Outline`] lists their
-    /// requirements.
+    /// A profile with a known outline. The loops are used unchanged, except that points within
+    /// 1e-6 of the axis are moved onto it; [`Outline`] lists their requirements.
     #[must_use]
-    pub fn new(outline: Outline, radius: f64) -> Self {
+    pub fn new(mut outline: Outline, radius: f64) -> Self {
+        let slack = AXIS_SLACK * radius.min(1.0);
+        for point in outline.loops.iter_mut().flatten() {
+            if point.x.abs() < slack {
+                point.x = 0.0;
+            }
+        }
         Self {
             outline,
             radius,

@@ -1,13 +1,8 @@
 //! Profiles from a list of `[r, z]` points.
 
-use super::{FillRule, Outline, Profile};
+use super::{AXIS_SLACK, FillRule, Outline, Profile};
 use crate::error::{Error, ErrorKind, Result};
 use glam::DVec2;
-
-/// Points this close to the axis, on either side, in units of the largest radius, are moved onto
-/// it. `0.5 * sin(pi)` is not quite 0, and files keep six digits. A sliver along the axis would
-/// count as surface, and a negative offset would open a bore there.
-const AXIS_SLACK: f64 = 1e-6;
 
 /// See [`Profile::polygon`].
 pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
@@ -115,6 +110,13 @@ mod tests {
         for gap in [1e-8, -1e-8, 3e-7] {
             let o = outline(&[[gap, 0.0], [0.4, 0.0], [0.4, 1.0], [gap, 1.0]]);
             assert_eq!(o.surface_segments().count(), 3, "{gap}");
+            let loops = vec![
+                [[gap, 0.0], [0.4, 0.0], [gap, 1.0]]
+                    .map(DVec2::from)
+                    .to_vec(),
+            ];
+            let known = Profile::new(Outline { loops }, 0.5).outline;
+            assert_eq!(known.surface_segments().count(), 2, "{gap}");
         }
         assert!(o.signed_distance(DVec2::new(1e-6, 0.5)) < -0.2);
     }
