@@ -94,31 +94,30 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
 }
 
 /// Refuses gradients whose light parts would be solid, or whose dark parts would not. Small places
-/// bring a warning: the dark colour counts there.
+/// bring a warning, and so do gradients that are dark and light only with translucent paint over
+/// them.
 fn check_gradients(paints: &[Paint], darkest: &Region, tile: Tile) -> Result<Option<String>> {
     let lines = gradients(paints);
     let difference = |chosen: &dyn Fn(u32) -> bool| -> Result<f64> {
         let lighter = tile.dark(&lightened(paints, chosen))?;
         Ok(darkest.difference(&lighter).outline(tile.grid).area())
     };
-    if lines.is_empty() {
+    if lines.is_empty() || difference(&|_| true)? <= FLATNESS {
         return Ok(None);
     }
-    let all = difference(&|_| true)?;
-    if all <= FLATNESS {
-        return Ok(None);
-    }
-    let mut named = (0.0, lines[0]);
-    for &line in lines.iter().take(8) {
+    let strong = |line: u32| lines.contains(&(line, true));
+    let refused = difference(&strong)? > SMALL;
+    let mut named = (0.0, lines[0].0);
+    for &(line, is_strong) in lines.iter().take(8) {
         let own = difference(&|l| l == line)?;
-        if own > named.0 {
+        if own > named.0 && (is_strong || !refused) {
             named = (own, line);
         }
     }
     let line = named.1;
-    if all <= SMALL {
+    if !refused {
         return Ok(Some(format!(
-            "the drawing has a gradient (line {line}) that is light in small places; its dark colour counts there"
+            "the drawing has a gradient (line {line}) that is dark and light in places; one colour counts for it"
         )));
     }
     Err(content_fault(format!(

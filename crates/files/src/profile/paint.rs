@@ -38,12 +38,18 @@ pub(super) enum Paint {
     },
 }
 
-/// The lines of the gradients whose darkness is not the same throughout.
-pub(super) fn gradients(paints: &[Paint]) -> Vec<u32> {
-    let mut lines: Vec<u32> = Vec::new();
+/// The lines of the gradients whose colours differ, each with true if they are dark and light by
+/// themselves, and false if only with translucent paint over them.
+pub(super) fn gradients(paints: &[Paint]) -> Vec<(u32, bool)> {
+    let mut lines: Vec<(u32, bool)> = Vec::new();
     for paint in paints {
         match paint {
-            Paint::Region(_, _, lightest) => lines.extend(lightest.map(|(_, line)| line)),
+            Paint::Region(_, darkest, Some((lightest, line))) => {
+                let even = darkest[3] >= 1.0 && lightest[3] >= 1.0;
+                let same = even && is_dark(*darkest) == is_dark(*lightest);
+                lines.push((*line, !same));
+            }
+            Paint::Region(..) => {}
             Paint::Group { paints, .. } => lines.append(&mut gradients(paints)),
         }
     }
@@ -86,6 +92,10 @@ pub(super) fn bounds(stops: &[Rgba]) -> Option<(Rgba, Option<Rgba>)> {
     let (high, high_white) = (most(&over_black)?, most(&over_white)?);
     if high - low < 1e-3 && high_white - low_white < 1e-3 {
         return Some((mean, None));
+    }
+    let opaque = stops.iter().all(|c| c[3] >= 1.0);
+    if opaque && (high < 0.5 || low >= 0.5) {
+        return Some((mean, Some(grey(high, high_white))));
     }
     Some((grey(low, low_white), Some(grey(high, high_white))))
 }
