@@ -5,8 +5,8 @@ use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 pub const CAMERA: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
-/// A drawing of half a profile.
-pub const SVG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M0,5h12v35h-12z'/></svg>";
+/// A drawing that is symmetric about its middle.
+pub const SVG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='40'><path d='M8,5h4v35h-4z'/></svg>";
 pub const CONE: &str = "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n";
 
 /// A folder with the files of one case, and runs of the program in it.
