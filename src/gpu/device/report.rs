@@ -159,7 +159,8 @@ pub fn devices() -> Result<Vec<DeviceReport>> {
 
 /// The device that the environment names.
 fn variable() -> Option<String> {
-    let set = std::env::var(DEVICE_VARIABLE).ok();
+    let set = std::env::var_os(DEVICE_VARIABLE);
+    let set = set.map(|device| device.to_string_lossy().into_owned());
     set.filter(|device| !device.is_empty())
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The variable that names the Wayland display.
 const WAYLAND: &str = "WAYLAND_DISPLAY";
 
-/// What is to be done where no window can be opened.
+/// The remedy if no window can be opened.
 pub fn remedy() -> &'static str {
     match is_set(WAYLAND) {
         true => "unset WAYLAND_DISPLAY, or set it and DISPLAY to screens that are there",

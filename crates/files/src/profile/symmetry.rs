@@ -1,5 +1,5 @@
-//! A warning about a picture whose solid does not lie about the axis: beside it, tilted, or with two
-//! different halves; and about half a profile read as a whole one, or a whole one as half.
+//! Warnings about a picture whose solid is beside the axis, tilted, or uneven. Others name half a
+//! profile that is read as a whole one, and the reverse.
 
 use super::ProfileAxis;
 
@@ -14,15 +14,15 @@ const SLACK: f64 = 0.02;
 /// Halves that differ by less than this part of the width are alike.
 const ALIKE: f64 = 0.05;
 
-/// Where the solid of a picture lies, in pixels.
+/// The ends of a picture's solid, pixels.
 struct Rows {
     /// Row, left end and right end of the solid, of each row that has some.
     spans: Vec<[f64; 3]>,
     width: f64,
 }
 
-/// What the solid pixels, `width` to a row, say against `axis`, which is `axis_at` pixels from the
-/// left edge.
+/// Compares the solid pixels, `width` to a row, with `axis`, which is `axis_at` pixels from the left
+/// edge.
 pub(super) fn hint(
     solid: &[bool],
     width: usize,
@@ -75,7 +75,7 @@ impl Rows {
         (SLACK * self.half_width()).max(1.0)
     }
 
-    /// Returns true if an end lies at its median in most rows.
+    /// Returns true if an end is at its median in most rows.
     fn is_straight(&self, end: impl Fn(&[f64; 3]) -> f64) -> bool {
         let at = self.median(&end);
         let near = self
@@ -180,7 +180,7 @@ impl Rows {
 struct MiddleLine {
     /// Its place half way down.
     middle: f64,
-    /// How far it goes aside from the first row to the last.
+    /// Its way aside from the first row to the last.
     drift: f64,
     /// The median distance of a middle from it.
     residual: f64,

@@ -58,7 +58,11 @@ pub fn claim<'a>(
     let written = |file: &Path| {
         let within = folder.canonicalize().ok()?;
         let inside = file.canonicalize().ok()?;
-        let inside = inside.strip_prefix(within).ok()?.to_str()?.to_owned();
+        let inside = inside
+            .strip_prefix(within)
+            .ok()?
+            .to_string_lossy()
+            .into_owned();
         let first = inside.split(std::path::MAIN_SEPARATOR).next()?;
         Some(FILES.contains(&inside.as_str()) || FOLDERS.contains(&first))
     };
@@ -287,5 +291,17 @@ mod tests {
             assert_eq!(claimed.is_err(), refused, "{name}");
             assert!(input.exists());
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn inputs_whose_name_is_no_text_are_not_written_over() {
+        use std::os::unix::ffi::OsStrExt;
+        let base = tempfile::tempdir().unwrap();
+        make(&base.path().join("pictures")).unwrap();
+        let name = std::ffi::OsStr::from_bytes(b"pictures/\xff.png");
+        let input = base.path().join(name);
+        write_text(&input, "").unwrap();
+        assert!(claim(base.path(), true, [input.as_path()]).is_err());
     }
 }
