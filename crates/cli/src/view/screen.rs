@@ -1,7 +1,6 @@
 //! The choice between Wayland and X11: a Wayland display that nothing serves does not hide X11.
 
 use eframe::EventLoopBuilderHook;
-use std::path::PathBuf;
 
 /// The variable that names the Wayland display.
 const WAYLAND: &str = "WAYLAND_DISPLAY";
@@ -37,7 +36,7 @@ fn is_set(name: &str) -> bool {
 /// Returns true if a program listens on the Wayland display's socket.
 #[cfg(target_os = "linux")]
 fn answers() -> bool {
-    let folder = PathBuf::from(std::env::var_os("XDG_RUNTIME_DIR").unwrap_or_default());
+    let folder = std::path::PathBuf::from(std::env::var_os("XDG_RUNTIME_DIR").unwrap_or_default());
     // A name that is an absolute path stays as it is.
     let socket = folder.join(std::env::var_os(WAYLAND).unwrap_or_default());
     std::os::unix::net::UnixStream::connect(socket).is_ok()
