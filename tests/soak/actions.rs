@@ -1,13 +1,12 @@
 //! The actions of the host on one renderer.
 
 use crate::episode::Episode;
-use crate::known::mended;
 use crate::log::{Finding, found};
 use crate::model::Thing;
 use crate::values::{copies, many, placement};
 use crate::views;
 use revmap::error::ErrorKind;
-use revmap::scene::{Light, Object, Offset, Placement, Shadow};
+use revmap::scene::{Object, Offset, Placement, Shadow};
 
 /// Names and weights.
 const ACTIONS: [(&str, f64); 28] = [
@@ -159,13 +158,6 @@ impl Episode<'_> {
         let player = &mut self.players[n];
         let id = player.model.things.remove(thing).id;
         player.renderer.remove(id)?;
-        if player.model.lighting.shadow != Shadow::Off && !mended("removed under shadows") {
-            // A change of the number of lights makes all objects anew.
-            let mut other = player.model.lighting.clone();
-            other.lights = vec![Light::default(); (other.lights.len() + 1) % 2];
-            player.renderer.set_lighting(&other)?;
-            player.renderer.set_lighting(&player.model.lighting)?;
-        }
         // An object that is gone is refused.
         match player.renderer.set_mask(id, 1) {
             Err(e) if e.kind == ErrorKind::Usage => Ok(()),

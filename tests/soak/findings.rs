@@ -1,5 +1,4 @@
-//! Faults that random hosts found, each as a fixed sequence of calls. The names are those of
-//! `known.rs`; a test is ignored until its fault is mended.
+//! Faults that random hosts found, each as a fixed sequence of calls.
 
 use crate::common::host::{self, Attachments, Options, borrow, color_pass, open, view_of};
 use crate::common::shapes;

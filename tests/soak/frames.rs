@@ -2,7 +2,6 @@
 
 use crate::check::Drawn;
 use crate::episode::Episode;
-use crate::known::mended;
 use crate::log::{Finding, found};
 use crate::surface::Recording;
 use crate::views::{self, Seen};
@@ -30,17 +29,15 @@ impl Episode<'_> {
         let [early, cmd] = self.flights[n].cmd;
         let split = self.dice.chance(0.15);
         let first = if split { early } else { cmd };
-        let may_drop = mended("never submitted") || self.players.iter().all(|p| !p.changed);
-        let submitted = !(may_drop && self.dice.chance(0.08));
+        let submitted = !self.dice.chance(0.08);
         self.begin(early);
         self.begin(cmd);
         let mut ready = Vec::new();
         for player in 0..self.players.len() {
-            let changed = self.players[player].changed;
             self.players[player].changed &= !submitted;
             for view in 0..self.players[player].views {
                 let slot = n * self.players[player].views + view;
-                ready.extend(self.prepare_view(first, player, slot, changed)?);
+                ready.extend(self.prepare_view(first, player, slot)?);
             }
         }
         // Changes after `prepare` take effect in the next frame.
@@ -78,23 +75,20 @@ impl Episode<'_> {
         unsafe { self.host.device.begin_command_buffer(cmd, &begin) }.unwrap();
     }
 
-    /// Prepares a view in a slot, sometimes twice. `None` if that failed, as planted. `changed`: the
-    /// player has changes that no frame has.
+    /// Prepares a view in a slot, sometimes twice. `None` if that failed, as planted.
     fn prepare_view(
         &mut self,
         cmd: vk::CommandBuffer,
         n: usize,
         slot: usize,
-        changed: bool,
     ) -> Result<Option<Ready>, Finding> {
-        let twice = mended("prepared twice") || !changed;
-        let times = 1 + usize::from(twice && self.dice.chance(0.06));
+        let times = 1 + usize::from(self.dice.chance(0.06));
         let mut ready = None;
         for time in 0..times {
             if self.players[n].spoilt {
                 return Ok(None);
             }
-            if time > 0 && mended("prepared twice") && self.dice.chance(0.5) {
+            if time > 0 && self.dice.chance(0.5) {
                 self.act(n)?;
             }
             let seen = self.view(n, slot);
@@ -176,10 +170,6 @@ impl Episode<'_> {
                 let call = failed.unwrap_or("budget");
                 self.log.note(format!("{n}: prepare failed by {call}"));
                 self.log.tally.count(format!("failed by {call}"), 1);
-                if !mended("failed prepare") {
-                    self.players[n].spoilt = true;
-                    return Ok(None);
-                }
                 let renderer = &mut self.players[n].renderer;
                 // SAFETY: as above.
                 Ok(Some(unsafe { renderer.prepare(cmd, slot, &seen.view) }?))
@@ -218,10 +208,7 @@ impl Episode<'_> {
         self.log.tally.count("hidden after prewarm", hidden.into());
         if compiled + u64::from(hidden) > 0 {
             let text = format!("{n}: {compiled} compiled, {hidden} hidden after prewarm");
-            self.log.note(&text);
-            if mended("prewarm") {
-                return found(text);
-            }
+            return found(text);
         }
         Ok(())
     }
@@ -278,8 +265,7 @@ impl Episode<'_> {
         let mut all = Vec::new();
         for (n, one) in ready.iter().enumerate() {
             let player = &self.players[one.player];
-            let again = !player.kind.compute || mended("recorded twice");
-            let times = 1 + usize::from(again && self.dice.chance(0.1));
+            let times = 1 + usize::from(self.dice.chance(0.1));
             let other = &ready[(n + 1) % ready.len()];
             let foreign = Some(other).filter(|other| other.player != one.player);
             let refused = player.stale.iter().chain(foreign.map(|f| &f.frame));
@@ -287,7 +273,7 @@ impl Episode<'_> {
                 renderer: &player.renderer,
                 frame: &one.frame,
                 times,
-                warms: mended("record prewarm") && self.dice.chance(0.1),
+                warms: self.dice.chance(0.1),
                 refused: refused.collect(),
             };
             let words = one.words.checked_sub(1).map(|n| &player.words[n]);

@@ -9,7 +9,6 @@
 //!
 //! A run is a sequence of **episodes**. An episode has a device of its own and a seed, which
 //! decides everything that the host does. A failure prints the seed and the last actions.
-//! `known.rs` lists the faults that the host avoids until they are mended.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unsafe_code)]
 
 #[path = "../gpu/calls.rs"]
@@ -26,7 +25,6 @@ mod episode;
 mod findings;
 mod frames;
 mod kind;
-mod known;
 mod log;
 mod model;
 mod player;

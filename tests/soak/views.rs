@@ -3,7 +3,6 @@
 use crate::common::host::order;
 use crate::dice::Dice;
 use crate::kind::Kind;
-use crate::known::mended;
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{View, Viewport};
@@ -149,13 +148,13 @@ fn viewport(dice: &mut Dice, kind: &Kind) -> Viewport {
             y: 3.0,
             ..whole
         },
-        2 if mended("viewport outside") => Viewport {
+        2 => Viewport {
             x: -9.5,
             y: -7.0,
             width: width + 3.0,
             height: height + 20.0,
         },
-        3 if mended("viewport outside") => Viewport {
+        3 => Viewport {
             x: -100.0,
             y: 0.0,
             width: 60.0,
