@@ -273,7 +273,7 @@ impl Pictures {
     /// Takes a picture.
     ///
     /// # Errors
-    /// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
+    /// [`ErrorKind::OutOfHostMemory`].
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let picture = Picture::of(seen.frame)?;
         let sum = fnv1a_64(picture.rgba.as_flattened());
