@@ -16,9 +16,9 @@ pub use region::{FillRule, Grid, Region};
 use crate::error::Result;
 use glam::DVec2;
 
-/// Points this close to the axis, on either side, in units of the radius, are moved onto it.
-/// `0.5 * sin(pi)` is not quite 0, and files keep six digits. A sliver along the axis would count
-/// as surface, and a negative offset would open a bore there.
+/// Points this close to the axis, on either side, in units of the largest radius, are moved onto
+/// it. `0.5 * sin(pi)` is not quite 0, and files keep six digits. A sliver along the axis would
+/// count as surface, and a negative offset would open a bore there.
 const AXIS_SLACK: f64 = 1e-6;
 
 /// The solid's boundary as closed chains of straight segments.
@@ -87,10 +87,12 @@ impl Profile {
     }
 
     /// A profile with a known outline. The loops are used unchanged, except that points within
-    /// 1e-6 of the axis are moved onto it; [`Outline`] lists their requirements.
+    /// 1e-6 of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
     #[must_use]
     pub fn new(mut outline: Outline, radius: f64) -> Self {
-        let slack = AXIS_SLACK * radius.min(1.0);
+        let points = || outline.loops.iter().flatten();
+        let largest = points().map(|point| point.x).fold(0.0, f64::max);
+        let slack = AXIS_SLACK * largest.min(1.0);
         for point in outline.loops.iter_mut().flatten() {
             if point.x.abs() < slack {
                 point.x = 0.0;
