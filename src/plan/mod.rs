@@ -16,7 +16,9 @@ mod view;
 mod viewports;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, LIST_LENGTHS, MOST_PROXIES, Path, PlanObject, shape_of};
+#[cfg(feature = "other-shaders")]
+pub(crate) use path::LIST_LENGTHS;
+pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 pub(crate) use tiles::MOST_PIXELS;
