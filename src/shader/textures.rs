@@ -40,7 +40,8 @@ impl Declared {
                 }
                 [_, id, of, length] if code == op::TYPE_ARRAY && textures.contains(&of) => {
                     let length = all.constants.get(&length).copied();
-                    all.lengths.insert(id, length.unwrap_or_default());
+                    let length = length.filter(|length| *length > 0);
+                    all.lengths.extend(length.map(|length| (id, length)));
                 }
                 [_, id, _, of] if code == op::TYPE_POINTER => all.copy_length(of, id),
                 [_, of, id, ..] if code == op::VARIABLE => all.copy_length(of, id),

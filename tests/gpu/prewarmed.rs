@@ -334,6 +334,12 @@ fn special_forms_are_taken_when_they_are_compiled() {
         found
     };
     assert!(prepared(&mut drawn).hidden > 0);
+    // A renderer that hides no more compiles what it had hidden.
+    let mut shown = Drawn::by(&host, &device, DrawStage::Compute, &scene, &exact());
+    shown.renderer.hide_until_compiled(true);
+    assert!(prepared(&mut shown).hidden > 0);
+    shown.renderer.hide_until_compiled(false);
+    assert_eq!(prepared(&mut shown).hidden, 0);
     // The special form alone is enough, too.
     let special = drawn.renderer.special_forms();
     std::thread::scope(|scope| scope.spawn(|| special.compile()).join().unwrap()).unwrap();

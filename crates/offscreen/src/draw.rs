@@ -79,7 +79,9 @@ impl Offscreen {
             row = rows.end;
             let compiled = self.device.pipelines_compiled();
             let mut times = self.draw_rows(guest, &rows)?;
-            if self.warm && self.device.pipelines_compiled() != compiled {
+            // Later bands would draw over what they have drawn.
+            let again = self.warm && rows.start == 0;
+            if again && self.device.pipelines_compiled() != compiled {
                 times = self.draw_rows(guest, &rows)?;
             }
             // The clock of the device leaves out the work of others.
@@ -163,9 +165,9 @@ unsafe fn prepare(
     let mut frame = unsafe { renderer.prepare(cmd, 0, view) };
     let special = renderer.special_forms();
     if frame.is_ok() && !special.is_empty() {
-        special.compile()?;
+        let compiled = special.compile();
         // SAFETY: as the caller promised; nothing of the first frame is recorded.
-        frame = unsafe { renderer.prepare(cmd, 0, view) };
+        frame = compiled.and_then(|()| unsafe { renderer.prepare(cmd, 0, view) });
     }
     renderer.hide_until_compiled(false);
     frame

@@ -17,7 +17,7 @@ layout(push_constant) uniform Pushed {
 } pushed;
 
 // True if the box does not cut the solid, and rays from the eye begin outside it. General and special pipelines then
-// draw the same bits.
+// draw the same bits; their counts of look-ups differ.
 bool is_outside()
 {
     return OUTSIDE != 0u || pushed.outside != 0u;

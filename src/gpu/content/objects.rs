@@ -210,9 +210,10 @@ impl Objects {
             self.compact(most, version);
             range = self.instances.allocate_range(count);
         }
-        self.copies = all;
         let none = |_| Error::new(ErrorKind::Other, "instances have gaps that no copy fits in");
-        range.map_err(none)
+        let range = range.map_err(none)?;
+        self.copies = all;
+        Ok(range)
     }
 
     fn free_instances(&mut self, range: Range<u32>) {

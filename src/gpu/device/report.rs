@@ -104,7 +104,6 @@ impl Candidate {
             sampler_anisotropy: vk::Bool32::from(self.anisotropy().is_some()),
             large_points: vk::Bool32::from(self.large_points()),
             sample_rate_shading: self.features.sample_rate_shading,
-            shader_float64: self.features.shader_float64,
             shader_sampled_image_array_dynamic_indexing: self
                 .features
                 .shader_sampled_image_array_dynamic_indexing,
@@ -127,7 +126,7 @@ impl Candidate {
         [
             ("GPU timestamps", timestamps),
             flag("anisotropic filtering", self.anisotropy().is_some()),
-            flag("quads of crowds as points", self.large_points()),
+            flag("quads of tiles as points", self.large_points()),
             ("largest map", format!("{side} texels a side")),
             (
                 "largest picture",

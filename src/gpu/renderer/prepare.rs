@@ -75,8 +75,10 @@ impl Renderer {
     /// target. Errors of Vulkan calls.
     ///
     /// # Safety
-    /// The call writes to memory that the previous frame in `slot` read. Image copies and their
-    /// barriers are recorded into `cmd`. Resources that only the previous frame held are dropped.
+    /// The call writes to memory that the previous frame in `slot` read. Image copies, a fill of one
+    /// word that marks them, and barriers of both are recorded into `cmd`. Resources that only the
+    /// previous frame held are dropped; those of copies live until the slot is prepared again after
+    /// the copies have run.
     ///
     /// The caller must ensure that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
@@ -97,13 +99,15 @@ impl Renderer {
         let to = &mut self.slots[slot];
         to.end_uploads()?;
         let compiled = self.device.pipelines.compiled.load(Ordering::Relaxed);
+        let hides = self.hides;
         let stale = |bound: &BoundPlan| {
             let may_be_faster = !bound.faster.is_empty() && bound.compiled != compiled;
-            !Arc::ptr_eq(&bound.plan, &plan) || may_be_faster
+            let may_show = !hides && bound.hidden() > 0;
+            !Arc::ptr_eq(&bound.plan, &plan) || may_be_faster || may_show
         };
         if to.bound.as_ref().is_none_or(stale) {
-            to.bound = None;
             let bound = self.bind(&plan)?;
+            self.slots[slot].bound = None;
             self.write(slot, &plan)?;
             let to = &mut self.slots[slot];
             to.name(&bound.buffers.tables, self.content.target.as_ref());

@@ -69,7 +69,11 @@ impl Renderer {
         let bound = self.slots.iter().filter_map(|slot| slot.bound.as_ref());
         let mut all: Vec<_> = bound.flat_map(|bound| &bound.faster).copied().collect();
         let mut known = HashSet::new();
-        all.retain(|key| known.insert(*key));
+        let pipelines = &self.device.pipelines;
+        let is_compiled = |&(variant, kind): &(Variant, Kind)| {
+            matches!(pipelines.known(variant, kind, &self.owner), Ok(Some(_)))
+        };
+        all.retain(|key| known.insert(*key) && !is_compiled(key));
         self.forms(all)
     }
 

@@ -9,6 +9,7 @@
 
 use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened};
 use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
+use super::symmetry;
 use super::{ProfileAxis, empty_fault, full_fault, hints, svg};
 use crate::content_fault;
 use glam::DVec2;
@@ -56,12 +57,15 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     let whole = tile.dark(&paints)?;
     let mut warnings = drawing.warnings;
     warnings.extend(check_gradients(&paints, &whole, tile)?);
+    let rows = hints::rows(&whole.outline(canvas.grid));
+    let half_read_as_whole = symmetry::hint_of_rows(&rows, left / height, width / height, axis);
+    let is_other_half = half_read_as_whole.is_some();
+    warnings.extend(half_read_as_whole);
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
-            let rows = hints::rows(&whole.outline(canvas.grid));
             let user = |r: f64| (drawing.to_user * page.inverse() * Point::new(r, 0.0)).x;
-            if let Some(at) = hints::other_axis(&rows) {
+            if let Some(at) = hints::other_axis(&rows).filter(|_| !is_other_half) {
                 warnings.push(format!(
                     "the halves of the drawing differ about the axis (x = {:.4}) and agree about x = {:.4}; \
                      set profile_axis = {:.4}, or move the drawing or its viewBox so that this is the middle",
@@ -81,7 +85,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
     }
-    if hints::is_shell(&outline) {
+    if !is_other_half && hints::is_shell(&outline) {
         warnings.push(
             "the drawing is an outline: the solid is a thin shell about a hollow; fill the shape if it is meant to \
              be solid"

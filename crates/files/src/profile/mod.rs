@@ -87,14 +87,24 @@ fn is_drawing(bytes: &[u8]) -> bool {
 pub(crate) fn empty_fault(what: &str) -> Error {
     content_fault(format!(
         "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
-         white, or set profile_threshold, profile_invert or profile_axis"
+         white, or set {}",
+        tonal_keys(what, "profile_axis")
     ))
+}
+
+/// Keys that may help, with those of tones, which drawings do not have.
+fn tonal_keys(what: &str, or: &str) -> String {
+    match what {
+        "drawing" => or.to_owned(),
+        _ => format!("profile_threshold, profile_invert or {or}"),
+    }
 }
 
 /// The failure of a picture that is dark all over.
 fn full_fault(what: &str) -> Error {
     content_fault(format!(
         "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
-         or set profile_threshold or profile_invert (a plain cylinder: use a polygon)"
+         or set {} (a plain cylinder: use a polygon)",
+        tonal_keys(what, "profile_axis")
     ))
 }

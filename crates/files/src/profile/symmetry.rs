@@ -1,7 +1,7 @@
 //! Warnings about a picture whose solid is beside the axis, tilted, or uneven. Others name half a
 //! profile that is read as a whole one, and the reverse.
 
-use super::ProfileAxis;
+use super::{ProfileAxis, hints};
 
 /// Fewer rows than this show no form.
 const LEAST_ROWS: usize = 8;
@@ -39,6 +39,34 @@ pub(super) fn hint(
             .half_as_whole(axis_at)
             .or_else(|| rows.beside_the_axis(axis_at)),
     }
+}
+
+/// What the rows of a drawing say of half a profile that is read as a whole one. The reverse says
+/// nothing: rings and tubes are drawn beside an axis at the left edge.
+/// Lengths are parts of the height; the rows count from the axis, which is `left` from the left
+/// edge.
+pub(super) fn hint_of_rows(
+    rows: &[hints::Row],
+    left: f64,
+    width: f64,
+    axis: ProfileAxis,
+) -> Option<String> {
+    let scale = rows.len() as f64;
+    let at = |r: f64| scale * (r + left);
+    let span = |(row, spans): (usize, &hints::Row)| {
+        let (first, last) = (spans.first()?, spans.last()?);
+        Some([row as f64, at(first[0]), at(last[1])])
+    };
+    let rows = Rows {
+        spans: rows.iter().enumerate().filter_map(span).collect(),
+        width: scale * width,
+    };
+    if rows.spans.len() < LEAST_ROWS {
+        return None;
+    }
+    let whole = axis != ProfileAxis::Left;
+    let found = whole.then(|| rows.half_as_whole(at(0.0))).flatten();
+    found.map(|text| text.replace("the picture", "the drawing"))
 }
 
 impl Rows {
@@ -92,7 +120,7 @@ impl Rows {
         match (self.is_straight(left), self.is_straight(right)) {
             (true, false) if (at - axis_at).abs() > self.slack() => {
                 let axis = match at {
-                    0.0..=1.0 => "\"left\"".to_owned(),
+                    ..=1.0 => "\"left\"".to_owned(),
                     _ => fraction(at / self.width),
                 };
                 Some(format!(

@@ -15,11 +15,11 @@ pub use keys::decimal_comma;
 pub use warnings::warnings;
 
 use crate::profile::is_profile;
-use crate::{ProfileOptions, Smooth, file_fault, text};
+use crate::{file_fault, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::scene::{Camera, Scene};
+use revmap::scene::{Camera, Clip, Scene};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -37,6 +37,8 @@ pub fn scene(file: impl AsRef<Path>) -> Result<Scene> {
 pub struct SceneFile {
     root: Table,
     file: Option<PathBuf>,
+    /// True for a profile in place of a scene, until a camera is chosen.
+    chooses_camera: bool,
     reader: Reader,
 }
 
@@ -57,7 +59,7 @@ impl SceneFile {
             .in_file(file)
         })?;
         if is_profile(&bytes) {
-            return Self::of_profile(file, folder, bytes);
+            return Ok(Self::of_profile(file, folder, bytes));
         }
         let no_text =
             || file_fault("is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it");
@@ -69,7 +71,7 @@ impl SceneFile {
                 ..scene
             }),
             // The reader of profiles says what is wrong with a file that is named as one.
-            _ if is_named_profile(file) => Self::of_profile(file, folder, bytes),
+            _ if is_named_profile(file) => Ok(Self::of_profile(file, folder, bytes)),
             other => other.map_err(|e| e.in_file(file)),
         }
     }
@@ -82,42 +84,55 @@ impl SceneFile {
         Ok(Self {
             root: text.parse().map_err(|e| syntax(text, &e))?,
             file: None,
+            chooses_camera: false,
             reader: Reader::new(folder.as_ref()),
         })
     }
 
-    fn of_profile(file: &Path, folder: &Path, bytes: Vec<u8>) -> Result<Self> {
+    fn of_profile(file: &Path, folder: &Path, bytes: Vec<u8>) -> Self {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
         // A name that is no text cannot be written in TOML; the bytes are found by this one.
         reader.keep(folder.join(&*name), file, bytes);
-        let options = ProfileOptions {
-            smooth: Smooth::Auto,
-            ..ProfileOptions::default()
-        };
-        let profile = reader.load_profile(&folder.join(&*name), options)?;
-        // The distance at which a sphere about the box fills the picture's height.
-        let reach = profile.radius.hypot(0.5) * 1.05;
-        let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
-        let target = DVec3::new(0.0, 0.0, 0.5);
-        let eye = target + distance * DVec3::new(0.9, 0.3, 0.32).normalize();
-        let table = |entries: [(&str, Value); 2]| {
-            Table::from_iter(entries.map(|(key, value)| (key.to_owned(), value)))
-        };
-        let camera = table([
-            ("eye", eye.to_array().to_vec().into()),
-            ("target", target.to_array().to_vec().into()),
-        ]);
         let object = table([
             ("profile", name.into_owned().into()),
             ("profile_smooth", "auto".into()),
         ]);
+        let camera = camera(DVec3::X, DVec3::ZERO);
         let root = table([("camera", camera.into()), ("object", vec![object].into())]);
-        Ok(Self {
+        Self {
             root,
             file: None,
+            chooses_camera: true,
             reader,
-        })
+        }
+    }
+
+    /// Chooses the camera of a profile in place of a scene: it sees all of the object that `sets`
+    /// make.
+    fn choose_camera(&mut self, sets: &[String]) -> Result<()> {
+        let of_object = |set: &&String| set.trim_start().starts_with("object.");
+        let sets: Vec<String> = sets.iter().filter(of_object).cloned().collect();
+        let scene = self.reader.scene(&overrides::applied(&self.root, &sets)?)?;
+        let Some(object) = scene.objects.first() else {
+            return Ok(());
+        };
+        let offset = &object.offset;
+        let wider = offset.extend + offset.bevel * offset.chamfer.min(1.0);
+        let wider = if object.clip == Clip::None {
+            wider.max(0.0)
+        } else {
+            0.0
+        };
+        // The distance at which a sphere about the box fills the picture's height.
+        let reach = (object.profile.radius + wider).hypot(0.5 + wider) * 1.05;
+        let distance = reach / (0.5 * Camera::FOV_Y).to_radians().sin();
+        let target = DVec3::new(0.0, 0.0, 0.5);
+        let eye = target + distance * DVec3::new(0.9, 0.3, 0.32).normalize();
+        let camera = camera(eye, target);
+        self.root.insert("camera".to_owned(), camera.into());
+        self.chooses_camera = false;
+        Ok(())
     }
 
     /// Every file that was read for its scenes.
@@ -133,6 +148,9 @@ impl SceneFile {
     /// a malformed assignment, with its key or `sets`.
     pub fn scene(&mut self, sets: &[String]) -> Result<Scene> {
         let mut read = || {
+            if self.chooses_camera {
+                self.choose_camera(sets)?;
+            }
             let scene = self.reader.scene(&overrides::applied(&self.root, sets)?)?;
             scene.check()?;
             Ok(scene)
@@ -144,7 +162,8 @@ impl SceneFile {
     }
 
     /// The file's text with each of `sets` (as in [`SceneFile::scene`]) replacing the file's value.
-    /// Paths in the text are relative to the same folder; comments and the order of keys are lost.
+    /// Paths in the text are relative to the same folder; comments and the order of keys are lost. A
+    /// profile in place of a scene has the camera that [`SceneFile::scene`] chose.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for a malformed assignment; [`ErrorKind::File`] for a profile whose file
@@ -157,6 +176,14 @@ impl SceneFile {
         let fault = |e| Error::new(ErrorKind::Other, format!("cannot be written as TOML: {e}"));
         toml::to_string(&overrides::applied(&self.root, sets)?).map_err(fault)
     }
+}
+
+fn table(entries: [(&str, Value); 2]) -> Table {
+    Table::from_iter(entries.map(|(key, value)| (key.to_owned(), value)))
+}
+
+fn camera(eye: DVec3, target: DVec3) -> Table {
+    table([("eye", eye), ("target", target)].map(|(key, at)| (key, at.to_array().to_vec().into())))
 }
 
 /// Returns true for a name that ends as those of profiles do.

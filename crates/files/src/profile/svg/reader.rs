@@ -247,7 +247,7 @@ impl<'a> Reader<'a> {
                 if !self.text_shows(node, style, place.depth)? {
                     return Ok(());
                 }
-                "convert it to paths"
+                "convert it to paths, or hide a label by display=\"none\""
             }
             "image" => {
                 let (w, h) = sized();
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
                 if !style.visible || !filled || !shown(w) || !shown(h) {
                     return Ok(());
                 }
-                "convert it to paths"
+                "convert it to paths, or hide a label by display=\"none\""
             }
         };
         Err(unsupported(&format!("<{name}>"), node, remedy))
