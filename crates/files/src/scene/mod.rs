@@ -45,7 +45,7 @@ pub struct SceneFile {
 impl SceneFile {
     /// Reads the text of `file`, a scene in TOML. A profile (SVG or a picture, by its content) gets
     /// a scene of its own: all of it, seen from in front and a little above. Noise of a picture is
-    /// smoothed ([`Smooth::Auto`]). The file is read once, so it may be a pipe.
+    /// smoothed ([`Smooth::Auto`](crate::Smooth::Auto)). The file is read once, so it may be a pipe.
     ///
     /// # Errors
     /// [`ErrorKind::File`] for a file that cannot be read; the errors of a profile.
