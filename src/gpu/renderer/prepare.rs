@@ -152,7 +152,8 @@ impl Renderer {
     }
 
     /// Stores the tables of a plan, and finds the bindings of its steps. A step takes the special
-    /// form of its pipeline if that is compiled, else the general one.
+    /// form of its pipeline if that is compiled, else the general one. If neither is, the host has
+    /// not asked for pipelines beforehand, and the special form is compiled.
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
@@ -183,15 +184,15 @@ impl Renderer {
             let mut pipeline = pipelines.known(variant, kind, &self.owner)?;
             if pipeline.is_none() {
                 let general = variant.general_of_kind(kind);
-                pipeline = match self.hides {
-                    true => pipelines.known(general, kind, &self.owner)?,
-                    false => Some(pipelines.get(general, kind, &self.owner)?),
-                };
-                let is_faster = variant != general || pipeline.is_none();
-                if is_faster && !faster.contains(&(variant, kind)) {
-                    faster.push((variant, kind));
+                pipeline = pipelines.known(general, kind, &self.owner)?;
+                if pipeline.is_none() && !self.hides {
+                    pipeline = Some(pipelines.get(variant, kind, &self.owner)?);
+                } else {
+                    if !faster.contains(&(variant, kind)) {
+                        faster.push((variant, kind));
+                    }
+                    variant = general;
                 }
-                variant = general;
             }
             steps.push(BoundStep {
                 compares_depths: pipeline.is_some()
