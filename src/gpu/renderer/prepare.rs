@@ -106,8 +106,9 @@ impl Renderer {
             !Arc::ptr_eq(&bound.plan, &plan) || may_be_faster || may_show
         };
         if to.bound.as_ref().is_none_or(stale) {
+            // The tables of the slot's last frame make room for those of this one.
+            to.bound = None;
             let bound = self.bind(&plan)?;
-            self.slots[slot].bound = None;
             self.write(slot, &plan)?;
             let to = &mut self.slots[slot];
             to.name(&bound.buffers.tables, self.content.target.as_ref());
