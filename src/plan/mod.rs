@@ -76,8 +76,8 @@ pub(crate) enum Call {
     Tiles(Range<u32>),
     /// Work groups; the head at this word of the bins holds their number.
     Indirect(u32, Pushed),
-    /// Work groups along three axes.
-    Groups([u32; 3], Pushed),
+    /// This many work groups.
+    Groups(u32, Pushed),
 }
 
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.

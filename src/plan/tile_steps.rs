@@ -127,7 +127,7 @@ impl FramePlan {
                     outside: base.speciality.outside,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
-                let call = Call::Groups([groups, 1, 1], pushed(0));
+                let call = Call::Groups(groups, pushed(0));
                 self.steps.push(step(0, Kind::TileLists, base, call));
                 let call = |bin| Call::Indirect(head + 4 * bin, pushed(bin));
                 for (bin, list_length) in (0..).zip(LIST_LENGTHS) {
@@ -149,7 +149,7 @@ impl FramePlan {
                     outside: base.speciality.outside,
                     ..Pushed::default()
                 };
-                let call = Call::Groups([records.len() as u32, 1, 1], pushed);
+                let call = Call::Groups(records.len() as u32, pushed);
                 later.push(step(phase, kind, base, call));
             }
             phase += u32::from(!tiles.queued.is_empty());

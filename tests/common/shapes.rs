@@ -1,6 +1,7 @@
 //! Profiles for tests, each with a different difficulty.
 
-use revmap::profile::Profile;
+use glam::DVec2;
+use revmap::profile::{Outline, Profile};
 use revmap::scene::Offset;
 use std::f64::consts::{PI, TAU};
 
@@ -121,4 +122,15 @@ pub fn all() -> Vec<(&'static str, Profile)> {
 /// A plain column of this radius.
 pub fn column_of(radius: f64) -> Profile {
     polygon(&[[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]], 0.5)
+}
+
+/// Two cylinders, one inside the other, each with its own loop: the middle is solid twice.
+pub fn crossing() -> Profile {
+    let rectangle = |r0: f64, r1: f64, z1: f64| {
+        [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
+            .map(DVec2::from)
+            .to_vec()
+    };
+    let loops = vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)];
+    Profile::new(Outline { loops }, 0.5)
 }

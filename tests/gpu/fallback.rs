@@ -10,20 +10,9 @@ use revmap_offscreen::Offscreen;
 use revmap_searches::CONE;
 use std::sync::Arc;
 
-/// Two cylinders, one inside the other, each with its own loop: the middle is solid twice.
-pub fn crossing() -> Profile {
-    let rectangle = |r0: f64, r1: f64, z1: f64| {
-        [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
-            .map(DVec2::from)
-            .to_vec()
-    };
-    let loops = vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)];
-    Profile::new(Outline { loops }, 0.5)
-}
-
 #[test]
 fn what_has_no_contour_is_drawn_from_the_map() {
-    let mut scene = scene_of(crossing(), eye(20.0, 2.2));
+    let mut scene = scene_of(shapes::crossing(), eye(20.0, 2.2));
     let mut ball = Object::new("ball", Arc::new(shapes::sphere()));
     ball.placement.position.x = -0.6;
     scene.objects.push(ball);
@@ -121,7 +110,7 @@ fn surfaces_of_another_search_are_not_planned() {
     let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
     renderer.draw().unwrap();
     assert!(renderer.renderer().object_costs()[0].table_bytes > 0);
-    let mut other = Object::new("crossing", Arc::new(crossing()));
+    let mut other = Object::new("crossing", Arc::new(shapes::crossing()));
     other.placement.position.x = -1.0;
     scene.objects.push(other);
     renderer.update(&scene).unwrap();

@@ -6,7 +6,6 @@ use crate::common::host::{Checked, Host, add, borrow, never, open, view_of};
 use crate::common::ways::STAGES;
 use crate::common::{placement, shapes};
 use crate::embedding::{hundred, options, three};
-use crate::fallback::crossing;
 use crate::unsubmitted::{Drawn, differ};
 use glam::DVec3;
 use revmap::gpu::{Device, FrameStatistics, View};
@@ -109,7 +108,7 @@ fn no_parameter_compiles_a_pipeline() {
             s.camera.eye = DVec3::new(0.05, 0.0, 0.5);
         }),
         ("a contour that does not close", |s| {
-            s.objects[0].profile = Arc::new(crossing());
+            s.objects[0].profile = Arc::new(shapes::crossing());
         }),
         ("many copies", |s| {
             let at = |n: u32| placement([-f64::from(n), 0.3, 0.0], [0.0; 3], [1.0; 3]);

@@ -3,9 +3,8 @@
 use crate::common::host::{self, Attachments, Options, borrow, color_pass, open, view_of};
 use crate::common::shapes;
 use ash::vk;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use revmap::gpu::{Device, Output, Renderer, View};
-use revmap::profile::{Outline, Profile};
 use revmap::scene::{Camera, Object, Scene, Shadow};
 use revmap::settings::SearchSettings;
 use std::sync::Arc;
@@ -17,17 +16,6 @@ const OPTIONS: Options = Options {
     samples: 1,
     reversed: false,
 };
-
-/// Two cylinders, one inside the other, each with its own loop: a solid without a contour.
-pub fn crossing() -> Profile {
-    let rectangle = |r0: f64, r1: f64, z1: f64| {
-        [(r0, 0.0), (r1, 0.0), (r1, z1), (r0, z1)]
-            .map(DVec2::from)
-            .to_vec()
-    };
-    let loops = vec![rectangle(0.0, 0.3, 0.4), rectangle(0.1, 0.2, 0.8)];
-    Profile::new(Outline { loops }, 0.5)
-}
 
 fn new(device: &Device) -> Renderer {
     let exact = SearchSettings::exact();
@@ -54,7 +42,7 @@ fn a_removed_solid_leaves_no_search_behind() {
     let view = view_of(&scene, &OPTIONS);
     let mut kept = new(&device);
     host::add(&mut kept, &scene);
-    let mut other = Object::new("crossing", Arc::new(crossing()));
+    let mut other = Object::new("crossing", Arc::new(shapes::crossing()));
     other.placement.position.x = -1.0;
     let other = kept.add(other).unwrap();
     let with = picture(&host, &mut kept, &view);

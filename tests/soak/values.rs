@@ -3,7 +3,6 @@
 use crate::common::host::{Host, Texture};
 use crate::common::shapes;
 use crate::dice::Dice;
-use crate::findings::crossing;
 use ash::vk;
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::gpu::HostImage;
@@ -92,7 +91,7 @@ fn kept(host: &Host, kind: u32, seed: u32) -> Kept<'_> {
 fn profile(dice: &mut Dice) -> Profile {
     if dice.chance(0.1) {
         // One that has no contour.
-        return crossing();
+        return shapes::crossing();
     }
     let count = 3 + dice.below(10);
     let mut points = vec![[0.0, 0.05]];

@@ -40,7 +40,7 @@ pub(crate) fn lacking(l: &vk::PhysicalDeviceLimits) -> Vec<String> {
     };
     let one = |name: &str, needed: u32, has: u32| (name.to_owned(), needed, has);
     let [across, down, _] = l.max_compute_work_group_size;
-    let groups = l.max_compute_work_group_count;
+    let [groups, ..] = l.max_compute_work_group_count;
     let all = [
         one(
             "maxBoundDescriptorSets",
@@ -117,11 +117,7 @@ pub(crate) fn lacking(l: &vk::PhysicalDeviceLimits) -> Vec<String> {
             l.max_compute_work_group_invocations,
         ),
         one("maxComputeWorkGroupSize", GROUP_PIXELS, across.min(down)),
-        one(
-            "maxComputeWorkGroupCount",
-            MOST_GROUPS,
-            groups[0].min(groups[1]),
-        ),
+        one("maxComputeWorkGroupCount", MOST_GROUPS, groups),
     ];
     let short = all.into_iter().filter(|(_, needed, has)| has < needed);
     short

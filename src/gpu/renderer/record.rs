@@ -96,22 +96,13 @@ impl Renderer {
     /// results of the first.
     pub(super) fn wait_for_writes(&self, cmd: vk::CommandBuffer) {
         let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
-        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
-        self.wait(cmd, stage, (write, read | write));
-    }
-
-    fn wait(
-        &self,
-        cmd: vk::CommandBuffer,
-        stages: vk::PipelineStageFlags,
-        (from, to): (vk::AccessFlags, vk::AccessFlags),
-    ) {
         let barrier = vk::MemoryBarrier::default();
-        let barrier = [barrier.src_access_mask(from).dst_access_mask(to)];
+        let barrier = [barrier.src_access_mask(write).dst_access_mask(read | write)];
+        let stage = vk::PipelineStageFlags::COMPUTE_SHADER;
         let none = vk::DependencyFlags::empty();
         let raw = &self.device.raw;
         // SAFETY: `cmd` is recording, outside a render pass.
-        unsafe { raw.cmd_pipeline_barrier(cmd, stages, stages, none, &barrier, &[], &[]) };
+        unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &barrier, &[], &[]) };
     }
 
     /// The slot of a frame, and its bindings.
@@ -157,9 +148,9 @@ impl Renderer {
                     self.push(cmd, pushed);
                     raw.cmd_dispatch_indirect(cmd, bins, 4 * u64::from(*head));
                 }
-                Call::Groups([x, y, z], pushed) => {
+                Call::Groups(groups, pushed) => {
                     self.push(cmd, pushed);
-                    raw.cmd_dispatch(cmd, *x, *y, *z);
+                    raw.cmd_dispatch(cmd, *groups, 1, 1);
                 }
             }
         }

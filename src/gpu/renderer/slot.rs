@@ -250,7 +250,7 @@ impl FrameSlot {
                     all.draws += 1;
                     all.tiles += range.end - range.start;
                 }
-                Call::Groups([groups, ..], _) => {
+                Call::Groups(groups, _) => {
                     all.dispatches += 1;
                     all.tiles += groups;
                 }
