@@ -25,7 +25,7 @@ void main()
     gl_PointSize = float(side);
     hand_over(i, frame.dir_00.w);
     vec2 span = EVERYWHERE;
-    if (OUTSIDE != 0u) {
+    if (is_outside()) {
         PixelRays rays = pixel_rays(i);
         span = beam_span(beam_of(rays, corner, side, farthest_of(rays, i), 0.0));
     }

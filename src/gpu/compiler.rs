@@ -14,7 +14,7 @@ use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::{Conditions, LIST_LENGTHS};
-use crate::scene::{Clip, Lighting, Object, Shadow};
+use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::{HostLook, Kind, ShadowCasters, Speciality, Technique, Variant};
 use ash::{khr, vk};
@@ -143,7 +143,6 @@ impl PipelineCompiler {
             casts: lighting.shadow != Shadow::Off,
             ..self.conditions
         };
-        let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
         let mut all = Vec::new();
         for kind in conditions.kinds(&technique) {
             let general = Variant::general(technique);
@@ -154,24 +153,21 @@ impl PipelineCompiler {
                 }
             };
             for one_instance in [1, 0] {
-                for outside in if may_cut { [1, 0] } else { [1, 1] } {
-                    for list_length in LIST_LENGTHS {
-                        add(Variant {
-                            speciality: Speciality {
-                                lights: match conditions.casts {
-                                    true => 3,
-                                    false => lighting.lights.len().clamp(1, 3) as u32,
-                                },
-                                list_length,
-                                outside,
-                                own_tables: 1,
-                                one_object: 1,
-                                one_instance,
-                                depths: 1 - one_instance,
+                for list_length in LIST_LENGTHS {
+                    add(Variant {
+                        speciality: Speciality {
+                            lights: match conditions.casts {
+                                true => 3,
+                                false => lighting.lights.len().clamp(1, 3) as u32,
                             },
-                            ..general
-                        });
-                    }
+                            list_length,
+                            own_tables: 1,
+                            one_object: 1,
+                            one_instance,
+                            depths: 1 - one_instance,
+                        },
+                        ..general
+                    });
                 }
             }
             // Searches for comparison are timed by their special forms alone.

@@ -53,6 +53,9 @@ pub(crate) struct FramePlan {
     pub copies: Vec<Option<Vec<u32>>>,
     /// For each object, whether each [`Part`] of its surfaces is read.
     pub parts: Vec<[bool; 3]>,
+    /// For each object, true if its box cuts nothing, and rays from the eye begin outside of the
+    /// solid.
+    pub outside: Vec<bool>,
 }
 
 /// One draw or dispatch, or several draws that one command records.
@@ -95,6 +98,7 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
         paths: paths.iter().map(Path::public).collect(),
         copies: vec![None; objects.len()],
         parts: vec![[false; 3]; objects.len()],
+        outside: vec![false; objects.len()],
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
@@ -199,10 +203,8 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let mut add = |kind, outside, draws: Vec<IndexedDraw>| {
-                let mut variant = variants[n];
-                variant.speciality.outside = u32::from(outside);
-                let variant = variant.of_kind(kind);
+            let mut add = |kind, draws: Vec<IndexedDraw>| {
+                let variant = variants[n].of_kind(kind);
                 let layer = layers.of(objects, n as u32, (variant, kind));
                 layers.all[layer].draws.extend(draws);
             };
@@ -211,8 +213,8 @@ impl FramePlan {
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;
-                    let outside = of.surface().is_some_and(|s| apart(s));
-                    add(Kind::Boxes, outside, vec![draw(BOX_INDICES, 0)]);
+                    self.outside[n] = of.surface().is_some_and(|s| apart(s));
+                    add(Kind::Boxes, vec![draw(BOX_INDICES, 0)]);
                 }
                 Path::Cells([cut, whole]) => {
                     let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
@@ -222,9 +224,9 @@ impl FramePlan {
                     };
                     self.parts[n][Part::Frusta as usize] = true;
                     self.parts[n][Part::Tables as usize] = !cut.is_empty();
-                    for (outside, runs) in [(false, cut), (true, whole)] {
+                    for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
                         if !runs.is_empty() {
-                            add(Kind::Cells, outside, runs.iter().map(of_run).collect());
+                            add(kind, runs.iter().map(of_run).collect());
                         }
                     }
                 }

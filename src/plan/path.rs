@@ -61,7 +61,7 @@ pub(crate) struct PlanObject<'a> {
 }
 
 /// Inputs of a plan other than view and objects.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Conditions {
     /// True if tiles are traced in compute; otherwise fragments draw proxies and tiles.
     pub compute: bool,
@@ -233,6 +233,7 @@ impl Conditions {
                 technique.is_shaded() && Self::searches_queues(technique),
             ),
             (Kind::Cells, patches && self.passes_cells),
+            (Kind::CutCells, patches && self.passes_cells),
         ];
         let of_compute = [
             (Kind::TileTree, true),
@@ -240,9 +241,9 @@ impl Conditions {
             (Kind::TileLists, patches && self.lists_patches()),
             (Kind::TilePatches, patches && self.lists_patches()),
         ];
-        let all = if self.compute { of_compute } else { of_pass };
-        let taken = all.into_iter().filter(|(_, is)| *is);
-        taken.map(|(kind, _)| kind).collect()
+        let all: &[(Kind, bool)] = if self.compute { &of_compute } else { &of_pass };
+        let taken = all.iter().filter(|(_, is)| *is);
+        taken.map(|(kind, _)| *kind).collect()
     }
 }
 

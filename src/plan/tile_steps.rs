@@ -45,9 +45,8 @@ impl FramePlan {
                 layer_of.push(u32::MAX);
                 continue;
             }
-            let mut variant = variants[n];
-            variant.speciality.outside = u32::from(of.is_whole() && visible.is_apart(batch));
-            let layer = layers.of(objects, n as u32, (variant, kind));
+            self.outside[n] = of.is_whole() && visible.is_apart(batch);
+            let layer = layers.of(objects, n as u32, (variants[n], kind));
             layer_of.push(layer as u32);
         }
         let layers = layers.all;
@@ -124,7 +123,6 @@ impl FramePlan {
                     bin,
                     object,
                     instance,
-                    outside: base.speciality.outside,
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Groups(groups, pushed(0));
@@ -146,7 +144,6 @@ impl FramePlan {
                     first: records.start,
                     object,
                     instance,
-                    outside: base.speciality.outside,
                     ..Pushed::default()
                 };
                 let call = Call::Groups(records.len() as u32, pushed);

@@ -182,6 +182,22 @@ pub struct GrownObject {
     pub growth: Growth,
 }
 
+impl GrownObject {
+    /// The same solid with the placements of `object`, which are those of a box that has not grown.
+    #[must_use]
+    pub fn placed_as(&self, object: &Object) -> Self {
+        let of = |p: &Placement| self.growth.placement(p);
+        Self {
+            object: Object {
+                placement: of(&object.placement),
+                instances: object.instances.iter().map(of).collect(),
+                ..self.object.clone()
+            },
+            growth: self.growth,
+        }
+    }
+}
+
 /// Cache of grown profiles, one for each profile and growth in use.
 #[derive(Debug, Default)]
 pub struct GrownProfiles {
@@ -212,18 +228,16 @@ impl GrownProfiles {
             let place = (2.0 * o - 1.0) * object.profile.radius * scale;
             0.5 * (place / profile.radius + 1.0)
         });
-        let object = Object {
+        let drawn = Object {
             profile,
             offset: growth.offset(&object.offset),
             axis,
-            placement: growth.placement(&object.placement),
-            instances: object
-                .instances
-                .iter()
-                .map(|p| growth.placement(p))
-                .collect(),
             ..object.clone()
         };
-        Some(GrownObject { object, growth })
+        let unplaced = GrownObject {
+            object: drawn,
+            growth,
+        };
+        Some(unplaced.placed_as(object))
     }
 }

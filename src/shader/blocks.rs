@@ -107,6 +107,4 @@ pub struct Pushed {
     pub object: u32,
     /// Index of the only instance.
     pub instance: u32,
-    /// Same as [`Speciality::outside`](super::Speciality::outside), for general pipelines.
-    pub outside: u32,
 }

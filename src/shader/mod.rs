@@ -28,6 +28,8 @@ pub use spirv::{depth_less, instructions, op};
 pub(crate) use technique::is_beveled;
 pub use technique::{HostLook, ShadowCasters, Technique};
 pub use textures::{with_constant_textures, with_varying_textures};
+#[cfg(feature = "other-shaders")]
+pub(crate) use variant::SPECIALITIES;
 pub use variant::{Kind, Speciality, Variant};
 pub use view_index::with_view_index;
 

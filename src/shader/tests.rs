@@ -117,7 +117,7 @@ fn constants_of(words: &[u32]) -> BTreeSet<u32> {
 #[test]
 fn a_variant_sets_every_specialisation_constant() {
     let set: BTreeSet<u32> = Variant::general(any(Solver::Exact, Planes::Color))
-        .constants()
+        .constants(Kind::Cells)
         .iter()
         .map(|(id, _)| *id)
         // Constants of the device and of the pass.
@@ -196,6 +196,7 @@ fn pipelines_index_textures_by_constants() {
 fn reachable_variants_have_modules() {
     let kinds = [
         Kind::Cells,
+        Kind::CutCells,
         Kind::Boxes,
         Kind::Quads,
         Kind::Tiles,

@@ -3,7 +3,7 @@
 //! variant of a technique is right for everything that the technique draws, so a frame may take it
 //! whenever a special one is not compiled.
 
-use super::catalogue::{Entry, Module, Search};
+use super::catalogue::{Entry, Module};
 use super::external::External;
 use super::generated as g;
 use super::technique::Technique;
@@ -14,6 +14,8 @@ use std::ffi::CStr;
 pub enum Kind {
     /// Cells with their patches, rasterised.
     Cells,
+    /// Cells that a side of the box may cut.
+    CutCells,
     /// Shape boxes, rasterised; fragments walk the tree.
     Boxes,
     /// Quads of tiles, each of one copy, rasterised; fragments walk the tree.
@@ -36,6 +38,7 @@ impl Kind {
     pub const fn label(self) -> &'static CStr {
         match self {
             Self::Cells => c"revmap cells",
+            Self::CutCells => c"revmap cut cells",
             Self::Boxes => c"revmap boxes",
             Self::Quads => c"revmap quads of tiles",
             Self::Tiles => c"revmap tiles",
@@ -62,7 +65,7 @@ impl Kind {
     const fn entry(self) -> Entry {
         match self {
             Self::Boxes | Self::Quads => Entry::Tree,
-            Self::Cells => Entry::Cells,
+            Self::Cells | Self::CutCells => Entry::Cells,
             Self::Tiles => Entry::Tiles,
             Self::TileLists => Entry::TileLists,
             Self::TilePatches => Entry::TilePatches,
@@ -87,8 +90,6 @@ pub struct Speciality {
     pub lights: u32,
     /// Patches that each pixel of a listed tile tests.
     pub list_length: u32,
-    /// 1 if the box cuts nothing of the solid, or of these cells, and rays from the eye begin outside.
-    pub outside: u32,
     /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
     pub own_tables: u32,
     /// 1 if the draw has one object, and a uniform buffer holds it.
@@ -99,12 +100,37 @@ pub struct Speciality {
     pub depths: u32,
 }
 
+/// The names of the members of [`Speciality`], in order.
+#[cfg(feature = "other-shaders")]
+pub(crate) const SPECIALITIES: [&str; 6] = [
+    "lights",
+    "list-length",
+    "own-tables",
+    "one-object",
+    "one-instance",
+    "depths",
+];
+
 impl Speciality {
+    /// The members of a set, with bits in the order of [`SPECIALITIES`]; the others promise nothing.
+    #[must_use]
+    pub fn only(self, set: u32) -> Self {
+        let general = Self::GENERAL;
+        let of = |bit: u32, own: u32, general: u32| if set >> bit & 1 != 0 { own } else { general };
+        Self {
+            lights: of(0, self.lights, general.lights),
+            list_length: of(1, self.list_length, general.list_length),
+            own_tables: of(2, self.own_tables, general.own_tables),
+            one_object: of(3, self.one_object, general.one_object),
+            one_instance: of(4, self.one_instance, general.one_instance),
+            depths: of(5, self.depths, general.depths),
+        }
+    }
+
     /// Promises nothing.
     pub const GENERAL: Self = Self {
         lights: 3,
         list_length: g::LONGEST_LIST,
-        outside: 0,
         own_tables: 0,
         one_object: 0,
         one_instance: 0,
@@ -141,11 +167,9 @@ impl Variant {
         } = self;
         let general = Speciality::GENERAL;
         let walks = kind.walks();
-        let on_patches = matches!(kind, Kind::Cells | Kind::TilePatches);
         let of_copy = matches!(kind, Kind::TilePatches | Kind::TileTree);
         let lists = kind.makes_lists();
         let tables = (walks && technique.reads_tables()) || kind == Kind::TilePatches || lists;
-        let tested = technique.search == Search::Quadric && technique.replicas == 0;
         // Lavapipe 22 crashes in shadows if it treats the solid as constants.
         let one_object = lists || technique.shadow == g::SHADOW_OFF;
         let lit = technique.is_lit() && !lists;
@@ -160,7 +184,6 @@ impl Variant {
                     own.list_length,
                     general.list_length,
                 ),
-                outside: of(on_patches || lists || (walks && tested), own.outside, 0),
                 own_tables: of(tables, own.own_tables, 0),
                 one_object,
                 one_instance: of(of_copy || lists, own.one_instance & one_object, 0),
@@ -181,7 +204,7 @@ impl Variant {
     pub fn vertices(&self, kind: Kind) -> Option<Module> {
         let entry = match kind {
             Kind::Boxes => Entry::BoxVertex,
-            Kind::Cells => Entry::CellVertex,
+            Kind::Cells | Kind::CutCells => Entry::CellVertex,
             Kind::Quads => Entry::QuadVertex,
             Kind::Tiles => Entry::TileVertex,
             _ => return None,
@@ -205,7 +228,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self) -> [(u32, u32); 17] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 17] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
@@ -222,7 +245,7 @@ impl Variant {
             (g::DEPTHS_ID, speciality.depths),
             (g::LIGHTS_ID, speciality.lights),
             (g::LIST_LENGTH_ID, speciality.list_length),
-            (g::OUTSIDE_ID, speciality.outside),
+            (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
             (g::OWN_TABLES_ID, speciality.own_tables),
             (g::ONE_OBJECT_ID, speciality.one_object),
             (g::ONE_INSTANCE_ID, speciality.one_instance),

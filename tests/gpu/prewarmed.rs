@@ -297,8 +297,8 @@ fn general_and_special_forms_draw_the_same_bits() {
                 drawn.renderer.prewarm().unwrap().compile().unwrap();
                 let general = drawn.picture(0);
                 let special = drawn.renderer.special_forms();
-                let shadowed = name == "shadowed";
-                assert!(shadowed || !special.is_empty(), "{name}, {stage:?}");
+                // Several objects, and shadows, have the general form alone in some stages.
+                assert!(name != "one" || !special.is_empty(), "{stage:?}");
                 special.compile().unwrap();
                 let found = drawn.picture(0);
                 assert!(

@@ -98,8 +98,10 @@ fn shadows_are_the_references() {
             // replicas changes a quarter of its shadow or more.
             assert!(dark > 1500 && 8 * off <= dark, "{what}");
             let fragment = from_boxes(settings);
-            let compute = draw(&scene, &in_compute(fragment));
-            let difference = draw(&scene, &fragment).first_difference(&compute);
+            let (boxes, mut tiles) = (draw(&scene, &fragment), draw(&scene, &in_compute(fragment)));
+            // Tiles search the nearer solid first, and leave out what is behind its hit.
+            tiles.steps.clone_from(&boxes.steps);
+            let difference = boxes.first_difference(&tiles);
             assert_eq!(difference, None, "{what}");
         }
     }

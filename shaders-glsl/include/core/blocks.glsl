@@ -57,7 +57,7 @@ struct Object {
     vec4 albedo;     // linear RGB
     vec4 specular;   // strength, shininess; height of the box and of its part below z = 0, profile units
     vec4 texturing;  // repetitions along xi and eta; bump depth a; 2 R of the profile's box in its units
-    uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z
+    uvec4 cells;     // replicas along x, y, z; bits: reflected along x, y, z, then OUTSIDE_BIT
     uvec4 instances; // first, count, index of the shape map among those of shadows, first vector of all tables
     uvec4 patches;   // table start, the copy's; three words: quadric search: 0, 0, unit of r^2 (bits); other searches:
                      // three words of their own
@@ -96,6 +96,12 @@ bool traces_caster = false;
 bool casts()
 {
     return SHADOW != SHADOW_OFF && traces_caster;
+}
+
+// True if the box cuts nothing of the object, and rays from the eye begin outside of it.
+bool is_outside()
+{
+    return (object.cells.w & OUTSIDE_BIT) != 0u;
 }
 
 // True if the object's tables are in the uniform buffer of tables (core/patch_tables.glsl). Places of tables are then

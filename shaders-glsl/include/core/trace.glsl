@@ -65,7 +65,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
     float f;
     bool within = false;
     // Rays towards lights may begin anywhere.
-    if (OUTSIDE == 0u || casts()) {
+    if (!is_outside() || casts()) {
         within = begins_within(m, inside, hit.steps, f);
     }
     hit.at_border = false;

@@ -60,7 +60,7 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0
 #endif
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
-layout(constant_id = 11) const uint OUTSIDE = 0u; // 1: the box does not cut the solid or cell, and rays from the eye begin outside it
+layout(constant_id = 11) const uint CUT_CELLS = 0u; // 1: a side of the box may cut the cells
 layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
 layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it
 layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
@@ -89,6 +89,8 @@ const uint SHADOW_HARD = 1u;
 const uint SHADOW_SOFT = 2u;
 
 const uint EXHAUSTED_BIT = 2147483648u; // bit in a pixel's word of look-ups: one of its rays ran out of steps
+
+const uint OUTSIDE_BIT = 8u; // bit in an object's block: its box cuts nothing, and rays from the eye begin outside of the solid
 
 const uint MAX_LIGHTS = 8u;
 const uint PATCH_VECTORS = 1024u; // minimum of OWN_VECTORS: uniform buffers of every device hold this many

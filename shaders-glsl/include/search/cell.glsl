@@ -15,7 +15,7 @@ bool trace_cell(vec2 pixel, out Hit hit)
     const float SIDE_SLACK = 4e-6; // object units; a hit so close before a side of the box counts
     float eye = row.least;
     bool by_side = false;
-    if (OUTSIDE == 0u) {
+    if (CUT_CELLS != 0u) {
         clip_to_sides(row);
         by_side = row.least > eye && row.least < row.most;
         row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
@@ -36,7 +36,7 @@ bool trace_cell(vec2 pixel, out Hit hit)
     bool found = end_row(row, PATCHES_PER_CELL, hit);
     // A ray that enters the solid before a side may be in the solid there, or leave it into the shell of a cell that it
     // then enters from behind. The fragment of the cell where it entered searches all of the box.
-    if (OUTSIDE == 0u && by_side && entered) {
+    if (CUT_CELLS != 0u && by_side && entered) {
         found = trace_solid(row.m.o, row.m.v, -eye, EVERYWHERE, false, hit);
     }
     return found;

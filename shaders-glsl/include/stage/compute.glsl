@@ -13,15 +13,7 @@ layout(push_constant) uniform Pushed {
     uint bin;      // index of the bin that this dispatch reads
     uint object;   // index of the only object
     uint instance; // index of the only instance
-    uint outside;  // 1: as OUTSIDE
 } pushed;
-
-// True if the box does not cut the solid, and rays from the eye begin outside it. General and special pipelines then
-// draw the same bits; their counts of look-ups differ.
-bool is_outside()
-{
-    return OUTSIDE != 0u || pushed.outside != 0u;
-}
 
 // Bins of tiles by the length of their lists of patches, filled by tile_lists.comp from N records:
 // - TILE_BINS heads of four words: an indirect dispatch with one work group per record in the bin, and one unused word;

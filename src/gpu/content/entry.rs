@@ -1,57 +1,88 @@
-//! A renderer's record of an object: its values, and the resources that are derived from them.
+//! An object as the host set it, and the same object as prepared: with all that its frames read.
 
+use crate::error::{Result, lock};
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
-use crate::plan::levels::COPY_LEVELS;
+use crate::plan::levels::{self, COPY_LEVELS};
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
+use crate::shader::generated::OUTSIDE_BIT;
 use crate::shader::{ObjectBlock, Technique, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
 use crate::solid::farthest_corner;
-use crate::solid::offset_surface::{OffsetSurface, Part};
-use std::ops::Range;
-use std::sync::Arc;
+use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
+use std::ops::{Deref, Range};
+use std::sync::{Arc, Mutex};
 
-/// One object.
+/// An object as set, and its state in the last snapshot.
 pub(in crate::gpu) struct Entry {
-    /// The values of the last refresh, which are drawn.
-    pub values: Values,
-    pub instances: Range<u32>,
-    /// Views whose mask shares no bit with it do not show the object.
-    pub mask: u32,
-    /// The renderer's version at the last change.
-    pub version: u64,
-    /// The values of the last frame, for motion; `None` if they were the present ones, or if there
-    /// was no last frame.
-    pub last: Option<LastValues>,
+    pub set: ObjectState,
+    /// The boundary of the object as set; `None` before it is made.
+    pub boundary: Option<Arc<Boundary>>,
+    /// The object in the last snapshot; `None` for a new one.
+    pub prepared: Option<Arc<PreparedObject>>,
+    /// What must be made anew for the next snapshot.
+    pub stale: Stale,
 }
 
-/// Values of an object, and the resources that follow from them, whatever the view.
+/// The parts of a [`PreparedObject`] that a change makes invalid. Later ones include earlier ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::gpu) enum Stale {
+    Nothing,
+    /// Placements, mask, instances, motion.
+    State,
+    /// Images.
+    Look,
+    /// All else.
+    Shape,
+}
+
+/// Values of an object, all of which the host sets.
 #[derive(Clone)]
-pub(in crate::gpu) struct Values {
+pub(in crate::gpu) struct ObjectState {
     pub object: Object,
     pub images: ObjectImages,
-    /// The object that is drawn in its place, in a box that has grown with the offset.
-    pub grown: Option<GrownObject>,
-    /// What follows from the object alone; `None` before a refresh.
-    pub boundary: Option<Boundary>,
-    /// What follows from the object and from facts of all objects; `None` before a refresh, and if
-    /// that failed.
-    pub derived: Option<Derived>,
+    /// Views whose mask shares no bit with it do not show the object.
+    pub mask: u32,
+    /// Numbers of its copies among all instances.
+    pub instances: Range<u32>,
+    pub last: Last,
 }
 
-/// The boundary of an object, in the forms that searches read.
+/// The values of the last frame, for motion.
 #[derive(Clone)]
+pub(in crate::gpu) enum Last {
+    /// They are the present ones.
+    Same,
+    /// There are none.
+    New,
+    Was(LastValues),
+}
+
+/// An object with the resources that its frames read, whatever the view. It never changes.
+pub(in crate::gpu) struct PreparedObject {
+    pub number: u32,
+    pub state: ObjectState,
+    /// The object that is drawn in its place, in a box that has grown with the offset.
+    pub grown: Option<GrownObject>,
+    pub boundary: Arc<Boundary>,
+    pub derived: Arc<Derived>,
+}
+
+/// The boundary of an object, in the forms that searches read. It follows from the object alone.
 pub(in crate::gpu) struct Boundary {
+    /// The object that is drawn, in a box that has grown; with earlier placements.
+    pub grown: Option<GrownObject>,
     /// Keeps the solid alive; the cache does not.
     pub solid: Arc<Solid>,
     /// The contour whose patches are searched, or would be if it closed; `None` for a search on the
     /// map or on a table of its own.
     pub contour: Option<Arc<OffsetContour>>,
-    /// Surfaces by level, for levels that views needed. Empty for a search on the map.
-    pub levels: Vec<(u8, Arc<OffsetSurface>)>,
-    pub map: Option<Arc<ShapeTexture>>,
+    /// The table of a search that has one.
+    pub table: Option<Arc<OffsetSurface>>,
+    /// Surfaces of patches that views needed, by level. Keeps them alive.
+    pub levels: Mutex<Vec<(u8, Arc<OffsetSurface>)>>,
 }
 
 impl Boundary {
@@ -61,13 +92,13 @@ impl Boundary {
     }
 }
 
-/// The part of an object's resources that depends on other objects.
-#[derive(Clone)]
+/// The resources of an object that may depend on other objects.
 pub(in crate::gpu) struct Derived {
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
     /// The bound on its steps, 1 if there is none.
     pub steps: u32,
+    pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
     pub arc: Option<Arc<ArcTexture>>,
     /// The number of the object's map among the maps that shadows read.
@@ -77,6 +108,7 @@ pub(in crate::gpu) struct Derived {
 }
 
 /// An object's values of the last frame.
+#[derive(Clone)]
 pub(in crate::gpu) struct LastValues {
     placement: Placement,
     instances: Copies,
@@ -102,7 +134,75 @@ impl LastValues {
     }
 }
 
-impl Values {
+impl Entry {
+    pub const fn new(object: Object, images: ObjectImages, instances: Range<u32>) -> Self {
+        Self {
+            set: ObjectState {
+                object,
+                images,
+                mask: u32::MAX,
+                instances,
+                last: Last::New,
+            },
+            boundary: None,
+            prepared: None,
+            stale: Stale::Shape,
+        }
+    }
+
+    /// Marks what must be made anew.
+    pub fn mark(&mut self, stale: Stale) {
+        self.stale = self.stale.max(stale);
+        if stale == Stale::Shape {
+            self.boundary = None;
+        }
+    }
+
+    /// The object that will be drawn, with earlier placements; the object as set before its boundary is made.
+    pub fn shape(&self) -> &Object {
+        let grown = self.boundary.as_ref().and_then(|b| b.grown.as_ref());
+        grown.map_or(&self.set.object, |grown| &grown.object)
+    }
+
+    /// The growth of the box with the offset.
+    pub fn growth(&self) -> Growth {
+        let grown = self.boundary.as_ref().and_then(|b| b.grown.as_ref());
+        grown.map(|grown| grown.growth).unwrap_or_default()
+    }
+}
+
+impl Deref for PreparedObject {
+    type Target = ObjectState;
+
+    fn deref(&self) -> &ObjectState {
+        &self.state
+    }
+}
+
+impl PreparedObject {
+    /// The object in a state. `before`: the same object in the last snapshot.
+    pub fn new(
+        number: u32,
+        state: &ObjectState,
+        boundary: &Arc<Boundary>,
+        derived: Arc<Derived>,
+        before: Option<&Self>,
+    ) -> Self {
+        let object = &state.object;
+        let places = |of: &Object| (of.placement, of.instances.clone());
+        let kept = before.filter(|before| {
+            Arc::ptr_eq(&before.boundary, boundary) && places(&before.object) == places(object)
+        });
+        let placed = || boundary.grown.as_ref().map(|grown| grown.placed_as(object));
+        Self {
+            number,
+            state: state.clone(),
+            grown: kept.map_or_else(placed, |before| before.grown.clone()),
+            boundary: boundary.clone(),
+            derived,
+        }
+    }
+
     /// The object in a box that cuts nothing.
     pub fn drawn(&self) -> &Object {
         self.grown.as_ref().map_or(&self.object, |g| &g.object)
@@ -113,48 +213,43 @@ impl Values {
         self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
     }
 
-    /// Changes placements of the object, and of the one in a box that has grown. `set` gets the
-    /// growth, too.
-    pub fn place(&mut self, set: impl Fn(&mut Object, Option<Growth>)) {
-        set(&mut self.object, None);
-        if let Some(GrownObject { object, growth }) = &mut self.grown {
-            set(object, Some(*growth));
+    /// The level whose surface was made first; `None` before one was made.
+    pub fn first_level(&self) -> Result<Option<u8>> {
+        let known = lock(&self.boundary.levels)?;
+        Ok(known.first().map(|(level, _)| *level))
+    }
+
+    /// The surface of a level; none for a search on the map. A new surface is added to `new`; it is not made yet.
+    pub fn surface(
+        &self,
+        level: u8,
+        new: &mut Vec<Arc<OffsetSurface>>,
+    ) -> Result<Option<Arc<OffsetSurface>>> {
+        let boundary = &self.boundary;
+        // Surfaces of patches may be left from before the fallback.
+        if self.derived.solver.reads_map() {
+            return Ok(None);
         }
-    }
-}
-
-impl Entry {
-    pub fn new(object: Object, instances: Range<u32>, version: u64) -> Self {
-        Self {
-            values: Values {
-                object,
-                images: ObjectImages::default(),
-                grown: None,
-                boundary: None,
-                derived: None,
-            },
-            instances,
-            mask: u32::MAX,
-            version,
-            last: None,
+        if !self.derived.solver.follows_tolerance() {
+            return Ok(boundary.table.clone());
         }
-    }
-
-    /// The object that is drawn, in a box that cuts nothing.
-    pub fn drawn(&self) -> &Object {
-        self.values.drawn()
-    }
-
-    /// The resources that draw it; `None` before anything was derived.
-    pub fn resources(&self) -> Option<(&Boundary, &Derived)> {
-        (self.values.boundary.as_ref()).zip(self.values.derived.as_ref())
+        let mut known = lock(&boundary.levels)?;
+        if let Some((_, surface)) = known.iter().find(|(known, _)| *known == level) {
+            return Ok(Some(surface.clone()));
+        }
+        let tolerance = levels::bound(level) / self.growth().height().max(1.0);
+        let recipe = Recipe::Patches { level, tolerance };
+        let surface = boundary.solid.surface(&self.drawn().offset, recipe)?;
+        known.push((level, surface.clone()));
+        new.push(surface.clone());
+        Ok(Some(surface))
     }
 
     /// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside
     /// of which nothing is solid.
     #[allow(clippy::cast_possible_truncation)]
-    pub fn bounds(&self, derived: &Derived, surfaces: &[Arc<OffsetSurface>]) -> [f32; 4] {
-        let (object, map, solver) = (self.drawn(), &derived.facts, derived.solver);
+    pub fn bounds(&self, surfaces: &[Arc<OffsetSurface>]) -> [f32; 4] {
+        let (object, map, solver) = (self.drawn(), &self.derived.facts, self.derived.solver);
         let texel = 1.0 / f64::from(map.rows);
         let grow = object.offset.largest_width().max(0.0) + texel;
         // The map gives no values beyond its last column.
@@ -175,10 +270,10 @@ impl Entry {
         ]
     }
 
-    /// The block that shaders read; `None` before anything was derived.
+    /// The block that shaders read. `outside`: as in [`FramePlan::outside`](crate::plan::FramePlan::outside).
     #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
-    pub fn block(&self, planned: &PlannedObject) -> Option<ObjectBlock> {
-        let (_, derived) = self.resources()?;
+    pub fn block(&self, planned: &PlannedObject, outside: bool) -> ObjectBlock {
+        let derived = &self.derived;
         let (object, map) = (self.drawn(), &derived.facts);
         let f = |v: f64| v as f32;
         let (look, offset) = (&object.texturing, &object.offset);
@@ -186,10 +281,11 @@ impl Entry {
         let [x, y] = object.axis_offset();
         let [red, green, blue] = object.color;
         // Textures find the profile's box in a box that has grown.
-        let growth = self.values.growth();
+        let growth = self.growth();
         let profile_radius = object.profile.radius * growth.height() - growth.side;
         let [across, up, high] = object.repeat;
-        let mirrored = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
+        let mirrored: u32 = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
+        let outside = if outside { OUTSIDE_BIT } else { 0 };
         let bevel = if is_beveled(object) {
             offset.bevel
         } else {
@@ -205,14 +301,14 @@ impl Entry {
         for (to, surface) in levels.iter_mut().zip(planned.surfaces.iter().skip(1)) {
             *to = surface.start(Part::Tables);
         }
-        Some(ObjectBlock {
+        ObjectBlock {
             map: [
                 map.columns as f32,
                 map.rows as f32,
                 f(1.0 / f64::from(map.rows)),
                 map.scale,
             ],
-            bounds: self.bounds(derived, &planned.surfaces),
+            bounds: self.bounds(&planned.surfaces),
             offset: [
                 f(offset.extend),
                 f(bevel),
@@ -228,7 +324,7 @@ impl Entry {
                 f(look.bump),
                 f(2.0 * profile_radius),
             ],
-            cells: [across, up, high, mirrored],
+            cells: [across, up, high, mirrored | outside],
             instances: [
                 first,
                 self.instances.end - first,
@@ -243,6 +339,6 @@ impl Entry {
                 planned.window(Part::Patches).start,
             ],
             levels,
-        })
+        }
     }
 }

@@ -1,8 +1,8 @@
-//! The content of a renderer: objects and lights, the resources that are derived from them, and the
-//! plan of the last view. It records no commands.
+//! The content of a renderer: objects and lights as set, the snapshot of all objects with their
+//! resources, and the plan of the last view. It records no commands.
 //!
-//! `objects.rs` adds, removes and changes objects, `entry.rs` is the record of one. `refresh.rs`
-//! derives resources from new values. `view_plan.rs` plans a view's frame.
+//! `objects.rs` adds, removes and changes objects, `entry.rs` is one object as set and as prepared.
+//! `refresh.rs` makes the snapshot. `view_plan.rs` plans a view's frame from it.
 
 pub(super) mod entry;
 pub(super) mod objects;
@@ -12,38 +12,27 @@ pub(super) mod view_plan;
 use crate::error::Result;
 use crate::gpu::device::Shared;
 use crate::gpu::resources::geometry::Geometry;
-use crate::gpu::resources::textures::{ObjectImages, Textures};
+use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
-use crate::scene::{Lighting, Object, Shadow};
-use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, InstanceBlock, Technique};
+use crate::scene::{Lighting, Shadow};
+use crate::settings::{Planes, SearchSettings};
+use crate::shader::InstanceBlock;
 use objects::Objects;
-use refresh::{Common, Wanted};
-use std::collections::BTreeSet;
+use refresh::{Demands, Snapshot};
 use std::sync::{Arc, Mutex};
-use view_plan::{Casters, ViewPlan};
+use view_plan::ViewPlan;
 
-/// Objects, lights, and all that is derived from them.
+/// Objects and lights as set, the last snapshot of all objects, and the last plan.
 pub(super) struct Content {
     pub objects: Objects,
-    pub textures: Textures,
-    pub geometry: Arc<Mutex<Geometry>>,
     pub lighting: Lighting,
-    /// Values that were set since the last refresh.
-    pub wanted: Wanted,
-    /// True if an object was removed since the last refresh, and with it a reason for common facts.
-    pub removed: bool,
-    pub common: Common,
-    /// Numbers of objects that are new or were changed since the last frame, if motion is drawn.
-    pub moved: BTreeSet<u32>,
-    /// Counts changes.
-    pub version: u64,
-    /// The plan of the last view.
-    pub plan: Option<Arc<ViewPlan>>,
-    /// The copies that may cast shadows, as of the last frame with shadows.
-    casters: Option<Casters>,
     /// The memory that shaders write to, in compute or for all planes.
     pub target: Option<ComputeTarget>,
+    pub snapshot: Arc<Snapshot>,
+    /// The plan of the last view.
+    pub plan: Option<Arc<ViewPlan>>,
+    pub textures: Textures,
+    pub geometry: Arc<Mutex<Geometry>>,
     pub rebuilds: u64,
     pub notes: Vec<String>,
     pub settings: SearchSettings,
@@ -64,17 +53,12 @@ impl Content {
     ) -> Result<Self> {
         Ok(Self {
             objects: Objects::new(most_instances(device, &output)),
+            lighting: Lighting::default(),
+            target: None,
+            snapshot: Arc::default(),
+            plan: None,
             textures: Textures::new(device, settings.map_format, host_shades)?,
             geometry,
-            lighting: Lighting::default(),
-            wanted: Wanted::new(),
-            removed: false,
-            common: Common::default(),
-            moved: BTreeSet::new(),
-            version: 1,
-            plan: None,
-            casters: None,
-            target: None,
             rebuilds: 0,
             notes: Vec::new(),
             settings: *settings,
@@ -94,23 +78,14 @@ impl Content {
         self.lighting.shadow != Shadow::Off
     }
 
-    /// The technique that draws an object with these images by this search.
-    pub fn technique(&self, solver: Solver, object: &Object, images: &ObjectImages) -> Technique {
-        let host = HostLook {
-            shading: self.host_shades,
-            colors: images.color.is_some(),
-            relief: images.relief.is_some(),
-            heights: images.relief.is_some() && images.heights,
-        };
-        Technique::new(
-            &self.settings,
-            self.output.planes(),
-            solver,
-            &self.lighting,
-            object,
-            self.common.casters,
-            host,
-        )
+    /// What techniques depend on beside the object.
+    pub fn demands(&self) -> Demands<'_> {
+        Demands {
+            settings: &self.settings,
+            planes: self.output.planes(),
+            host_shades: self.host_shades,
+            lighting: &self.lighting,
+        }
     }
 
     /// True if the view has parallel rays.

@@ -1,10 +1,10 @@
 //! The objects of a renderer, and their identities.
 
 use super::Content;
-use super::entry::{Entry, LastValues, Values};
-use super::refresh::Wanted;
+use super::entry::{Entry, Last, LastValues, Stale};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{Growth, Object};
+use crate::gpu::resources::textures::ObjectImages;
+use crate::scene::Object;
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -74,6 +74,8 @@ pub(crate) struct Objects {
     copies: u32,
     /// Upper limit on instances.
     most_instances: u32,
+    /// True if anything was changed since the last snapshot.
+    pub stale: bool,
 }
 
 /// An entry, and the last object that used it.
@@ -95,6 +97,7 @@ impl Objects {
             instances: RangeAllocator::new(0..FIRST_INSTANCES),
             copies: 0,
             most_instances,
+            stale: true,
         }
     }
 
@@ -126,34 +129,22 @@ impl Objects {
             .filter_map(|&id| Some((id.number(), self.get(id)?)))
     }
 
-    /// Adds the values of all other objects that are drawn.
-    pub fn add_drawn(&self, to: &mut Wanted) {
-        for (number, entry) in self.ordered().filter(|(_, e)| e.resources().is_some()) {
-            to.entry(number).or_insert_with(|| entry.values.clone());
-        }
-    }
-
-    /// The entry of a number; `None` if it is gone.
-    pub fn at(&self, number: u32) -> Option<&Entry> {
-        self.numbered.get(number as usize)?.entry.as_ref()
-    }
-
     /// The mutable entry of a number; `None` if it is gone.
     pub fn at_mut(&mut self, number: u32) -> Option<&mut Entry> {
         self.numbered.get_mut(number as usize)?.entry.as_mut()
     }
 
-    /// The position of an object in the order of all objects.
-    pub fn position(&self, number: u32) -> usize {
-        self.ordered().position(|(n, _)| n == number).unwrap_or(0)
+    /// All entries, by number.
+    pub fn entries_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
+        self.numbered.iter_mut().filter_map(|n| n.entry.as_mut())
     }
 
-    pub fn add(&mut self, object: Object, version: u64) -> Result<ObjectId> {
+    pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         if self.free.is_empty() && self.numbered.len() == MOST_NUMBERS {
             let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
-        let instances = self.allocate(object.placements().len(), version)?;
+        let instances = self.allocate(object.placements().len())?;
         let number = self.free.pop().unwrap_or_else(|| {
             let number = self.numbered.len() as u32;
             let id = ObjectId::first(self.renderer, number);
@@ -161,8 +152,9 @@ impl Objects {
             number
         });
         let numbered = &mut self.numbered[number as usize];
-        numbered.entry = Some(Entry::new(object, instances, version));
+        numbered.entry = Some(Entry::new(object, ObjectImages::default(), instances));
         self.order.push(numbered.id);
+        self.stale = true;
         Ok(numbered.id)
     }
 
@@ -174,8 +166,9 @@ impl Objects {
             self.free.push(id.number());
         }
         if let Some(entry) = entry {
-            self.free_instances(entry.instances);
+            self.free_instances(entry.set.instances);
         }
+        self.stale = true;
         self.dead += 1;
         if self.dead > self.order.len() / 2 {
             let mut order = std::mem::take(&mut self.order);
@@ -185,8 +178,8 @@ impl Objects {
     }
 
     /// A free range of instances. Ranges of other objects move if there is room, but not in one
-    /// piece; they get the version `version` then.
-    fn allocate(&mut self, count: usize, version: u64) -> Result<Range<u32>> {
+    /// piece.
+    fn allocate(&mut self, count: usize) -> Result<Range<u32>> {
         let most = self.most_instances;
         let all = u32::try_from(count)
             .ok()
@@ -207,7 +200,7 @@ impl Objects {
             range = self.instances.allocate_range(count);
         }
         if range.is_err() {
-            self.compact(most, version);
+            self.compact(most);
             range = self.instances.allocate_range(count);
         }
         let none = |_| Error::new(ErrorKind::Other, "instances have gaps that no copy fits in");
@@ -221,45 +214,45 @@ impl Objects {
         self.instances.free_range(range);
     }
 
-    /// Gives back the memory of instances if few of them are left. Returns true if ranges moved,
-    /// which then have the version `version`.
-    pub fn shrink(&mut self, version: u64) -> bool {
+    /// Gives back the memory of instances if few of them are left.
+    pub fn shrink(&mut self) {
         let wanted = self.copies.saturating_mul(2).max(FIRST_INSTANCES);
-        let shrinks = self.instances() / 8 >= wanted;
-        if shrinks {
-            self.compact(wanted, version);
+        if self.instances() / 8 >= wanted {
+            self.compact(wanted);
         }
-        shrinks
     }
 
     /// Moves all ranges to the front of `room` instances.
-    fn compact(&mut self, room: u32, version: u64) {
+    fn compact(&mut self, room: u32) {
+        self.stale = true;
         self.instances = RangeAllocator::new(0..room);
         let entries = self.numbered.iter_mut().filter_map(|n| n.entry.as_mut());
-        for entry in entries.filter(|entry| !entry.instances.is_empty()) {
+        for entry in entries.filter(|entry| !entry.set.instances.is_empty()) {
+            let count = entry.set.instances.len() as u32;
             // All ranges fit, one after the other.
-            if let Ok(range) = self.instances.allocate_range(entry.instances.len() as u32) {
-                (entry.instances, entry.version) = (range, version);
+            if let Ok(range) = self.instances.allocate_range(count) {
+                entry.set.instances = range;
+                entry.mark(Stale::State);
             }
         }
     }
 
     /// Gives an object another range of instances.
-    pub fn resize(&mut self, number: u32, count: usize, version: u64) -> Result<()> {
+    fn resize(&mut self, number: u32, count: usize) -> Result<()> {
         let Some(entry) = self.at_mut(number) else {
             return Ok(());
         };
         // The old range may be a part of the new one.
-        let old = std::mem::take(&mut entry.instances);
+        let old = std::mem::take(&mut entry.set.instances);
         let kept = old.len();
         self.free_instances(old);
-        let new = self.allocate(count, version);
+        let new = self.allocate(count);
         let (range, result) = match new {
             Ok(range) => (range, Ok(())),
-            Err(error) => (self.allocate(kept, version)?, Err(error)),
+            Err(error) => (self.allocate(kept)?, Err(error)),
         };
         if let Some(entry) = self.at_mut(number) {
-            (entry.instances, entry.version) = (range, version);
+            entry.set.instances = range;
         }
         result
     }
@@ -271,52 +264,24 @@ impl Content {
         self.objects.get(id).ok_or_else(gone)
     }
 
-    /// The values of an object that were set last.
-    pub fn latest(&self, id: ObjectId) -> Result<&Values> {
-        let entry = self.entry(id)?;
-        Ok(self.wanted.get(&id.number()).unwrap_or(&entry.values))
-    }
-
-    /// Returns the entry of an object, marked as changed.
-    pub fn change(&mut self, id: ObjectId) -> Result<&mut Entry> {
-        let last = LastValues::of(&self.latest(id)?.object);
+    /// Returns the entry of an object, with what must be made anew marked.
+    pub fn change(&mut self, id: ObjectId, stale: Stale) -> Result<&mut Entry> {
+        self.entry(id)?;
+        let moves = self.output.planes().has_motion();
+        self.objects.stale = true;
         let entry = self.objects.at_mut(id.number()).ok_or_else(gone)?;
-        self.version += 1;
-        entry.version = self.version;
-        if self.output.planes().has_motion() && self.moved.insert(id.number()) {
-            entry.last = Some(last);
+        if let (true, Last::Same) = (moves, &entry.set.last) {
+            entry.set.last = Last::Was(LastValues::of(&entry.set.object));
         }
+        entry.mark(stale);
         Ok(entry)
-    }
-
-    /// Returns the values that the next refresh gives to an object.
-    pub fn want(&mut self, id: ObjectId) -> Result<&mut Values> {
-        self.change(id)?;
-        let values = &self.objects.get(id).ok_or_else(gone)?.values;
-        Ok((self.wanted.entry(id.number())).or_insert_with(|| values.clone()))
-    }
-
-    /// Returns the object that the next refresh makes anew, with its boundary.
-    pub fn reshape(&mut self, id: ObjectId) -> Result<&mut Object> {
-        let values = self.want(id)?;
-        (values.grown, values.boundary) = (None, None);
-        Ok(&mut values.object)
-    }
-
-    /// Changes placements of an object at once, without a refresh: see [`Values::place`].
-    pub fn place(&mut self, id: ObjectId, set: impl Fn(&mut Object, Option<Growth>)) -> Result<()> {
-        self.change(id)?.values.place(&set);
-        if let Some(wanted) = self.wanted.get_mut(&id.number()) {
-            wanted.place(set);
-        }
-        Ok(())
     }
 
     /// Gives an object room for exactly this many copies.
     pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
-        if self.entry(id)?.instances.len() != count {
-            self.change(id)?;
-            self.objects.resize(id.number(), count, self.version)?;
+        if self.entry(id)?.set.instances.len() != count {
+            self.change(id, Stale::State)?;
+            self.objects.resize(id.number(), count)?;
         }
         Ok(())
     }

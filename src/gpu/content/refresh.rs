@@ -1,166 +1,88 @@
-//! Conversion of values to all that does not depend on a view: solids, contours, maps, textures and
-//! variants. What an object is drawn by follows from the object and from [`Common`] facts. It is
-//! derived anew for changed objects, and for all objects if the common facts change.
+//! The snapshot of all objects: what was set, with all that does not depend on a view: solids,
+//! contours, maps, textures and techniques. An object's resources follow from the object and from
+//! [`Common`] facts. They are made anew for changed objects, and for all objects if the common facts
+//! change.
 
 use super::Content;
-use super::entry::{Boundary, Derived, Values};
+use super::entry::{Boundary, Derived, Entry, PreparedObject, Stale};
 use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::block::check_format;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
-use crate::gpu::resources::textures::{BoundTextures, ShadowMaps};
+use crate::gpu::resources::textures::{BoundTextures, ObjectImages, ShadowMaps, Textures};
 use crate::maps::Projection;
-use crate::scene::Object;
-use crate::settings::Solver;
+use crate::scene::{Lighting, Object, Shadow};
+use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::shader::{ShadowCasters, is_beveled};
+use crate::shader::{HostLook, ShadowCasters, Technique, is_beveled};
 use crate::solid::offset_surface::Recipe;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-/// Values that a refresh applies, by number of the object.
-pub(in crate::gpu) type Wanted = BTreeMap<u32, Values>;
+use std::sync::{Arc, Mutex};
 
 /// The search for objects without a surface of their own; it reads only the map.
 pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
-/// Facts of all objects that each object's resources depend on; the default without shadows.
+/// All objects at one time. Nothing in it changes: frames of one snapshot and one view are equal.
+#[derive(Default)]
+pub(in crate::gpu) struct Snapshot {
+    /// In the order in which they were added.
+    pub objects: Vec<Arc<PreparedObject>>,
+    pub common: Common,
+    /// Number of instances, with free ones.
+    pub instances: u32,
+    /// One more than the largest number that an object has had.
+    pub number_count: usize,
+}
+
+/// Facts of all objects that each object's resources depend on. Without shadows no object depends on
+/// another.
 #[derive(Clone, Default)]
 pub(in crate::gpu) struct Common {
+    shadow: Shadow,
     /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
     /// all by one search.
     falls_back: bool,
-    /// The properties of solids that shadow rays may meet.
-    pub casters: ShadowCasters,
+    casters: ShadowCasters,
     pub shadow_maps: Arc<ShadowMaps>,
 }
 
-impl Content {
-    /// Applies the values that were added and set since the last call that succeeded, all or none.
-    /// After an error they stay wanted, and the next call tries them again.
-    pub fn refresh(&mut self) -> Result<()> {
-        if self.wanted.is_empty() && !self.removed {
-            return Ok(());
-        }
-        let mut wanted = std::mem::take(&mut self.wanted);
-        let before = self.common.clone();
-        if let Err(error) = self.make_all(&mut wanted) {
-            (self.wanted, self.common) = (wanted, before);
-            return Err(error);
-        }
-        self.removed = false;
-        self.version += 1;
-        for (number, values) in wanted {
-            if let Some(entry) = self.objects.at_mut(number) {
-                entry.version = self.version;
-                entry.values = values;
-            }
-        }
-        Ok(())
-    }
-
-    /// Makes the resources of all values that are wanted. Adds the values of all other objects if
-    /// the common facts change.
-    fn make_all(&mut self, wanted: &mut Wanted) -> Result<()> {
-        self.find_boundaries(wanted)?;
-        let found = (self.falls_back(wanted), self.shadow_casters(wanted));
-        if found != (self.common.falls_back, self.common.casters) {
-            // Other code draws each object from now on.
-            (self.common.falls_back, self.common.casters) = found;
-            self.objects.add_drawn(wanted);
-        }
-        for (&number, values) in wanted.iter_mut() {
-            let made = self.find_map(number, values);
-            made.map_err(|e| self.named(e, number, values))?;
-        }
-        let maps = self.shadow_maps(wanted)?;
-        let known = self.common.shadow_maps.maps.iter();
-        if !known.map(Arc::as_ptr).eq(maps.iter().map(Arc::as_ptr)) {
-            // Each object binds the new maps.
-            self.common.shadow_maps = Arc::new(ShadowMaps { maps });
-            self.objects.add_drawn(wanted);
-        }
-        for (&number, values) in wanted {
-            let made = self.derive(number, values);
-            made.map_err(|e| self.named(e, number, values))?;
-        }
-        Ok(())
-    }
-
-    /// Finds or makes the boundaries that are missing, on all cores.
-    fn find_boundaries(&mut self, wanted: &mut Wanted) -> Result<()> {
-        let solver = self.settings.solver;
-        let mut geometry = lock(&self.geometry)?;
-        let (mut contours, mut tables) = (Vec::new(), Vec::new());
-        for values in wanted.values_mut().filter(|v| v.boundary.is_none()) {
-            values.grown = geometry.solids.grown.grown(&values.object);
-            let object = values.drawn();
-            let solid = geometry.solids.get(&object.profile);
-            let (mut contour, mut table) = (None, None);
-            if solver.follows_tolerance() {
-                contour = Some(solid.contour(&object.offset)?);
-            } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
-                let rows = MapKey::new(object, &values.growth(), &self.settings).rows;
-                let recipe = Recipe::Table { search, rows };
-                table = Some((0, solid.surface(&object.offset, recipe)?));
-            }
-            contours.extend(contour.clone());
-            tables.extend(table.clone().map(|(_, table)| table));
-            values.boundary = Some(Boundary {
-                solid,
-                contour,
-                levels: table.into_iter().collect(),
-                map: None,
-            });
-        }
-        drop(geometry);
-        contours.retain(|contour| !contour.is_made());
-        let fails = distinct(&mut contours).par_iter();
-        self.rebuilds += fails.filter(|c| c.get().is_err()).count() as u64;
-        self.make_surfaces(&mut tables);
-        Ok(())
-    }
-
-    /// Adds a note on an object whose contour failed with this error.
-    fn note_fallback(&mut self, number: u32, object: &Object, error: &Error) {
-        let note = format!(
-            "object.{} ({}) is drawn by the search {} in place of {}: {}",
-            self.objects.position(number),
-            object.name,
-            FALLBACK.name(),
-            self.settings.solver.name(),
-            error.message
-        );
-        if !self.notes.contains(&note) {
-            self.notes.push(note);
+impl Common {
+    /// The facts of these objects, but for their maps.
+    fn of(shadow: Shadow, objects: &[(u32, &Entry)]) -> Self {
+        let objects = if shadow == Shadow::Off { &[] } else { objects };
+        let fails = |e: &Entry| e.boundary.as_ref().is_some_and(|b| b.fails());
+        let any = |is: fn(&Object) -> bool| objects.iter().any(|(_, e)| is(&e.set.object));
+        Self {
+            shadow,
+            falls_back: objects.iter().any(|(_, e)| fails(e)),
+            casters: ShadowCasters {
+                repeated: any(|object| object.repeat != [1; 3]),
+                beveled: any(|object| object.offset.bevel != 0.0),
+            },
+            shadow_maps: Arc::default(),
         }
     }
 
-    /// The latest values of all objects if they cast shadows.
-    fn shadowed<'a>(&'a self, wanted: &'a Wanted) -> impl Iterator<Item = &'a Values> {
-        let casts = self.casts();
-        let all = self.objects.ordered().filter(move |_| casts);
-        all.map(|(number, entry)| wanted.get(&number).unwrap_or(&entry.values))
+    fn is_same(&self, other: &Self) -> bool {
+        let facts = |of: &Self| (of.shadow, of.falls_back, of.casters);
+        facts(self) == facts(other) && Arc::ptr_eq(&self.shadow_maps, &other.shadow_maps)
     }
 
-    fn falls_back(&self, wanted: &Wanted) -> bool {
-        let mut boundaries = self.shadowed(wanted).filter_map(|v| v.boundary.as_ref());
-        boundaries.any(Boundary::fails)
-    }
-
-    fn shadow_casters(&self, wanted: &Wanted) -> ShadowCasters {
-        let mut objects = self.shadowed(wanted).map(|v| &v.object);
-        ShadowCasters {
-            repeated: self.shadowed(wanted).any(|v| v.object.repeat != [1; 3]),
-            beveled: objects.any(|object| object.offset.bevel != 0.0),
+    /// The search that draws an object.
+    fn solver_of(&self, boundary: &Boundary, wanted: Solver) -> Solver {
+        match boundary.fails() || (self.falls_back && boundary.contour.is_some()) {
+            true => FALLBACK,
+            false => wanted,
         }
     }
 
-    /// The maps that shadows read.
-    fn shadow_maps(&self, wanted: &Wanted) -> Result<Vec<Arc<ShapeTexture>>> {
+    /// Adds the maps that shadows read. `known`: those of the last snapshot.
+    fn add_maps(
+        &mut self,
+        all: &[Option<Arc<ShapeTexture>>],
+        known: &Arc<ShadowMaps>,
+    ) -> Result<()> {
         let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
-        let all = self.shadowed(wanted);
-        for map in all.filter_map(|v| v.boundary.as_ref()?.map.as_ref()) {
+        for map in all.iter().flatten().filter(|_| self.shadow != Shadow::Off) {
             if !maps.iter().any(|known| Arc::ptr_eq(known, map)) {
                 maps.push(map.clone());
             }
@@ -172,58 +94,230 @@ impl Content {
             );
             return content("shadow", message);
         }
-        Ok(maps)
-    }
-
-    /// The search that draws an object.
-    fn solver_of(&self, boundary: &Boundary) -> Solver {
-        if boundary.fails() || (self.common.falls_back && boundary.contour.is_some()) {
-            FALLBACK
+        let same = known
+            .maps
+            .iter()
+            .map(Arc::as_ptr)
+            .eq(maps.iter().map(Arc::as_ptr));
+        self.shadow_maps = if same {
+            known.clone()
         } else {
-            self.settings.solver
+            Arc::new(ShadowMaps { maps })
+        };
+        Ok(())
+    }
+}
+
+/// What techniques depend on beside the object.
+#[derive(Clone, Copy)]
+pub(in crate::gpu) struct Demands<'a> {
+    pub settings: &'a SearchSettings,
+    pub planes: Planes,
+    pub host_shades: bool,
+    pub lighting: &'a Lighting,
+}
+
+impl Demands<'_> {
+    /// The technique that draws an object with these images by this search.
+    pub fn technique(
+        &self,
+        solver: Solver,
+        object: &Object,
+        images: &ObjectImages,
+        common: &Common,
+    ) -> Technique {
+        let host = HostLook {
+            shading: self.host_shades,
+            colors: images.color.is_some(),
+            relief: images.relief.is_some(),
+            heights: images.relief.is_some() && images.heights,
+        };
+        let casters = common.casters;
+        Technique::new(
+            self.settings,
+            self.planes,
+            solver,
+            self.lighting,
+            object,
+            casters,
+            host,
+        )
+    }
+}
+
+impl Content {
+    /// The snapshot of all objects as set. A failed call changes nothing, and the next one tries
+    /// again.
+    pub fn refresh(&mut self) -> Result<Arc<Snapshot>> {
+        self.objects.shrink();
+        if !self.objects.stale {
+            return Ok(self.snapshot.clone());
         }
+        self.find_boundaries()?;
+        let snapshot = self.snapshot()?;
+        for object in &snapshot.objects {
+            if let Some(entry) = self.objects.at_mut(object.number) {
+                entry.prepared = Some(object.clone());
+                entry.stale = Stale::Nothing;
+            }
+        }
+        self.objects.stale = false;
+        self.snapshot = Arc::new(snapshot);
+        Ok(self.snapshot.clone())
     }
 
-    /// Finds or bakes the shape map of an object, if its search reads one.
-    fn find_map(&mut self, number: u32, values: &mut Values) -> Result<()> {
-        let (object, growth) = (values.drawn(), values.growth());
-        let key = MapKey::new(object, &growth, &self.settings);
-        let known = self.objects.at(number).map(|entry| &entry.values);
-        let known = known.filter(|known| Arc::ptr_eq(&known.drawn().profile, &object.profile));
-        let known = known.and_then(|known| known.boundary.as_ref()?.map.clone());
-        let known = known.filter(|map| map.key.holds(&key));
-        let Some(mut boundary) = values.boundary.take() else {
-            return Ok(());
-        };
-        boundary.map = match known {
-            _ if !self.solver_of(&boundary).reads_map() => None,
-            Some(known) => Some(known),
-            None => Some(self.textures.shape(&values.drawn().profile, key)?),
-        };
-        values.boundary = Some(boundary);
+    /// Finds or makes the boundaries that are missing, on all cores.
+    fn find_boundaries(&mut self) -> Result<()> {
+        let (solver, settings) = (self.settings.solver, &self.settings);
+        let mut geometry = lock(&self.geometry)?;
+        let (mut contours, mut tables) = (Vec::new(), Vec::new());
+        for entry in self.objects.entries_mut().filter(|e| e.boundary.is_none()) {
+            let grown = geometry.solids.grown.grown(&entry.set.object);
+            let growth = grown.as_ref().map(|grown| grown.growth).unwrap_or_default();
+            let object = grown
+                .as_ref()
+                .map_or(&entry.set.object, |grown| &grown.object);
+            let solid = geometry.solids.get(&object.profile);
+            let (mut contour, mut table) = (None, None);
+            if solver.follows_tolerance() {
+                contour = Some(solid.contour(&object.offset)?);
+            } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
+                let rows = MapKey::new(object, &growth, settings).rows;
+                let recipe = Recipe::Table { search, rows };
+                table = Some(solid.surface(&object.offset, recipe)?);
+            }
+            contours.extend(contour.clone());
+            tables.extend(table.clone());
+            entry.boundary = Some(Arc::new(Boundary {
+                grown,
+                solid,
+                contour,
+                table,
+                levels: Mutex::default(),
+            }));
+        }
+        drop(geometry);
+        contours.retain(|contour| !contour.is_made());
+        let fails = distinct(&mut contours).par_iter();
+        self.rebuilds += fails.filter(|c| c.get().is_err()).count() as u64;
+        self.make_surfaces(&mut tables);
         Ok(())
     }
 
-    /// Makes all that draws an object, beside its boundary.
-    fn derive(&mut self, number: u32, values: &mut Values) -> Result<()> {
-        let Some(boundary) = &values.boundary else {
-            return Ok(());
+    /// Makes the resources that are missing. Boundaries are there.
+    fn snapshot(&mut self) -> Result<Snapshot> {
+        let demands = Demands {
+            settings: &self.settings,
+            planes: self.output.planes(),
+            host_shades: self.host_shades,
+            lighting: &self.lighting,
         };
-        let table = boundary.levels.first().map(|(_, surface)| surface);
-        if let Some(error) = table.and_then(|table| table.failure()) {
+        let order: Vec<_> = self.objects.ordered().collect();
+        let before = &self.snapshot.common;
+        let mut common = Common::of(self.lighting.shadow, &order);
+        let mut maps = Vec::with_capacity(order.len());
+        for (position, (_, entry)) in order.iter().enumerate() {
+            let map = find_map(entry, &common, &self.settings, &mut self.textures);
+            maps.push(map.map_err(|e| named(e, position, &entry.set.object))?);
+        }
+        common.add_maps(&maps, &before.shadow_maps)?;
+        let is_same = common.is_same(before);
+        let mut maker = Maker {
+            demands,
+            common: &common,
+            textures: &mut self.textures,
+            notes: &mut self.notes,
+        };
+        let mut objects = Vec::with_capacity(order.len());
+        for (position, ((number, entry), map)) in order.iter().zip(maps).enumerate() {
+            let before = entry.prepared.as_ref();
+            let kept = before.filter(|_| is_same && entry.stale <= Stale::State);
+            let object = match (kept, &entry.boundary) {
+                (Some(kept), _) if entry.stale == Stale::Nothing => kept.clone(),
+                (_, None) => continue,
+                (kept, Some(boundary)) => {
+                    let derived = match kept {
+                        Some(kept) => kept.derived.clone(),
+                        None => {
+                            let made = maker.derive(position, entry, boundary, map);
+                            Arc::new(made.map_err(|e| named(e, position, &entry.set.object))?)
+                        }
+                    };
+                    let before = before.map(Arc::as_ref);
+                    let made = PreparedObject::new(*number, &entry.set, boundary, derived, before);
+                    Arc::new(made)
+                }
+            };
+            objects.push(object);
+        }
+        Ok(Snapshot {
+            objects,
+            common,
+            instances: self.objects.instances(),
+            number_count: self.objects.number_count(),
+        })
+    }
+}
+
+/// Finds or bakes the shape map of an object, if its search reads one.
+fn find_map(
+    entry: &Entry,
+    common: &Common,
+    settings: &SearchSettings,
+    textures: &mut Textures,
+) -> Result<Option<Arc<ShapeTexture>>> {
+    let solver = |boundary: &Arc<Boundary>| common.solver_of(boundary, settings.solver);
+    if !entry
+        .boundary
+        .as_ref()
+        .map(solver)
+        .is_some_and(Solver::reads_map)
+    {
+        return Ok(None);
+    }
+    let object = entry.shape();
+    let key = MapKey::new(object, &entry.growth(), settings);
+    let before = entry.prepared.as_ref();
+    let before = before.filter(|p| Arc::ptr_eq(&p.drawn().profile, &object.profile));
+    let known = before.and_then(|before| before.derived.map.as_ref());
+    match known.filter(|map| map.key.holds(&key)) {
+        Some(known) => Ok(Some(known.clone())),
+        None => textures.shape(&object.profile, key).map(Some),
+    }
+}
+
+/// Makes what objects are drawn by.
+struct Maker<'a> {
+    demands: Demands<'a>,
+    common: &'a Common,
+    textures: &'a mut Textures,
+    notes: &'a mut Vec<String>,
+}
+
+impl Maker<'_> {
+    /// Makes all that draws an object, beside its boundary. `position`: among all objects.
+    fn derive(
+        &mut self,
+        position: usize,
+        entry: &Entry,
+        boundary: &Boundary,
+        map: Option<Arc<ShapeTexture>>,
+    ) -> Result<Derived> {
+        if let Some(error) = boundary.table.as_ref().and_then(|table| table.failure()) {
             return Err(error.clone());
         }
         if let Some(Err(error)) = boundary.contour.as_ref().map(|c| c.get()) {
-            self.note_fallback(number, &values.object, error);
+            self.note_fallback(position, &entry.set.object.name, error);
         }
-        let (object, map) = (values.drawn(), &boundary.map);
-        let solver = self.solver_of(boundary);
-        check_format(&values.object, solver, &self.settings).map_err(|mut e| {
-            e.key = (e.key).map(|key| format!("object.{}.{key}", self.objects.position(number)));
+        let settings = self.demands.settings;
+        let object = entry.shape();
+        let solver = self.common.solver_of(boundary, settings.solver);
+        check_format(&entry.set.object, solver, settings).map_err(|mut e| {
+            e.key = (e.key).map(|key| format!("object.{position}.{key}"));
             e
         })?;
         let facts = map.as_ref().map_or_else(
-            || MapKey::new(object, &values.growth(), &self.settings).unbaked(&object.profile),
+            || MapKey::new(object, &entry.growth(), settings).unbaked(&object.profile),
             |map| map.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {
@@ -237,36 +331,50 @@ impl Content {
             let found = numbered.find(|(_, known)| Arc::ptr_eq(known, map));
             found.map(|(number, _)| number)
         });
+        let images = &entry.set.images;
         let bound = BoundTextures {
-            images: values.images.clone(),
+            images: images.clone(),
             shape: map.clone(),
             arc: arc.clone(),
             shadows: shadows.clone(),
         };
         let textures = self.textures.set(&object.texturing, bound)?;
-        let steps = self.settings.max_steps;
+        let steps = settings.max_steps;
         let steps = steps.unwrap_or_else(|| solver.default_steps(is_beveled(object)));
-        values.derived = Some(Derived {
+        Ok(Derived {
             solver,
             steps: steps.max(1),
+            map,
             facts,
             arc,
             shadow_map: shadow_map.unwrap_or(0),
             textures,
-            technique: self.technique(solver, object, &values.images),
-        });
-        Ok(())
+            technique: (self.demands).technique(solver, object, images, self.common),
+        })
     }
 
-    /// Adds the key `object.N.profile` and the object's file to an error without them.
-    fn named(&self, mut error: Error, number: u32, values: &Values) -> Error {
-        if error.key.is_none() {
-            error = error.at_key(format!("object.{}.profile", self.objects.position(number)));
+    /// Adds a note on an object whose contour failed with this error.
+    fn note_fallback(&mut self, position: usize, name: &str, error: &Error) {
+        let note = format!(
+            "object.{position} ({name}) is drawn by the search {} in place of {}: {}",
+            FALLBACK.name(),
+            self.demands.settings.solver.name(),
+            error.message
+        );
+        if !self.notes.contains(&note) {
+            self.notes.push(note);
         }
-        match &values.object.file {
-            Some(file) => error.in_file(file),
-            None => error,
-        }
+    }
+}
+
+/// Adds the key `object.N.profile` and the object's file to an error without them.
+fn named(mut error: Error, position: usize, object: &Object) -> Error {
+    if error.key.is_none() {
+        error = error.at_key(format!("object.{position}.profile"));
+    }
+    match &object.file {
+        Some(file) => error.in_file(file),
+        None => error,
     }
 }
 

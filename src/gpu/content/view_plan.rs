@@ -1,38 +1,34 @@
 //! A frame's plan, the surfaces that it draws, and the hierarchy of copies that cast shadows.
 
 use super::Content;
-use super::entry::{Boundary, Derived, Entry, Values};
-use super::refresh::distinct;
+use super::entry::PreparedObject;
+use super::refresh::{Snapshot, distinct};
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, GRAZING, coarsest, pixels_per_unit};
 use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
-use crate::settings::{Solver, Tolerance};
+use crate::settings::{Planes, Solver, Tolerance};
 use crate::shader::InstanceBlock;
-use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
+use crate::solid::offset_surface::{OffsetSurface, Part};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The copies that may cast shadows, with the values that their boxes depend on: version of the
-/// content, mask of the view, level of all surfaces.
-pub(super) type Casters = ((u64, u32, u8), Arc<Hierarchy>);
-
-/// The plan of one view, for one version of a renderer's objects.
+/// The plan of one view of a snapshot.
 pub(crate) struct ViewPlan {
     pub view: View,
-    pub version: u64,
+    pub snapshot: Arc<Snapshot>,
+    with: Conditions,
     pub frame: FramePlan,
-    /// One per drawn object, in order.
+    /// Objects that the view's mask shows, in order.
     pub objects: Vec<PlannedObject>,
-    /// Number of instances, with free ones. The records of the last frame's placements are after
-    /// them.
-    pub instances: u32,
+    /// Their copies that cast shadows; `None` if nothing is shaded in shadow.
+    pub hierarchy: Option<Arc<Hierarchy>>,
 }
 
 /// An object in a plan.
 pub(crate) struct PlannedObject {
-    pub number: u32,
+    pub object: Arc<PreparedObject>,
     pub level: u8,
     /// The surfaces that the search walks, from the finest level on; none for searches on the map.
     pub surfaces: Vec<Arc<OffsetSurface>>,
@@ -57,36 +53,75 @@ impl PlannedObject {
         let coarser = |levels: &CopyLevels| levels.of_block(copy) - levels.first;
         self.levels.as_ref().map_or(0, coarser)
     }
+
+    /// The object in the form that a plan reads.
+    fn input(&self) -> PlanObject<'_> {
+        let (prepared, derived) = (&*self.object, &self.object.derived);
+        let object = prepared.drawn();
+        let bounds = prepared.bounds(&self.surfaces[..self.surfaces.len().min(1)]);
+        let texels = 2.0 / f64::from(derived.facts.rows);
+        let away = object.offset.largest_width().max(0.0) + texels;
+        PlanObject {
+            object,
+            number: prepared.number,
+            first_instance: prepared.instances.start,
+            technique: derived.technique,
+            textures: Arc::as_ptr(&derived.textures) as usize,
+            surfaces: &self.surfaces,
+            levels: self.levels.as_ref(),
+            shape: shape_of(object, bounds.map(f64::from)),
+            outline: Some((prepared.boundary.solid.as_ref(), away)),
+        }
+    }
 }
 
 impl Content {
     /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
-    /// the view's slot, is of this view and version.
+    /// the view's slot, is of this view and of all objects as set.
     pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
-        self.refresh()?;
-        if self.objects.shrink(self.version + 1) {
-            self.version += 1;
-        }
-        let same = |p: &&Arc<ViewPlan>| p.version == self.version && p.view == *view;
+        let snapshot = self.refresh()?;
+        let with = self.conditions();
+        let is_same = |p: &&Arc<ViewPlan>| {
+            Arc::ptr_eq(&p.snapshot, &snapshot) && (p.view, p.with) == (*view, with)
+        };
         let mut plans = self.plan.iter().chain(known);
-        if let Some(plan) = plans.find(same).cloned() {
-            self.plan = Some(plan.clone());
-            return Ok(plan);
-        }
-        let objects = self.with_surfaces(Some(view))?;
-        let read = objects.iter().filter_map(|planned| {
-            let entry = self.objects.at(planned.number)?;
-            entry.plan_object(planned)
-        });
-        let made = Arc::new(ViewPlan {
-            view: *view,
-            version: self.version,
-            frame: plan(view, &read.collect::<Vec<_>>(), &self.conditions()),
-            objects,
-            instances: self.objects.instances(),
-        });
+        let found = plans.find(is_same).cloned();
+        let made = match found {
+            Some(found) => found,
+            None => Arc::new(self.new_plan(view, snapshot, with)?),
+        };
         self.plan = Some(made.clone());
         Ok(made)
+    }
+
+    fn new_plan(
+        &mut self,
+        view: &View,
+        snapshot: Arc<Snapshot>,
+        with: Conditions,
+    ) -> Result<ViewPlan> {
+        let objects = self.with_surfaces(view, &snapshot)?;
+        let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
+        let frame = plan(view, &inputs, &with);
+        let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
+        // Without shadows levels differ, and with them all objects have one level.
+        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
+        let known = self.plan.as_ref().filter(|known| {
+            Arc::ptr_eq(&known.snapshot, &snapshot)
+                && known.view.mask == view.mask
+                && level(&known.objects) == level(&objects)
+        });
+        let known = known.and_then(|known| known.hierarchy.clone());
+        let hierarchy = || known.unwrap_or_else(|| Arc::new(hierarchy(&objects, &inputs)));
+        let hierarchy = shadowed.then(hierarchy);
+        Ok(ViewPlan {
+            view: *view,
+            snapshot,
+            with,
+            frame,
+            hierarchy,
+            objects,
+        })
     }
 
     /// The inputs of a plan other than view and objects.
@@ -117,77 +152,70 @@ impl Content {
     }
 
     fn has_single_copy(&self) -> bool {
-        let copies = |(_, entry): (u32, &Entry)| entry.drawn().placements().len();
-        self.objects.len() == 1 && self.objects.ordered().map(copies).eq([1])
+        match self.snapshot.objects.as_slice() {
+            [object] => object.drawn().placements().len() == 1,
+            _ => false,
+        }
     }
 
-    /// Returns all objects that a view shows, with surfaces of the levels that it allows; of the
-    /// exact levels if there is no view. Makes the surfaces that are new. With shadows, all objects
-    /// take the finest level that one of them needs, because a shadow may fall nearer to the eye
-    /// than its caster.
-    pub fn with_surfaces(&mut self, view: Option<&View>) -> Result<Vec<PlannedObject>> {
-        let mask = view.map_or(u32::MAX, |view| view.mask);
-        let shown = |(_, entry): &(u32, &Entry)| entry.mask & mask != 0;
-        let shown = self.objects.ordered().filter(shown);
-        let planned = shown.filter_map(|(number, entry)| self.planned(number, entry, view));
-        let mut found: Vec<_> = planned.collect();
+    /// Returns the objects that a view shows, with surfaces of the levels that it allows. Makes the
+    /// surfaces that are new. With shadows, all objects take the finest level that one of them
+    /// needs, because a shadow may fall nearer to the eye than its caster.
+    fn with_surfaces(&mut self, view: &View, snapshot: &Snapshot) -> Result<Vec<PlannedObject>> {
+        let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
+        let mut all = Vec::with_capacity(snapshot.objects.len());
+        for object in shown {
+            all.push(self.planned(object, view)?);
+        }
         if self.casts() {
-            let finest = found.iter().map(|f| f.level).min().unwrap_or(0);
-            found.iter_mut().for_each(|f| f.level = finest);
+            let finest = all.iter().map(|f| f.level).min().unwrap_or(0);
+            all.iter_mut().for_each(|f| f.level = finest);
         }
         let mut new = Vec::new();
-        for one in &mut found {
-            let Some(entry) = self.objects.at_mut(one.number) else {
-                continue;
-            };
+        for one in &mut all {
             let coarser = one
                 .levels
                 .iter()
                 .flat_map(|of| &COPY_LEVELS[of.first + 1..]);
             for level in [one.level].iter().chain(coarser) {
-                one.surfaces.extend(entry.surface(*level, &mut new)?);
+                one.surfaces.extend(one.object.surface(*level, &mut new)?);
             }
         }
         self.make_surfaces(&mut new);
-        Ok(found)
+        Ok(all)
     }
 
     /// An object at the coarsest level that the view allows, without surfaces. Objects with many
     /// copies have a level for each.
-    fn planned(&self, number: u32, entry: &Entry, view: Option<&View>) -> Option<PlannedObject> {
-        let (boundary, derived) = entry.resources()?;
+    fn planned(&self, object: &Arc<PreparedObject>, view: &View) -> Result<PlannedObject> {
         let tolerance = self.settings.tolerance;
-        let fitted = tolerance != Tolerance::EXACT && derived.solver.follows_tolerance();
         let mut planned = PlannedObject {
-            number,
+            object: object.clone(),
             level: 0,
             surfaces: Vec::new(),
             levels: None,
         };
-        match view {
-            Some(view) if self.levels_copies(entry, derived) => {
-                let (object, height) = (entry.drawn(), entry.values.growth().height());
-                let levels = CopyLevels::new(object, height, view, tolerance);
-                planned.level = COPY_LEVELS[levels.first];
-                planned.levels = Some(levels);
-            }
-            Some(view) if fitted => {
-                let pixels = entry.pixels_per_unit(view, self.casts());
-                // An object that does not show takes a level that is already made.
-                let made = boundary.levels.first();
-                let made = made.filter(|_| pixels <= 0.0 && !self.casts());
-                planned.level = made.map_or_else(|| coarsest(tolerance, pixels), |made| made.0);
-            }
-            _ => {}
+        if self.levels_copies(object) {
+            let height = object.growth().height();
+            let levels = CopyLevels::new(object.drawn(), height, view, tolerance);
+            planned.level = COPY_LEVELS[levels.first];
+            planned.levels = Some(levels);
+        } else if tolerance != Tolerance::EXACT && object.derived.solver.follows_tolerance() {
+            let pixels = object.pixels_per_unit(view, self.casts());
+            // An object that does not show takes a level that is already made.
+            let hidden = pixels <= 0.0 && !self.casts();
+            let made = if hidden { object.first_level()? } else { None };
+            planned.level = made.unwrap_or_else(|| coarsest(tolerance, pixels));
         }
-        Some(planned)
+        Ok(planned)
     }
 
     /// True if each copy of an object has a level of its own. The view has no influence, so a moving
     /// camera needs no other pipelines.
-    pub fn levels_copies(&self, entry: &Entry, derived: &Derived) -> bool {
-        let follows = derived.solver.follows_tolerance() && !self.casts() && !self.is_parallel();
-        let object = entry.drawn();
+    fn levels_copies(&self, object: &PreparedObject) -> bool {
+        let follows = object.derived.solver.follows_tolerance();
+        let follows = follows && !self.casts() && !self.is_parallel();
+        let object = object.drawn();
         let many = object.instances.len() > MOST_PROXIES && object.repeat == [1; 3];
         follows && many && self.settings.tolerance != Tolerance::EXACT
     }
@@ -207,99 +235,31 @@ impl Content {
         });
         self.rebuilds += new.len() as u64;
     }
-
-    /// The hierarchy over the copies of a plan's objects that cast shadows. Builds it if they have
-    /// changed.
-    pub fn hierarchy(&mut self, plan: &ViewPlan) -> Arc<Hierarchy> {
-        // With shadows, all surfaces have one level.
-        let level = plan.objects.iter().map(|object| object.level).min();
-        let key = (plan.version, plan.view.mask, level.unwrap_or(0));
-        if let Some((known, hierarchy)) = &self.casters
-            && *known == key
-        {
-            return hierarchy.clone();
-        }
-        let mut leaves = Vec::new();
-        for planned in &plan.objects {
-            let entry = self.objects.at(planned.number);
-            let object = entry.and_then(|entry| {
-                let (_, derived) = entry.resources()?;
-                Some((derived.shadow_map, entry.plan_object(planned)?))
-            });
-            let Some((map, object)) = object else {
-                continue;
-            };
-            let copies = object.object.placements().par_iter().enumerate();
-            leaves.par_extend(copies.map(|(copy, placement)| {
-                let instance = object.first_instance + copy as u32;
-                Leaf::new(instance, map, placement, &object.shape)
-            }));
-        }
-        let made = Arc::new(Hierarchy::new(&mut leaves));
-        self.casters = Some((key, made.clone()));
-        made
-    }
 }
 
-impl Entry {
-    /// The surface of a level; none for a search on the map. Adds it to `new` if it is.
-    fn surface(
-        &mut self,
-        level: u8,
-        new: &mut Vec<Arc<OffsetSurface>>,
-    ) -> Result<Option<Arc<OffsetSurface>>> {
-        let (growth, offset) = (self.values.growth(), self.drawn().offset);
-        let Values {
-            boundary: Some(Boundary { solid, levels, .. }),
-            derived: Some(derived),
-            ..
-        } = &mut self.values
-        else {
-            return Ok(None);
-        };
-        // Surfaces of another search may be left from before.
-        if derived.solver.reads_map() {
-            return Ok(None);
-        }
-        let known = levels.iter().find(|(known, _)| *known == level);
-        if known.is_some() || !derived.solver.follows_tolerance() {
-            return Ok(known.map(|(_, surface)| surface.clone()));
-        }
-        let tolerance = levels::bound(level) / growth.height().max(1.0);
-        let surface = solid.surface(&offset, Recipe::Patches { level, tolerance })?;
-        levels.push((level, surface.clone()));
-        new.push(surface.clone());
-        Ok(Some(surface))
+/// The hierarchy over the copies of these objects.
+fn hierarchy(objects: &[PlannedObject], inputs: &[PlanObject]) -> Hierarchy {
+    let mut leaves = Vec::new();
+    for (planned, input) in objects.iter().zip(inputs) {
+        let map = planned.object.derived.shadow_map;
+        let copies = input.object.placements().par_iter().enumerate();
+        leaves.par_extend(copies.map(|(copy, placement)| {
+            let instance = input.first_instance + copy as u32;
+            Leaf::new(instance, map, placement, &input.shape)
+        }));
     }
+    Hierarchy::new(&mut leaves)
+}
 
+impl PreparedObject {
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
-    pub fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
-        pixels_per_unit(self.drawn(), self.values.growth().height(), view, all)
+    fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
+        pixels_per_unit(self.drawn(), self.growth().height(), view, all)
     }
 
     /// Upper bound on the shift of the silhouette by patches of a level in a view, in pixels.
     pub fn error_pixels(&self, level: u8, view: &View) -> f64 {
         levels::bound(level) * self.pixels_per_unit(view, false)
-    }
-
-    /// The object in the form that a plan reads; `None` before it is derived.
-    pub fn plan_object<'a>(&'a self, planned: &'a PlannedObject) -> Option<PlanObject<'a>> {
-        let (boundary, derived) = self.resources()?;
-        let object = self.drawn();
-        let bounds = self.bounds(derived, &planned.surfaces[..planned.surfaces.len().min(1)]);
-        let texels = 2.0 / f64::from(derived.facts.rows);
-        let away = object.offset.largest_width().max(0.0) + texels;
-        Some(PlanObject {
-            object,
-            number: planned.number,
-            first_instance: self.instances.start,
-            technique: derived.technique,
-            textures: Arc::as_ptr(&derived.textures) as usize,
-            surfaces: &planned.surfaces,
-            levels: planned.levels.as_ref(),
-            shape: shape_of(object, bounds.map(f64::from)),
-            outline: Some((boundary.solid.as_ref(), away)),
-        })
     }
 }

@@ -1,7 +1,6 @@
 //! The draw path of each object, and the memory that it takes on the device.
 
 use super::Renderer;
-use crate::gpu::content::entry::Entry;
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::resources::block::instance_block;
 use crate::plan::levels::COPY_LEVELS;
@@ -44,11 +43,8 @@ impl Renderer {
             return Vec::new();
         };
         let objects = plan.objects.iter().zip(&plan.frame.paths);
-        let cost = |(object, path): (&PlannedObject, &DrawPath)| {
-            let entry = self.content.objects.at(object.number)?;
-            entry.cost(object, *path, &plan.view)
-        };
-        objects.filter_map(cost).collect()
+        let cost = |(object, path): (&PlannedObject, &DrawPath)| object.cost(*path, &plan.view);
+        objects.map(cost).collect()
     }
 
     /// The level of each copy in the last planned frame, one list per object. A list is empty if all
@@ -57,13 +53,12 @@ impl Renderer {
     pub fn copy_levels(&self) -> Vec<Vec<u8>> {
         let objects = self.content.plan.iter().flat_map(|plan| {
             plan.objects.iter().map(|object| {
-                let entry = self.content.objects.at(object.number)?;
-                let levels = object.levels.as_ref()?;
+                let (levels, drawn) = (object.levels.as_ref()?, object.object.drawn());
                 let level = |placement| {
-                    let block = instance_block(entry.drawn(), placement, 0, &plan.view);
+                    let block = instance_block(drawn, placement, 0, &plan.view);
                     COPY_LEVELS[levels.of_block(&block)]
                 };
-                Some(entry.drawn().placements().iter().map(level).collect())
+                Some(drawn.placements().iter().map(level).collect())
             })
         });
         objects.map(Option::unwrap_or_default).collect()
@@ -83,29 +78,29 @@ impl Renderer {
     }
 }
 
-impl Entry {
-    fn cost(&self, object: &PlannedObject, path: DrawPath, view: &View) -> Option<ObjectCost> {
-        let (boundary, derived) = self.resources()?;
+impl PlannedObject {
+    fn cost(&self, path: DrawPath, view: &View) -> ObjectCost {
+        let (object, derived) = (&self.object, &self.object.derived);
         let follows = derived.solver.follows_tolerance();
-        let fitted = object.surfaces.first().filter(|_| follows);
-        let levels = object.levels.as_ref().filter(|_| object.surfaces.len() > 1);
+        let fitted = self.surfaces.first().filter(|_| follows);
+        let levels = self.levels.as_ref().filter(|_| self.surfaces.len() > 1);
         let of_coarser = levels.map_or(0.0, |levels| levels.error);
-        let error = fitted.map(|_| self.error_pixels(object.level, view).max(of_coarser));
-        let stored = object.surfaces.iter().flat_map(|surface| {
+        let error = fitted.map(|_| object.error_pixels(self.level, view).max(of_coarser));
+        let stored = self.surfaces.iter().flat_map(|surface| {
             let stored = move |part: &Part| surface.slot(*part).is_some();
             let stored = Part::ALL.into_iter().filter(stored);
             stored.map(move |part| 16 * surface.vectors(part).len() as u64)
         });
-        let map = boundary.map.as_ref().map(|map| map.texture.bytes());
+        let map = derived.map.as_ref().map(|map| map.texture.bytes());
         let arc = derived.arc.as_ref().map(|arc| arc.texture.bytes());
-        Some(ObjectCost {
+        ObjectCost {
             path,
-            level: fitted.map(|_| u32::from(object.level)),
+            level: fitted.map(|_| u32::from(self.level)),
             error_pixels: error.filter(|e| e.is_finite()),
             patches: fitted.map_or(0, |surface| surface.patches()),
             table_bytes: stored.sum(),
             map_bytes: map.unwrap_or(0) + arc.unwrap_or(0),
-            instance_bytes: INSTANCE_BYTES * self.instances.len() as u64,
-        })
+            instance_bytes: INSTANCE_BYTES * object.instances.len() as u64,
+        }
     }
 }

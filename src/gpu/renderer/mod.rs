@@ -159,7 +159,7 @@ impl Renderer {
         let Some(plan) = &self.content.plan else {
             return Vec::new();
         };
-        let drawn = plan.objects.iter().map(|object| object.number);
+        let drawn = plan.objects.iter().map(|planned| planned.object.number);
         let paths: HashMap<u32, DrawPath> = drawn.zip(plan.frame.paths.iter().copied()).collect();
         let path = |(number, _)| paths.get(&number).copied().unwrap_or(DrawPath::Nothing);
         self.content.objects.ordered().map(path).collect()
@@ -178,10 +178,15 @@ impl Renderer {
     /// displacement maps.
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
-        let all = self.content.objects.ordered();
         let mut images = Vec::new();
-        for (boundary, derived) in all.filter_map(|(_, entry)| entry.resources()) {
-            images.extend(boundary.map.as_ref().map(|map| map.texture.clone()));
+        for derived in self
+            .content
+            .snapshot
+            .objects
+            .iter()
+            .map(|object| &object.derived)
+        {
+            images.extend(derived.map.as_ref().map(|map| map.texture.clone()));
             images.extend(derived.arc.as_ref().map(|arc| arc.texture.clone()));
         }
         let shapes = distinct(&mut images).iter().map(|image| image.bytes());
@@ -225,7 +230,6 @@ impl Renderer {
     pub unsafe fn set_compute_target(&mut self, target: ComputeTarget) -> Result<()> {
         self.content.output.check_target(Some(&target))?;
         self.content.target = Some(target);
-        self.content.version += 1;
         self.slots.iter_mut().for_each(|slot| slot.named = None);
         Ok(())
     }

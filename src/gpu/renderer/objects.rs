@@ -2,6 +2,7 @@
 
 use super::Renderer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::content::entry::{Last, Stale};
 use crate::gpu::content::objects::ObjectId;
 use crate::gpu::resources::block::check_lights;
 use crate::gpu::resources::textures::{HostImage, ObjectImages};
@@ -17,14 +18,7 @@ impl Renderer {
     /// bytes with motion) or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
         object.check()?;
-        self.content.version += 1;
-        let id = self.content.objects.add(object, self.content.version)?;
-        let values = self.content.latest(id)?.clone();
-        self.content.wanted.insert(id.number(), values);
-        if self.content.output.planes().has_motion() {
-            self.content.moved.insert(id.number());
-        }
-        Ok(id)
+        self.content.objects.add(object)
     }
 
     /// Removes an object. Frames that were prepared earlier keep it until they are done.
@@ -34,10 +28,6 @@ impl Renderer {
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         self.content.entry(id)?;
         self.content.objects.remove(id);
-        self.content.wanted.remove(&id.number());
-        self.content.removed |= self.content.casts();
-        self.content.moved.remove(&id.number());
-        self.content.version += 1;
         Ok(())
     }
 
@@ -46,7 +36,7 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
-        Ok(&self.content.latest(id)?.object)
+        Ok(&self.content.entry(id)?.set.object)
     }
 
     /// Sets all values of an object. Equal values cost nothing.
@@ -64,7 +54,7 @@ impl Renderer {
             return self.set_placement(id, object.placement);
         }
         self.content.resize(id, object.placements().len())?;
-        *self.content.reshape(id)? = object;
+        self.content.change(id, Stale::Shape)?.set.object = object;
         Ok(())
     }
 
@@ -75,8 +65,8 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set_mask(&mut self, id: ObjectId, mask: u32) -> Result<()> {
-        if self.content.entry(id)?.mask != mask {
-            self.content.change(id)?.mask = mask;
+        if self.content.entry(id)?.set.mask != mask {
+            self.content.change(id, Stale::State)?.set.mask = mask;
         }
         Ok(())
     }
@@ -118,7 +108,7 @@ impl Renderer {
     }
 
     fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {
-        set(&mut self.content.want(id)?.images);
+        set(&mut self.content.change(id, Stale::Look)?.set.images);
         Ok(())
     }
 
@@ -129,7 +119,7 @@ impl Renderer {
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
         if self.object(id)?.offset != offset {
-            self.content.reshape(id)?.offset = offset;
+            self.content.change(id, Stale::Shape)?.set.object.offset = offset;
         }
         Ok(())
     }
@@ -140,12 +130,10 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
-        if self.object(id)?.placement == placement {
-            return Ok(());
+        if self.object(id)?.placement != placement {
+            self.content.change(id, Stale::State)?.set.object.placement = placement;
         }
-        self.content.place(id, |object, growth| {
-            object.placement = growth.map_or(placement, |g| g.placement(&placement));
-        })
+        Ok(())
     }
 
     /// Sets the copies of an object. An empty list gives one copy, at the object's placement.
@@ -156,12 +144,8 @@ impl Renderer {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
         self.content.resize(id, instances.len().max(1))?;
-        self.content.place(id, |object, growth| {
-            object.instances = match growth {
-                Some(growth) => instances.iter().map(|p| growth.placement(p)).collect(),
-                None => instances.clone(),
-            };
-        })
+        self.content.change(id, Stale::State)?.set.object.instances = instances;
+        Ok(())
     }
 
     /// Ends a frame of all views: the next frame's motion is that from the present values. Call it
@@ -170,14 +154,16 @@ impl Renderer {
     /// number of copies has no motion of its own in that frame. Without this call no object moves.
     /// Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
     pub fn end_frame(&mut self) {
-        let content = &mut self.content;
-        content.version += u64::from(!content.moved.is_empty());
-        for number in std::mem::take(&mut content.moved) {
-            if let Some(entry) = content.objects.at_mut(number) {
-                entry.last = None;
-                entry.version = content.version;
+        let objects = &mut self.content.objects;
+        let mut ended = false;
+        for entry in objects.entries_mut() {
+            if !matches!(entry.set.last, Last::Same) {
+                entry.set.last = Last::Same;
+                entry.mark(Stale::State);
+                ended = true;
             }
         }
+        objects.stale |= ended;
     }
 
     /// Sets lights and shadows for all objects.
@@ -192,13 +178,7 @@ impl Renderer {
             return Err(Error::new(ErrorKind::Usage, message).at_key("shadow"));
         }
         check_lights(lighting)?;
-        let before = &self.content.lighting;
-        if lighting.shadow != before.shadow {
-            self.content.objects.add_drawn(&mut self.content.wanted);
-        }
-        if (lighting.shadow, lighting.lights.len()) != (before.shadow, before.lights.len()) {
-            self.content.version += 1;
-        }
+        self.content.objects.stale |= lighting.shadow != self.content.lighting.shadow;
         self.content.lighting = lighting.clone();
         Ok(())
     }

@@ -4,12 +4,11 @@
 
 use super::Renderer;
 use super::output_check::check_viewport;
-use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer, Written};
+use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
 use crate::plan::View;
-use crate::settings::Planes;
 use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
@@ -94,9 +93,9 @@ impl Renderer {
         view: &View,
     ) -> Result<PreparedFrame> {
         self.check(slot, view)?;
-        let known = self.slots[slot].bound.as_ref().map(|bound| &bound.plan);
-        let plan = self.content.plan(view, known)?;
         let to = &mut self.slots[slot];
+        let known = to.bound.as_ref().map(|bound| &bound.plan);
+        let plan = self.content.plan(view, known)?;
         to.end_uploads()?;
         let compiled = self.device.pipelines.compiled.load(Ordering::Relaxed);
         let hides = self.hides;
@@ -105,7 +104,7 @@ impl Renderer {
             let may_show = !hides && bound.hidden() > 0;
             !Arc::ptr_eq(&bound.plan, &plan) || may_be_faster || may_show
         };
-        if to.bound.as_ref().is_none_or(stale) {
+        if to.named.is_none() || to.bound.as_ref().is_none_or(stale) {
             // The tables of the slot's last frame make room for those of this one.
             to.bound = None;
             let bound = self.bind(&plan)?;
@@ -115,9 +114,10 @@ impl Renderer {
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
-        let mut block = frame_block(view, &self.content.lighting, plan.instances);
-        if let Some(hierarchy) = &to.hierarchy {
-            let maps = self.content.common.shadow_maps.maps.len();
+        let snapshot = &plan.snapshot;
+        let mut block = frame_block(view, &self.content.lighting, snapshot.instances);
+        if let Some(hierarchy) = &plan.hierarchy {
+            let maps = snapshot.common.shadow_maps.maps.len();
             add_casters(&mut block, hierarchy, view.eye, maps);
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
@@ -162,23 +162,23 @@ impl Renderer {
             .flat_map(|(object, parts)| object.surfaces.iter().map(|surface| (surface, *parts)));
         let buffers = lock(&self.content.geometry)?.store(read)?;
         let pipelines = &self.device.pipelines;
-        let gone = || Error::new(ErrorKind::Other, "an object is gone while it is prepared");
         let own_vectors = self.device.chosen.constants().own_vectors as usize;
         let compiled = pipelines.compiled.load(Ordering::Relaxed);
         let mut steps = Vec::with_capacity(frame.steps.len());
         let mut faster = Vec::new();
         for step in &frame.steps {
-            let object = &plan.objects[step.object as usize];
-            let entry = self.content.objects.at(object.number).ok_or_else(gone)?;
-            let (_, derived) = entry.resources().ok_or_else(gone)?;
+            let planned = &plan.objects[step.object as usize];
+            let object = &planned.object;
             let part = match step.kind {
                 Kind::TileLists | Kind::TilePatches => Part::Patches,
                 _ => Part::Tables,
             };
             let (mut variant, kind) = (step.variant, step.kind);
+            variant.speciality = variant.speciality.only(pipelines.specialities);
+            variant = variant.of_kind(kind);
             let mut begin = 0;
             if variant.speciality.own_tables != 0 {
-                let window = object.window(part);
+                let window = planned.window(part);
                 variant.speciality.own_tables = u32::from(window.len() <= own_vectors);
                 begin = window.start;
             }
@@ -200,7 +200,7 @@ impl Renderer {
                     && kind.is_compute()
                     && variant.speciality.depths != 0,
                 pipeline,
-                textures: derived.textures.clone(),
+                textures: object.derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
             });
         }
@@ -213,68 +213,46 @@ impl Renderer {
         })
     }
 
-    /// Writes blocks of a slot that are older than the renderer, or of another view.
+    /// Writes the blocks of a plan.
     fn write(&mut self, slot: usize, plan: &ViewPlan) -> Result<()> {
-        let planes = self.content.output.planes();
-        let (view, motion) = (&plan.view, planes.has_motion());
-        let shadowed = !matches!(planes, Planes::Depth { .. }) && self.content.casts();
-        let hierarchy = shadowed.then(|| self.content.hierarchy(plan));
+        let (view, snapshot) = (&plan.view, &plan.snapshot);
+        let motion = self.content.output.planes().has_motion();
         let to = &mut self.slots[slot];
-        let records = u64::from(plan.instances) * if motion { 2 } else { 1 };
-        let bytes = self.content.objects.number_count() as u64 * u64::from(OBJECT_STRIDE);
+        let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
+        let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
         let bytes = records * size_of::<InstanceBlock>() as u64;
         to.fit(SlotBuffer::Instances, bytes)?;
         to.write_plan(&plan.frame)?;
-        let now = Written {
-            view: *view,
-            version: plan.version,
-            instances: plan.instances,
-        };
-        let before = to.written.take();
-        // Instance blocks depend on the view.
-        let same = |b: &&Written| (b.view, b.instances) == (now.view, now.instances);
-        let known = before
-            .as_ref()
-            .filter(same)
-            .map_or(0, |before| before.version);
-        for (object, copies) in plan.objects.iter().zip(&plan.frame.copies) {
-            let number = object.number;
-            let Some(entry) = self.content.objects.at(number) else {
-                continue;
-            };
-            let placements = entry.drawn().placements();
-            if let Some(block) = entry.block(object) {
-                let at = number as usize * OBJECT_STRIDE as usize;
-                to.write(SlotBuffer::Objects, at, &block)?;
-            }
+        let facts = plan.frame.copies.iter().zip(&plan.frame.outside);
+        for (planned, (copies, outside)) in plan.objects.iter().zip(facts) {
+            let (object, number) = (&planned.object, planned.object.number);
+            let drawn = object.drawn();
+            let placements = drawn.placements();
+            let at = number as usize * OBJECT_STRIDE as usize;
+            to.write(SlotBuffer::Objects, at, &object.block(planned, *outside))?;
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
-                // With shadows another object may change the level of all.
-                None if entry.version > known || self.content.casts() => {
-                    (0..placements.len() as u32).collect()
-                }
-                None => continue,
+                None => (0..placements.len() as u32).collect(),
             };
-            let first = entry.instances.start;
+            let first = object.instances.start;
             let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
-            let starts: Vec<_> = object.surfaces.iter().map(starts).collect();
+            let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
             to.write_instances(first, &shown, |copy| {
                 let placement = &placements[copy as usize];
-                let mut block = instance_block(entry.drawn(), placement, number, view);
-                let starts = starts.get(object.surface_of(&block));
+                let mut block = instance_block(drawn, placement, number, view);
+                let starts = starts.get(planned.surface_of(&block));
                 block.object[2..].copy_from_slice(starts.unwrap_or(&[0; 2]));
                 block
             })?;
             if motion {
-                let last = |copy| last_block(entry, copy as usize, view);
-                to.write_instances(plan.instances + first, &shown, last)?;
+                let last = |copy| last_block(object, copy as usize, view);
+                to.write_instances(snapshot.instances + first, &shown, last)?;
             }
         }
-        to.written = Some(now);
-        if let Some(hierarchy) = hierarchy {
-            to.write_casters(&hierarchy)?;
+        match &plan.hierarchy {
+            Some(hierarchy) => to.write_casters(hierarchy),
+            None => Ok(()),
         }
-        Ok(())
     }
 }

@@ -146,8 +146,10 @@ impl Content {
         let (with, solver) = (self.conditions(), self.settings.solver);
         let mut known = HashSet::new();
         let mut all = Vec::new();
-        for (_, entry) in self.objects.ordered() {
-            let drawn_by = |solver| self.technique(solver, entry.drawn(), &entry.values.images);
+        let (demands, common) = (self.demands(), &self.snapshot.common);
+        for object in &self.snapshot.objects {
+            let (drawn, images) = (object.drawn(), &object.images);
+            let drawn_by = |solver| demands.technique(solver, drawn, images, common);
             let mut techniques = drawn_by(solver).forms();
             techniques.extend(solver.follows_tolerance().then(|| drawn_by(FALLBACK)));
             for technique in techniques {

@@ -13,7 +13,7 @@ use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::usage::Usage;
 use crate::plan::casters::Hierarchy;
-use crate::plan::{Call, DrawPath, FramePlan, View};
+use crate::plan::{Call, DrawPath, FramePlan};
 use crate::shader::{
     CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, Variant,
 };
@@ -60,26 +60,15 @@ pub(crate) struct FrameSlot {
     buffers: Vec<Buffer>,
     /// The plan and bindings to record; `None` before the slot is prepared.
     pub bound: Option<BoundPlan>,
-    /// `None` if all must be written.
-    pub written: Option<Written>,
     /// The number of the slot's frame. A token of an earlier frame records nothing.
     pub serial: u64,
     /// The copies in [`SlotBuffer::Casters`].
-    pub hierarchy: Option<Arc<Hierarchy>>,
+    hierarchy: Option<Arc<Hierarchy>>,
     uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
     pub named: Option<Arc<Buffer>>,
     pool: vk::DescriptorPool,
     device: Arc<Shared>,
-}
-
-/// What the blocks of a slot were written for.
-pub(crate) struct Written {
-    pub view: View,
-    /// The renderer's version.
-    pub version: u64,
-    /// [`ViewPlan::instances`].
-    pub instances: u32,
 }
 
 /// A plan with all objects that its commands bind.
@@ -148,7 +137,6 @@ impl FrameSlot {
             target_set: sets.get(1).copied().unwrap_or_default(),
             buffers,
             bound: None,
-            written: None,
             serial: 0,
             hierarchy: None,
             uploads: RecordedUploads::default(),
@@ -181,7 +169,6 @@ impl FrameSlot {
         *self.buffer_mut(buffer) = Buffer::for_use(&self.device, to, name, bytes)?;
         self.named = None;
         if matches!(buffer, SlotBuffer::Instances) {
-            self.written = None;
             // Pipelines that are warmed up read an instance, though they draw no pixel.
             self.write(buffer, 0, &InstanceBlock::zeroed())?;
         }

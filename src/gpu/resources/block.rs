@@ -1,7 +1,7 @@
 //! Conversion of scene values to the blocks that shaders read.
 
 use crate::error::{Result, content};
-use crate::gpu::content::entry::Entry;
+use crate::gpu::content::entry::{Last, PreparedObject};
 use crate::maps::MapFormat;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{DepthOrder, View};
@@ -56,11 +56,13 @@ pub(crate) fn instance_block(
 ///
 /// The map is exact. A point moves along its normal if the extension changes, which is exact where
 /// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
-pub(crate) fn last_block(entry: &Entry, copy: usize, view: &View) -> InstanceBlock {
-    let (object, growth) = (&entry.values.object, entry.values.growth());
+pub(crate) fn last_block(of: &PreparedObject, copy: usize, view: &View) -> InstanceBlock {
+    let (object, growth) = (&of.object, of.growth());
     let all = object.placements();
-    let last = entry.last.as_ref();
-    let last = last.and_then(|last| Some((&last.placements(all.len())?[copy], last.extend)));
+    let last = match &of.last {
+        Last::Was(last) => (last.placements(all.len())).map(|all| (&all[copy], last.extend)),
+        Last::Same | Last::New => None,
+    };
     let (placement, extend) = last.unwrap_or((&all[copy], object.offset.extend));
     let rows = view.last.unwrap_or_else(|| view.pixel_rows());
     // A point `p` of the drawn box is `height p + origin` in the object's own units.

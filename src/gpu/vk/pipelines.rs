@@ -4,11 +4,15 @@
 mod cache;
 mod compile;
 
+#[cfg(feature = "other-shaders")]
+use crate::error::{Error, ErrorKind};
 use crate::error::{Result, lock};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors;
 use crate::gpu::vk::output::{HostShading, Output, PassFormats, PassKind};
 use crate::shader::Pushed;
+#[cfg(feature = "other-shaders")]
+use crate::shader::SPECIALITIES;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID};
 use crate::shader::{Kind, Variant};
 use crate::shading::Shading;
@@ -61,6 +65,8 @@ pub(crate) struct Pipelines {
     pub flags: vk::PipelineCreateFlags,
     /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
+    /// The set of specialities that frames may use.
+    pub specialities: u32,
     /// The source of modules that replace the embedded ones.
     #[cfg(feature = "other-shaders")]
     pub source: Option<ShaderSource>,
@@ -152,6 +158,7 @@ impl Pipelines {
             owners: AtomicU64::new(0),
             flags: vk::PipelineCreateFlags::empty(),
             constants,
+            specialities: specialities()?,
             #[cfg(feature = "other-shaders")]
             source: None,
             raw,
@@ -229,6 +236,32 @@ impl Pipelines {
             raw: self.raw.clone(),
         })
     }
+}
+
+/// The specialities that frames may use: all, or those that the environment names.
+#[cfg(not(feature = "other-shaders"))]
+const fn specialities() -> Result<u32> {
+    Ok(u32::MAX)
+}
+
+/// The specialities that frames may use: all, or those that the environment names.
+#[cfg(feature = "other-shaders")]
+fn specialities() -> Result<u32> {
+    const VARIABLE: &str = "REVMAP_SPECIALITIES";
+    let Ok(names) = std::env::var(VARIABLE) else {
+        return Ok(u32::MAX);
+    };
+    let names = names.split(',').filter(|name| !name.is_empty());
+    names.into_iter().try_fold(0, |set, name| {
+        let bit = SPECIALITIES.iter().position(|known| *known == name);
+        bit.map(|bit| set | 1 << bit).ok_or_else(|| {
+            let message = format!(
+                "there is no speciality {name}; there are {}",
+                SPECIALITIES.join(", ")
+            );
+            Error::new(ErrorKind::Usage, message).at_key(VARIABLE)
+        })
+    })
 }
 
 /// Makes a pipeline layout of these sets, with the library's push constants. The caller destroys it.

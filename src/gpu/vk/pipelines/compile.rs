@@ -23,7 +23,7 @@ impl Pipelines {
         owner: &Owner,
     ) -> Result<vk::Pipeline> {
         let (output, host) = (&owner.output, owner.shading.as_ref());
-        let own = variant.constants().into_iter();
+        let own = variant.constants(kind).into_iter();
         let constants = own.chain(output.constants()).chain(self.constants.values());
         let constants = constants.collect();
         let module = variant.module(kind);
