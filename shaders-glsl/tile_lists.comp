@@ -23,7 +23,7 @@ void main()
     uint corner_word = tile_words[4u * record];
     uvec2 corner = uvec2(corner_word & 0xffffu, corner_word >> 16);
     uint number = tile_words[4u * record + 1u];
-    Instance instance = instances[ONE_INSTANCE != 0u ? pushed.instance : number];
+    Instance instance = instances[ONE_OBJECT == 2u ? pushed.instance : number];
     take_only_object(pushed.object);
     take_one_of_objects(instance);
     PixelRays rays = pixel_rays(instance);
@@ -40,7 +40,7 @@ void main()
     atomicMin(low_y, corner.y);
     atomicMax(high_x, corner.x);
     atomicMax(high_y, corner.y);
-    if (ONE_INSTANCE == 0u && number != tile_words[4u * group_first + 1u]) {
+    if (ONE_OBJECT != 2u && number != tile_words[4u * group_first + 1u]) {
         atomicOr(mixed, 1u);
     }
     barrier();

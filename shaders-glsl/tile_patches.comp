@@ -7,11 +7,11 @@
 void main()
 {
     take_frame();
+    take_record();
     take_only_object(pushed.object); // before any barrier: see take_frame()
-    share_patches();
+    share_tile();
     barrier();
-    take_shared_instance();
-    take_one_of_objects(tile_instance);
+    take_shared();
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;

@@ -7,6 +7,7 @@ void main()
 {
     take_frame();
     take_record();
+    tile_instance = instances[instance_number()];
     take_only_object(pushed.object);
     take_one_of_objects(tile_instance);
     begin_tile();

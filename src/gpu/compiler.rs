@@ -13,8 +13,8 @@ use crate::gpu::vk::call::Call;
 use crate::gpu::vk::output::{Output, PassFormats, PassKind};
 use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
-use crate::plan::{Conditions, LIST_LENGTHS};
-use crate::scene::{Lighting, Object, Shadow};
+use crate::plan::Conditions;
+use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::{HostLook, Kind, ShadowCasters, Speciality, Technique, Variant};
 use ash::{khr, vk};
@@ -43,10 +43,10 @@ impl PipelineChoice {
     pub fn path(&self) -> String {
         let Self(variant, kind) = self;
         let path = match kind {
-            Kind::TilePatches => format!("tiles of {} patches", variant.speciality.list_length),
+            Kind::TilePatches(length) => format!("tiles of {length} patches"),
             _ => kind.label().to_string_lossy().replace("revmap ", ""),
         };
-        match *variant == variant.general_of_kind(*kind) {
+        match *variant == Variant::general(variant.technique).of_kind(*kind) {
             true => format!("{path}, general"),
             false => path,
         }
@@ -143,6 +143,7 @@ impl PipelineCompiler {
             casts: lighting.shadow != Shadow::Off,
             ..self.conditions
         };
+        let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
         let mut all = Vec::new();
         for kind in conditions.kinds(&technique) {
             let general = Variant::general(technique);
@@ -152,23 +153,19 @@ impl PipelineCompiler {
                     all.push(choice);
                 }
             };
-            for one_instance in [1, 0] {
-                for list_length in LIST_LENGTHS {
-                    add(Variant {
-                        speciality: Speciality {
-                            lights: match conditions.casts {
-                                true => 3,
-                                false => lighting.lights.len().clamp(1, 3) as u32,
-                            },
-                            list_length,
-                            own_tables: 1,
-                            one_object: 1,
-                            one_instance,
-                            depths: 1 - one_instance,
+            for depths in [0, 1] {
+                add(Variant {
+                    speciality: Speciality {
+                        lights: match conditions.casts {
+                            true => 3,
+                            false => lighting.lights.len().clamp(1, 3) as u32,
                         },
-                        ..general
-                    });
-                }
+                        one_object: 2 - depths,
+                        outside: 1 + u32::from(may_cut),
+                        depths,
+                    },
+                    ..general
+                });
             }
             // Searches for comparison are timed by their special forms alone.
             if exact {

@@ -16,8 +16,6 @@ mod view;
 mod viewports;
 
 pub use path::DrawPath;
-#[cfg(feature = "other-shaders")]
-pub(crate) use path::LIST_LENGTHS;
 pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
@@ -65,7 +63,7 @@ pub(crate) struct Step {
     pub phase: u32,
     pub variant: Variant,
     pub kind: Kind,
-    /// Index of the object whose textures are bound and, with `own_tables`, whose tables are bound.
+    /// Index of the object whose textures are bound, and whose block and tables if it is the only one.
     pub object: u32,
     pub call: Call,
 }
@@ -136,14 +134,16 @@ fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
         *looks.entry((of.technique, of.textures)).or_insert(0u32) += 1;
     }
     let of_look = |of: &PlanObject| {
-        let alone = looks.get(&(of.technique, of.textures)) == Some(&1);
+        let alone = looks.get(&(of.technique, of.textures)) == Some(&1) && with.holds_tables(of);
         Variant {
             technique: of.technique,
             speciality: Speciality {
                 lights: with.lights,
-                one_object: u32::from(alone),
-                one_instance: u32::from(alone && of.object.placements().len() == 1),
-                own_tables: u32::from(alone && with.holds_tables(of)),
+                one_object: match of.object.placements().len() {
+                    _ if !alone => 0,
+                    1 => 2,
+                    _ => 1,
+                },
                 depths: u32::from(with.compares_depths()),
                 ..Speciality::GENERAL
             },
@@ -203,8 +203,8 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let mut add = |kind, draws: Vec<IndexedDraw>| {
-                let variant = variants[n].of_kind(kind);
+            let mut add = |kind, outside, draws: Vec<IndexedDraw>| {
+                let variant = variants[n].seen_from_outside(outside).of_kind(kind);
                 let layer = layers.of(objects, n as u32, (variant, kind));
                 layers.all[layer].draws.extend(draws);
             };
@@ -214,7 +214,7 @@ impl FramePlan {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;
                     self.outside[n] = of.surface().is_some_and(|s| apart(s));
-                    add(Kind::Boxes, vec![draw(BOX_INDICES, 0)]);
+                    add(Kind::Boxes, self.outside[n], vec![draw(BOX_INDICES, 0)]);
                 }
                 Path::Cells([cut, whole]) => {
                     let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
@@ -226,7 +226,7 @@ impl FramePlan {
                     self.parts[n][Part::Tables as usize] = !cut.is_empty();
                     for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
                         if !runs.is_empty() {
-                            add(kind, runs.iter().map(of_run).collect());
+                            add(kind, false, runs.iter().map(of_run).collect());
                         }
                     }
                 }

@@ -214,10 +214,10 @@ impl Conditions {
         u64::from(self.most_storage) / 16
     }
 
-    /// True if a uniform buffer holds an object's tables.
+    /// True if a uniform buffer holds the tables of an object's finest level.
     pub fn holds_tables(&self, of: &PlanObject) -> bool {
         of.surface()
-            .is_some_and(|surface| surface.tables().vectors.len() <= self.own_vectors)
+            .is_none_or(|surface| surface.tables().vectors.len() <= self.own_vectors)
     }
 
     /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the
@@ -235,15 +235,16 @@ impl Conditions {
             (Kind::Cells, patches && self.passes_cells),
             (Kind::CutCells, patches && self.passes_cells),
         ];
-        let of_compute = [
-            (Kind::TileTree, true),
-            (Kind::TileCopies, true),
-            (Kind::TileLists, patches && self.lists_patches()),
-            (Kind::TilePatches, patches && self.lists_patches()),
-        ];
-        let all: &[(Kind, bool)] = if self.compute { &of_compute } else { &of_pass };
-        let taken = all.iter().filter(|(_, is)| *is);
-        taken.map(|(kind, _)| *kind).collect()
+        if !self.compute {
+            let taken = of_pass.into_iter().filter(|(_, is)| *is);
+            return taken.map(|(kind, _)| kind).collect();
+        }
+        let mut all = vec![Kind::TileTree, Kind::TileCopies];
+        if patches && self.lists_patches() {
+            all.push(Kind::TileLists);
+            all.extend(LIST_LENGTHS.map(Kind::TilePatches));
+        }
+        all
     }
 }
 

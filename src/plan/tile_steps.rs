@@ -46,7 +46,8 @@ impl FramePlan {
                 continue;
             }
             self.outside[n] = of.is_whole() && visible.is_apart(batch);
-            let layer = layers.of(objects, n as u32, (variants[n], kind));
+            let variant = variants[n].seen_from_outside(self.outside[n]);
+            let layer = layers.of(objects, n as u32, (variant, kind));
             layer_of.push(layer as u32);
         }
         let layers = layers.all;
@@ -103,9 +104,9 @@ impl FramePlan {
         self.bin_words = self.bin_head_words;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = layer.variant;
-            let step = |phase, kind, variant: Variant, call| Step {
+            let step = |phase, kind, call| Step {
                 phase,
-                variant: variant.of_kind(kind),
+                variant: base.of_kind(kind),
                 kind,
                 object: layer.objects[0],
                 call,
@@ -126,14 +127,12 @@ impl FramePlan {
                 };
                 let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
                 let call = Call::Groups(groups, pushed(0));
-                self.steps.push(step(0, Kind::TileLists, base, call));
+                self.steps.push(step(0, Kind::TileLists, call));
                 let call = |bin| Call::Indirect(head + 4 * bin, pushed(bin));
-                for (bin, list_length) in (0..).zip(LIST_LENGTHS) {
-                    let mut variant = base;
-                    variant.speciality.list_length = list_length;
-                    later.push(step(1, Kind::TilePatches, variant, call(bin)));
+                for (bin, length) in (0..).zip(LIST_LENGTHS) {
+                    later.push(step(1, Kind::TilePatches(length), call(bin)));
                 }
-                later.push(step(1, Kind::TileTree, base, call(TREE_BIN)));
+                later.push(step(1, Kind::TileTree, call(TREE_BIN)));
                 head += 4 * TILE_BINS;
                 self.bin_words += 4 * TILE_BINS * count;
             }
@@ -147,7 +146,7 @@ impl FramePlan {
                     ..Pushed::default()
                 };
                 let call = Call::Groups(records.len() as u32, pushed);
-                later.push(step(phase, kind, base, call));
+                later.push(step(phase, kind, call));
             }
             phase += u32::from(!tiles.queued.is_empty());
         }

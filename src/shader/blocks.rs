@@ -105,6 +105,6 @@ pub struct Pushed {
     pub bin: u32,
     /// Index of the only object.
     pub object: u32,
-    /// Index of the only instance.
+    /// Index of its only copy.
     pub instance: u32,
 }

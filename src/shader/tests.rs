@@ -201,7 +201,7 @@ fn reachable_variants_have_modules() {
         Kind::Quads,
         Kind::Tiles,
         Kind::TileLists,
-        Kind::TilePatches,
+        Kind::TilePatches(g::LONGEST_LIST),
         Kind::TileTree,
         Kind::TileCopies,
     ];

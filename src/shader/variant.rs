@@ -3,7 +3,7 @@
 //! variant of a technique is right for everything that the technique draws, so a frame may take it
 //! whenever a special one is not compiled.
 
-use super::catalogue::{Entry, Module};
+use super::catalogue::{Entry, Module, Search};
 use super::external::External;
 use super::generated as g;
 use super::technique::Technique;
@@ -24,8 +24,8 @@ pub enum Kind {
     Tiles,
     /// Compute: lists of the patches that rays of tiles may meet.
     TileLists,
-    /// Compute: tiles whose patches are listed.
-    TilePatches,
+    /// Compute: tiles whose patches are listed; each pixel tests this many.
+    TilePatches(u32),
     /// Compute: tiles of one copy, which walk the tree.
     TileTree,
     /// Compute: tiles and pixels with queues of copies.
@@ -43,7 +43,7 @@ impl Kind {
             Self::Quads => c"revmap quads of tiles",
             Self::Tiles => c"revmap tiles",
             Self::TileLists => c"revmap lists of patches",
-            Self::TilePatches => c"revmap tiles of listed patches",
+            Self::TilePatches(_) => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
             Self::TileCopies => c"revmap tiles of several copies",
         }
@@ -52,7 +52,18 @@ impl Kind {
     /// True if it draws in compute.
     #[must_use]
     pub const fn is_compute(self) -> bool {
-        matches!(self, Self::TilePatches | Self::TileTree | Self::TileCopies)
+        matches!(
+            self,
+            Self::TilePatches(_) | Self::TileTree | Self::TileCopies
+        )
+    }
+
+    /// Patches that each pixel tests; the longest list for other kinds.
+    const fn list_length(self) -> u32 {
+        match self {
+            Self::TilePatches(length) => length,
+            _ => g::LONGEST_LIST,
+        }
     }
 
     /// True if it lists what other kinds draw.
@@ -68,14 +79,14 @@ impl Kind {
             Self::Cells | Self::CutCells => Entry::Cells,
             Self::Tiles => Entry::Tiles,
             Self::TileLists => Entry::TileLists,
-            Self::TilePatches => Entry::TilePatches,
+            Self::TilePatches(_) => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
             Self::TileCopies => Entry::TileCopies,
         }
     }
 
     /// True if its invocations walk the tree of patches, or search a map.
-    #[must_use]
+    #[cfg(test)]
     pub const fn walks(self) -> bool {
         self.entry().searches()
     }
@@ -88,52 +99,41 @@ pub struct Speciality {
     /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
     /// one loop.
     pub lights: u32,
-    /// Patches that each pixel of a listed tile tests.
-    pub list_length: u32,
-    /// 1 if the draw has one object, and a uniform buffer holds its tables, those of all levels.
-    pub own_tables: u32,
-    /// 1 if the draw has one object, and a uniform buffer holds it.
+    /// 1 if the draw has one object, and uniform buffers hold its block and the tables of all its
+    /// levels; 2 if it has one copy, too.
     pub one_object: u32,
-    /// 1 if there is one instance of it. Compute stage.
-    pub one_instance: u32,
+    /// 1 if the boxes of all objects cut nothing of them, and rays from the eye begin outside of them;
+    /// 2 if that is true of no object.
+    pub outside: u32,
     /// Compute stage: 0 if each pixel is drawn once, so no depth is compared or kept.
     pub depths: u32,
 }
 
 /// The names of the members of [`Speciality`], in order.
 #[cfg(feature = "other-shaders")]
-pub(crate) const SPECIALITIES: [&str; 6] = [
-    "lights",
-    "list-length",
-    "own-tables",
-    "one-object",
-    "one-instance",
-    "depths",
-];
+pub(crate) const SPECIALITIES: [&str; 4] = ["lights", "one-object", "outside", "depths"];
+
+/// The bit of [`Speciality::lights`] in a set.
+const LIGHTS_BIT: u32 = 1;
 
 impl Speciality {
-    /// The members of a set, with bits in the order of [`SPECIALITIES`]; the others promise nothing.
-    #[must_use]
-    pub fn only(self, set: u32) -> Self {
+    /// The members of a set, with bits in the order of the members; the others promise nothing.
+    fn only(self, set: u32) -> Self {
         let general = Self::GENERAL;
         let of = |bit: u32, own: u32, general: u32| if set >> bit & 1 != 0 { own } else { general };
         Self {
             lights: of(0, self.lights, general.lights),
-            list_length: of(1, self.list_length, general.list_length),
-            own_tables: of(2, self.own_tables, general.own_tables),
-            one_object: of(3, self.one_object, general.one_object),
-            one_instance: of(4, self.one_instance, general.one_instance),
-            depths: of(5, self.depths, general.depths),
+            one_object: of(1, self.one_object, general.one_object),
+            outside: of(2, self.outside, general.outside),
+            depths: of(3, self.depths, general.depths),
         }
     }
 
     /// Promises nothing.
     pub const GENERAL: Self = Self {
         lights: 3,
-        list_length: g::LONGEST_LIST,
-        own_tables: 0,
         one_object: 0,
-        one_instance: 0,
+        outside: 0,
         depths: 1,
     };
 }
@@ -157,6 +157,14 @@ impl Variant {
         }
     }
 
+    /// This variant for objects of which [`FramePlan::outside`](crate::plan::FramePlan::outside) is
+    /// this.
+    #[must_use]
+    pub const fn seen_from_outside(mut self, outside: bool) -> Self {
+        self.speciality.outside = if outside { 1 } else { 2 };
+        self
+    }
+
     /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have
     /// the values of the general variant, so that equal pipelines have equal keys.
     #[must_use]
@@ -166,36 +174,33 @@ impl Variant {
             speciality: own,
         } = self;
         let general = Speciality::GENERAL;
-        let walks = kind.walks();
-        let of_copy = matches!(kind, Kind::TilePatches | Kind::TileTree);
         let lists = kind.makes_lists();
-        let tables = (walks && technique.reads_tables()) || kind == Kind::TilePatches || lists;
-        // Lavapipe 22 crashes in shadows if it treats the solid as constants.
-        let one_object = lists || technique.shadow == g::SHADOW_OFF;
         let lit = technique.is_lit() && !lists;
+        let in_cells = kind == Kind::Cells;
+        // Lavapipe 22 crashes in shadows if it treats the solid as constants.
+        let one_object = !in_cells && (lists || technique.shadow == g::SHADOW_OFF);
+        let single = technique.search == Search::Quadric && technique.replicas == 0;
+        let tested = lists || (single && !in_cells);
         let of = |reads: bool, value: u32, general: u32| if reads { value } else { general };
-        let one_object = of(one_object, own.one_object, 0);
         Self {
             technique: if lists { Technique::LISTS } else { technique },
             speciality: Speciality {
                 lights: of(lit, own.lights, general.lights),
-                list_length: of(
-                    kind == Kind::TilePatches,
-                    own.list_length,
-                    general.list_length,
-                ),
-                own_tables: of(tables, own.own_tables, 0),
-                one_object,
-                one_instance: of(of_copy || lists, own.one_instance & one_object, 0),
+                one_object: of(one_object, own.one_object, general.one_object),
+                outside: of(tested, own.outside, general.outside),
                 depths: of(kind.is_compute(), own.depths, general.depths),
             },
         }
     }
 
-    /// The general variant for pipelines of `kind`.
+    /// The forms of pipelines that may draw what this variant draws, the fastest first: this one with
+    /// specialities of a set, one with these lights alone, and the general one.
     #[must_use]
-    pub fn general_of_kind(self, kind: Kind) -> Self {
-        Self::general(self.technique).of_kind(kind)
+    pub fn forms(self, kind: Kind, set: u32) -> [Self; 3] {
+        [set, set & LIGHTS_BIT, 0].map(|set| {
+            let speciality = self.speciality.only(set);
+            Self { speciality, ..self }.of_kind(kind)
+        })
     }
 
     /// The module of its vertices, before [`with_outputs_for`](super::with_outputs_for) its
@@ -228,7 +233,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 17] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 16] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
@@ -244,11 +249,10 @@ impl Variant {
             (g::ORTHO_ID, technique.parallel),
             (g::DEPTHS_ID, speciality.depths),
             (g::LIGHTS_ID, speciality.lights),
-            (g::LIST_LENGTH_ID, speciality.list_length),
+            (g::LIST_LENGTH_ID, kind.list_length()),
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
-            (g::OWN_TABLES_ID, speciality.own_tables),
+            (g::OUTSIDE_ID, speciality.outside),
             (g::ONE_OBJECT_ID, speciality.one_object),
-            (g::ONE_INSTANCE_ID, speciality.one_instance),
         ]
     }
 }

@@ -7,7 +7,6 @@ use crate::model::Model;
 use crate::surface::{Recording, Surface, target, words};
 use crate::views::Seen;
 use revmap::gpu::{Device, DrawPath, Renderer};
-use revmap::settings::Solver;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -99,9 +98,7 @@ pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Resul
         let pairs = || shown.chunks(bytes).zip(wanted.chunks(bytes)).enumerate();
         // If the first pixel shows a solid, this counts the background.
         hits = pairs().filter(|(_, (_, b))| *b != &wanted[..bytes]).count();
-        let by_map = kind.search.solver == Solver::Live;
-        let same = |a: &[u8], b: &[u8]| a == b || (by_map && is_close(a, b));
-        let differ = pairs().skip(skipped).filter(|(_, (a, b))| !same(a, b));
+        let differ = pairs().skip(skipped).filter(|(_, (a, b))| a != b);
         for (count, (pixel, (a, b))) in differ.enumerate() {
             let pixel = pixel % kind.pixels();
             wrong.insert(pixel);
@@ -137,14 +134,6 @@ pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Resul
         drawn.model.copies(),
         drawn.seen.name,
     ))
-}
-
-/// True if two pixels differ by the rounding of a map: one that is larger than an offset needs is kept
-/// while it holds the offset.
-fn is_close(a: &[u8], b: &[u8]) -> bool {
-    let words = |bytes: &[u8]| -> Vec<u32> { bytemuck::pod_collect_to_vec(bytes) };
-    let near = |(a, b): (u32, u32)| a.abs_diff(b) <= 8;
-    a.len().is_multiple_of(4) && words(a).into_iter().zip(words(b)).all(near)
 }
 
 /// The pixels that show the near plane within a solid. If several solids are there, all have its

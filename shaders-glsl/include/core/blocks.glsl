@@ -101,14 +101,7 @@ bool casts()
 // True if the box cuts nothing of the object, and rays from the eye begin outside of it.
 bool is_outside()
 {
-    return (object.cells.w & OUTSIDE_BIT) != 0u;
-}
-
-// True if the object's tables are in the uniform buffer of tables (core/patch_tables.glsl). Places of tables are then
-// relative to that buffer.
-bool takes_own_tables()
-{
-    return OWN_TABLES != 0u && !casts();
+    return OUTSIDE == 1u || (OUTSIDE == 0u && (object.cells.w & OUTSIDE_BIT) != 0u);
 }
 
 void take_frame()
@@ -156,11 +149,11 @@ void take_only_object(uint number)
     }
 }
 
-// Sets the places of the tables that a copy's level has.
+// Sets the places of the tables that a copy's level has. They count from the buffer of tables that is read.
 void take_level(Instance i)
 {
-    object.parts.z = i.object.z - (takes_own_tables() ? object.parts.w : 0u);
-    object.patches.x = i.object.w - (takes_own_tables() ? object.instances.w : 0u);
+    object.parts.z = i.object.z - (OWN_TABLES ? object.parts.w : 0u);
+    object.patches.x = i.object.w - (OWN_TABLES ? object.instances.w : 0u);
 }
 
 // Loads the rest: one of several objects, and a copy's level.
@@ -183,9 +176,6 @@ void take_shape(Instance i)
 {
     if (ONE_OBJECT == 0u) {
         TAKE_SHAPE(objects[i.object.x].object);
-        if (OWN_TABLES != 0u) {
-            object.instances.w = objects[i.object.x].object.instances.w;
-        }
     }
     take_level(i);
 }

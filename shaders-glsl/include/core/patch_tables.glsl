@@ -25,27 +25,27 @@ const uint FIRST_RECORD = (PATCH_NODES + PATCH_ROWS) / 4u;
 uint patch_word(uint at)
 {
     uint vector = object.patches.x + (at >> 2);
-    return takes_own_tables() ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
+    return OWN_TABLES ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
     uint vector = object.patches.x + at;
-    return uintBitsToFloat(takes_own_tables() ? own_patch_tables[vector] : patch_tables[vector]);
+    return uintBitsToFloat(OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector]);
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
     uint vector = object.parts.z + at;
-    return OWN_TABLES != 0u ? own_patch_tables[vector] : patch_tables[vector];
+    return OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector];
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
     uint vector = object.parts.z + at;
-    return OWN_TABLES != 0u ? own_patch_tables[vector][k] : patch_tables[vector][k];
+    return OWN_TABLES ? own_patch_tables[vector][k] : patch_tables[vector][k];
 }
 
 // Returns the least and largest r^2 of a node.

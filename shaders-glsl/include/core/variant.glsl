@@ -18,6 +18,7 @@
 #define OUTPUT_LIST 3   // planes by a host's list
 
 // Other macros are defined or not:
+// - STORED_TABLES: tables are read from the storage buffer even if there is one object;
 // - SINGLE: neither replicas nor shadows, in entries that do not draw them;
 // - HOST_SHADING: a function of the host shades; lights and shadows of the library are left out.
 #ifndef SEARCH
@@ -61,9 +62,8 @@ layout(constant_id = 10) const uint KNOWN_STEPS = 0u; // upper limit on steps; 0
 layout(constant_id = 6) const uint DEPTHS = 1u; // compute; 0: each pixel is drawn once: no depth is compared or kept
 layout(constant_id = 8) const uint LIGHTS = 3u; // upper limit on lights: 1, 2, or 3 for any number
 layout(constant_id = 11) const uint CUT_CELLS = 0u; // 1: a side of the box may cut the cells
-layout(constant_id = 12) const uint OWN_TABLES = 0u; // 1: the draw has one object, and a uniform buffer holds its tables
-layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object, and a uniform buffer holds it
-layout(constant_id = 17) const uint ONE_INSTANCE = 0u; // 1: there is one instance of it
+layout(constant_id = 12) const uint OUTSIDE = 0u; // 1: the blocks of all objects of the draw have OUTSIDE_BIT; 2: none has it
+layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object; uniform buffers hold its block and its tables; 2: and one copy of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
@@ -73,6 +73,13 @@ layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias 
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile
+
+// True if tables are read from the uniform buffer of one object's.
+#ifdef STORED_TABLES
+#define OWN_TABLES false
+#else
+#define OWN_TABLES (ONE_OBJECT != 0u)
+#endif
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;

@@ -7,25 +7,32 @@
 #include "stage/tile.glsl"
 #include "search/patch_row.glsl"
 
+// An instance and its object as words, and the place of both in memory that the group shares. Software drivers read
+// storage buffers lane by lane, and shared memory at constant places once for all lanes.
 const uint INSTANCE_WORDS = 20u;
+const uint OBJECT_WORDS = 48u;
+const uint OBJECT_STRIDE_WORDS = 64u;
 layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
     uint instance_words[];
 };
-
-shared uint shared_instance[INSTANCE_WORDS];
+layout(set = 0, binding = 1, std430) readonly buffer ObjectWords {
+    uint object_words[];
+};
+shared uint shared_words[INSTANCE_WORDS + OBJECT_WORDS];
 shared float listed[8u * LONGEST_LIST];
 
-// Loads the record, and the tile's instance and patches into shared memory. take_shared_instance() reads the instance
-// after a barrier.
-void share_patches()
+// Loads the tile's instance, object and patches into shared memory, from which take_shared() reads after a barrier.
+void share_tile()
 {
     uint self = gl_LocalInvocationIndex;
-    uint record = bin_records(pushed.bin) + 4u * gl_WorkGroupID.x;
-    tile_record = uvec4(bin_words[record], bin_words[record + 1u], bin_words[record + 2u], 0u);
-    if (ONE_INSTANCE == 0u && self < INSTANCE_WORDS) {
-        shared_instance[self] = instance_words[INSTANCE_WORDS * tile_record.y + self];
+    uint instance = INSTANCE_WORDS * tile_record.y;
+    if (ONE_OBJECT != 2u && self < INSTANCE_WORDS) {
+        shared_words[self] = instance_words[instance + self];
     }
-    object.parts.z = instance_words[INSTANCE_WORDS * tile_record.y + 18u] - (OWN_TABLES != 0u ? object.parts.w : 0u);
+    if (ONE_OBJECT == 0u && self < OBJECT_WORDS) {
+        shared_words[INSTANCE_WORDS + self] = object_words[OBJECT_STRIDE_WORDS * instance_words[instance + 16u] + self];
+    }
+    object.parts.z = instance_words[instance + 18u] - (OWN_TABLES ? object.parts.w : 0u);
     uint none = listed_word(0u, 0u);
     uint runs = tile_record.z;
     [[unroll]] for (uint j = 0u; j < 8u * LIST_LENGTH; j += GROUP_PIXELS * GROUP_PIXELS) {
@@ -40,19 +47,42 @@ void share_patches()
     }
 }
 
-vec4 instance_vector(uint n)
+uvec4 shared_vector(uint n)
 {
     uint at = 4u * n;
-    return uintBitsToFloat(uvec4(shared_instance[at], shared_instance[at + 1u], shared_instance[at + 2u], shared_instance[at + 3u]));
+    return uvec4(shared_words[at], shared_words[at + 1u], shared_words[at + 2u], shared_words[at + 3u]);
 }
 
-void take_shared_instance()
+void take_shared_object()
 {
-    if (ONE_INSTANCE != 0u) {
+    object.map = uintBitsToFloat(shared_vector(5u));
+    object.bounds = uintBitsToFloat(shared_vector(6u));
+    object.offset = uintBitsToFloat(shared_vector(7u));
+    object.axis = uintBitsToFloat(shared_vector(8u));
+    object.albedo = uintBitsToFloat(shared_vector(9u));
+    object.specular = uintBitsToFloat(shared_vector(10u));
+    object.texturing = uintBitsToFloat(shared_vector(11u));
+    object.cells = shared_vector(12u);
+    object.instances = shared_vector(13u);
+    object.patches = shared_vector(14u);
+    object.parts = shared_vector(15u);
+}
+
+void take_shared()
+{
+    if (ONE_OBJECT == 2u) {
         tile_instance = instances[pushed.instance];
     } else {
-        tile_instance = Instance(instance_vector(0u), instance_vector(1u), instance_vector(2u), instance_vector(3u), uvec4(shared_instance[16]));
+        tile_instance.position_sx = uintBitsToFloat(shared_vector(0u));
+        tile_instance.rotation = uintBitsToFloat(shared_vector(1u));
+        tile_instance.scale_depth = uintBitsToFloat(shared_vector(2u));
+        tile_instance.origin = uintBitsToFloat(shared_vector(3u));
+        tile_instance.object = shared_vector(4u);
     }
+    if (ONE_OBJECT == 0u) {
+        take_shared_object();
+    }
+    take_level(tile_instance);
 }
 
 vec4 listed_vector(uint n)

@@ -54,7 +54,7 @@ vec2 node_span(Beam beam, uint k)
 {
     // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
     uint at = SPAN_FIRST + k;
-    uint first = object.patches.x + (OWN_TABLES != 0u ? object.instances.w : 0u);
+    uint first = object.patches.x + (OWN_TABLES ? object.instances.w : 0u);
     float most = node_extent(patch_tables[first + (at >> 2)][at & 3u]).y;
     float radius = sqrt(max(most, 0.0)) + beam.width;
     float low = (float(k) / float(SPAN_NODES) - beam.width - beam.o.z) * beam.per_z;

@@ -12,7 +12,7 @@ layout(push_constant) uniform Pushed {
     uint records;  // first word of the records of bins in bin_words
     uint bin;      // index of the bin that this dispatch reads
     uint object;   // index of the only object
-    uint instance; // index of the only instance
+    uint instance; // index of its only copy
 } pushed;
 
 // Bins of tiles by the length of their lists of patches, filled by tile_lists.comp from N records:

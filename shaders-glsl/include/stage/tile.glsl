@@ -14,7 +14,7 @@ bool reads_bin()
     return pushed.count != 0u;
 }
 
-// Loads the record and its instance.
+// Loads the record.
 void take_record()
 {
     uint at = 4u * gl_WorkGroupID.x;
@@ -25,7 +25,12 @@ void take_record()
         at += 4u * pushed.first;
         tile_record = uvec4(tile_words[at], tile_words[at + 1u], 0u, 0u);
     }
-    tile_instance = instances[ONE_INSTANCE != 0u ? pushed.instance : tile_record.y];
+}
+
+// Index of the tile's instance among all. It is the same for all lanes if it is not read from memory.
+uint instance_number()
+{
+    return ONE_OBJECT == 2u ? pushed.instance : tile_record.y;
 }
 
 uvec2 tile_corner()
@@ -36,7 +41,7 @@ uvec2 tile_corner()
 // Computes look and rays from the instance and its object.
 void begin_tile()
 {
-    tile_look = look_of(tile_instance, ONE_INSTANCE != 0u ? pushed.instance : tile_record.y);
+    tile_look = look_of(tile_instance, instance_number());
     tile_rays = pixel_rays(tile_instance);
 }
 

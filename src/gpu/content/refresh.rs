@@ -277,13 +277,7 @@ fn find_map(
     }
     let object = entry.shape();
     let key = MapKey::new(object, &entry.growth(), settings);
-    let before = entry.prepared.as_ref();
-    let before = before.filter(|p| Arc::ptr_eq(&p.drawn().profile, &object.profile));
-    let known = before.and_then(|before| before.derived.map.as_ref());
-    match known.filter(|map| map.key.holds(&key)) {
-        Some(known) => Ok(Some(known.clone())),
-        None => textures.shape(&object.profile, key).map(Some),
-    }
+    textures.shape(&object.profile, key).map(Some)
 }
 
 /// Makes what objects are drawn by.

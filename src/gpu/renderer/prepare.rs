@@ -152,9 +152,9 @@ impl Renderer {
         Err(Error::new(ErrorKind::Usage, message))
     }
 
-    /// Stores the tables of a plan, and finds the bindings of its steps. A step takes the special
-    /// form of its pipeline if that is compiled, else the general one. If neither is, the host has
-    /// not asked for pipelines beforehand, and the special form is compiled.
+    /// Stores the tables of a plan, and finds the bindings of its steps. A step takes the fastest form
+    /// of its pipeline that is compiled. If none is, the host has not asked for pipelines
+    /// beforehand, and the fastest form is compiled.
     fn bind(&self, plan: &Arc<ViewPlan>) -> Result<BoundPlan> {
         let frame = &plan.frame;
         let parts = plan.objects.iter().zip(&frame.parts);
@@ -170,35 +170,36 @@ impl Renderer {
             let planned = &plan.objects[step.object as usize];
             let object = &planned.object;
             let part = match step.kind {
-                Kind::TileLists | Kind::TilePatches => Part::Patches,
+                Kind::TileLists | Kind::TilePatches(_) => Part::Patches,
                 _ => Part::Tables,
             };
             let (mut variant, kind) = (step.variant, step.kind);
-            variant.speciality = variant.speciality.only(pipelines.specialities);
-            variant = variant.of_kind(kind);
             let mut begin = 0;
-            if variant.speciality.own_tables != 0 {
+            if variant.speciality.one_object != 0 {
                 let window = planned.window(part);
-                variant.speciality.own_tables = u32::from(window.len() <= own_vectors);
+                if window.len() > own_vectors {
+                    variant.speciality.one_object = 0;
+                }
                 begin = window.start;
             }
-            let mut pipeline = pipelines.known(variant, kind, &self.owner)?;
-            if pipeline.is_none() {
-                let general = variant.general_of_kind(kind);
-                pipeline = pipelines.known(general, kind, &self.owner)?;
-                if pipeline.is_none() && !self.hides {
-                    pipeline = Some(pipelines.get(variant, kind, &self.owner)?);
-                } else {
-                    if !faster.contains(&(variant, kind)) {
-                        faster.push((variant, kind));
-                    }
-                    variant = general;
+            let forms = variant.forms(kind, pipelines.specialities);
+            let (mut pipeline, mut taken) = (None, forms[0]);
+            for form in forms {
+                if pipeline.is_none() {
+                    (pipeline, taken) = (pipelines.known(form, kind, &self.owner)?, form);
                 }
+            }
+            if pipeline.is_none() && !self.hides {
+                taken = forms[0];
+                pipeline = Some(pipelines.get(taken, kind, &self.owner)?);
+            }
+            if (pipeline.is_none() || taken != forms[0]) && !faster.contains(&(forms[0], kind)) {
+                faster.push((forms[0], kind));
             }
             steps.push(BoundStep {
                 compares_depths: pipeline.is_some()
                     && kind.is_compute()
-                    && variant.speciality.depths != 0,
+                    && taken.speciality.depths != 0,
                 pipeline,
                 textures: object.derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],

@@ -153,11 +153,13 @@ impl Content {
             let mut techniques = drawn_by(solver).forms();
             techniques.extend(solver.follows_tolerance().then(|| drawn_by(FALLBACK)));
             for technique in techniques {
+                let mut variant = Variant::general(technique);
+                variant.speciality.lights = with.lights;
                 for kind in with.kinds(&technique) {
-                    let key = (Variant::general(technique).of_kind(kind), kind);
-                    if known.insert(key) {
-                        all.push(key);
-                    }
+                    let [_, as_lit, general] = variant.forms(kind, u32::MAX);
+                    let new = |variant: &Variant| known.insert((*variant, kind));
+                    let forms = [general, as_lit].into_iter().filter(new);
+                    all.extend(forms.map(|variant| (variant, kind)));
                 }
             }
         }

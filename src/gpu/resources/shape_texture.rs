@@ -29,9 +29,14 @@ pub(crate) struct MapFacts {
     pub bounds: Bounds,
 }
 
+/// Steps, for each unit of height, in which a map grows beyond its box: a changing offset rarely makes
+/// a map anew.
+const REACH_STEPS: u32 = 8;
+
 impl MapKey {
-    /// The key of the map that `object` needs. `columns` is the number that its solid needs under
-    /// its offset.
+    /// The key of the map that `object` needs. The columns of the box come first, then as many
+    /// [steps](REACH_STEPS) as its solid needs under its offset. The key follows from the object
+    /// alone, so its pictures do, too.
     pub fn new(object: &Object, growth: &Growth, settings: &SearchSettings) -> Self {
         let source = settings.map_source.unwrap_or_default();
         let rows = settings.map_rows.unwrap_or(object.map_rows);
@@ -40,19 +45,16 @@ impl MapKey {
         let grown = (f64::from(rows) * growth.height().max(1.0)).ceil() as u32;
         let rows = grown.min(MAX_SIDE.max(rows));
         let reach = reach(object, 2.0 / f64::from(rows.max(1)));
+        let columns = |width: f64| (width * f64::from(rows) - 1e-9).ceil() as u32;
+        let own = columns(object.profile.radius);
+        let step = rows.div_ceil(REACH_STEPS).max(1);
+        let beyond = columns(reach).saturating_sub(own);
         Self {
             rows,
             source,
             format: settings.map_format,
-            columns: (reach.max(object.profile.radius) * f64::from(rows) - 1e-9).ceil() as u32,
+            columns: own.saturating_add(beyond.next_multiple_of(step)),
         }
-    }
-
-    /// Returns true if a map of this key can replace a map of the key `other`. Such a map may reach
-    /// farther.
-    pub fn holds(&self, other: &Self) -> bool {
-        let columns = self.columns.min(other.columns);
-        Self { columns, ..*self } == *other
     }
 
     /// The facts for a shader if no map is baked: the map's size, and the bounds of the solid.
@@ -76,7 +78,6 @@ impl MapKey {
 pub(crate) struct ShapeTexture {
     // Kept because its address is the key of its textures.
     _profile: Arc<Profile>,
-    pub key: MapKey,
     pub facts: MapFacts,
     pub texture: Arc<Image>,
 }
@@ -108,7 +109,6 @@ impl ShapeTexture {
         let size = (encoded.columns, encoded.rows);
         Ok(Self {
             _profile: profile.clone(),
-            key,
             facts: MapFacts {
                 columns: encoded.columns,
                 rows: encoded.rows,
