@@ -109,6 +109,9 @@ const MOST_VAIN: usize = 8;
 /// Most borders that cross in one place, such as lines through one point.
 const MOST_CROSSING: usize = 400;
 
+/// Most pairs of translucent shapes whose boxes overlap: some seconds.
+const MOST_PAIRS: usize = 100_000;
+
 /// A rectangle of the plane, corners on the grid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tile {
@@ -290,11 +293,50 @@ impl Tile {
         Ok((parts, true))
     }
 
+    /// The boxes of shapes that mix with what is below them.
+    fn boxes(self, paints: &[Paint], is_clear: bool, found: &mut Vec<[DVec2; 2]>) {
+        for paint in paints {
+            match paint {
+                Paint::Region(region, color, _) if is_clear || color[3] < 1.0 => {
+                    found.extend(region.extent(self.grid));
+                }
+                Paint::Region(..) => {}
+                Paint::Group {
+                    opacity, paints, ..
+                } => self.boxes(paints, is_clear || *opacity < 1.0, found),
+            }
+        }
+    }
+
+    /// # Errors
+    /// If many translucent shapes overlap each other.
+    fn check_pairs(self, paints: &[Paint]) -> Result<()> {
+        let mut boxes = Vec::new();
+        self.boxes(paints, false, &mut boxes);
+        boxes.sort_by(|a, b| a[0].x.total_cmp(&b[0].x));
+        let (mut pairs, mut tries) = (0, 0);
+        for (i, &a) in boxes.iter().enumerate() {
+            let near = &boxes[i + 1..];
+            let near = &near[..near.partition_point(|b| b[0].x < a[1].x)];
+            tries += near.len();
+            pairs += near.iter().filter(|b| overlap(Some(a), Some(**b))).count();
+            if pairs > MOST_PAIRS || tries > 2000 * MOST_PAIRS {
+                return Err(content_fault(format!(
+                    "the drawing has {} translucent shapes of which more than {MOST_PAIRS} pairs may overlap; \
+                     make them opaque",
+                    boxes.len()
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// The dark region of the tile.
     ///
     /// # Errors
-    /// If many borders cross in one place.
+    /// If many borders cross in one place, or many translucent shapes overlap.
     pub fn dark(self, paints: &[Paint]) -> Result<Region> {
+        self.check_pairs(paints)?;
         let (parts, split) = self.dark_parts(&self.clipped(paints), MOST_HALVINGS, 0)?;
         let merged = Region::merged(parts);
         Ok(match split {

@@ -14,7 +14,7 @@ fn read(name: &str) -> Result<Profile> {
 }
 
 /// A drawing of 100 x 100 with the axis at its left.
-fn drawn(body: &str) -> Result<Profile> {
+pub fn drawn(body: &str) -> Result<Profile> {
     let text = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 100 100">{body}</svg>"##
     );
@@ -22,7 +22,7 @@ fn drawn(body: &str) -> Result<Profile> {
 }
 
 /// Area that one of two outlines has and the other has not.
-fn difference(a: &Outline, b: &Outline) -> f64 {
+pub fn difference(a: &Outline, b: &Outline) -> f64 {
     let grid = Grid::for_extent(2.0);
     let [a, b] = [a, b].map(|o| Region::enclosed(grid, &o.loops, FillRule::NonZero));
     let area = |r: Region| r.outline(grid).area();

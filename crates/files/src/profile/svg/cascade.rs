@@ -1,20 +1,23 @@
 //! The cascade: which declaration of a property counts for an element.
 
-use super::css::{Declaration, Rule, declarations, media, one_line, sheet};
-use super::notes::{Notes, line};
-use super::selector::Places;
+use super::css::{Declaration, Rule, declarations, media, one_line, sheet, without_comments};
+use super::notes::Notes;
+use super::reader::{XHTML, is_svg};
+use super::selector::{Key, Places, Selector};
 use super::value::Value;
+use super::value::attribute;
 use crate::content_fault;
 use revmap::error::Result;
 use roxmltree::Node;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Custom properties of CSS (`--name`), inherited.
 pub(super) type Custom = Rc<HashMap<String, String>>;
 
-/// References between custom properties may be nested this deep.
-const MOST_NESTED: usize = 16;
+/// Fallbacks of custom properties may be nested this deep.
+const MOST_NESTED: usize = 64;
 /// Longest value after custom properties are filled in, bytes.
 const MOST_BYTES: usize = 1 << 16;
 
@@ -24,12 +27,15 @@ type Strength = (bool, u8, [u32; 3]);
 /// All style sheets of a drawing.
 pub(super) struct Sheets {
     rules: Vec<Rule>,
+    /// Places of rules by what the last part of a selector asks for.
+    index: HashMap<Key, Vec<usize>>,
     places: Places,
 }
 
 impl Sheets {
     pub fn of(document: &roxmltree::Document, notes: &mut Notes) -> Self {
         let mut rules = Vec::new();
+        let mut title = None;
         for node in document.descendants() {
             if node.pi().is_some_and(|pi| pi.target == "xml-stylesheet") {
                 notes.warn(
@@ -37,29 +43,42 @@ impl Sheets {
                         .to_owned(),
                 );
             }
-            if !node.is_element() || node.tag_name().name() != "style" {
+            let is_known = is_svg(node) || node.tag_name().namespace() == Some(XHTML);
+            if !is_known || node.tag_name().name() != "style" {
                 continue;
             }
-            if !matches!(node.attribute("type"), None | Some("" | "text/css")) {
+            if !matches!(attribute(node, "type"), None | Some("" | "text/css")) {
                 continue;
             }
-            let condition = node.attribute("media").unwrap_or_default();
+            // Of several sheets with titles, those with the first title count.
+            let own = attribute(node, "title").filter(|t| !t.is_empty());
+            if own.is_some_and(|own| *title.get_or_insert(own) != own) {
+                continue;
+            }
+            let condition = attribute(node, "media").unwrap_or_default();
             let applies = media(condition);
             if applies == Some(false) {
                 continue;
             }
-            for text in node.children().filter(|n| n.is_text()) {
-                let row = node.document().text_pos_at(text.range().start).row;
-                let mut own = sheet(text.text().unwrap_or_default(), row, notes);
-                if applies.is_none() {
-                    let unread = format!("<style media=\"{}\">", one_line(condition));
-                    own.iter_mut().for_each(|r| r.unread = Some(unread.clone()));
-                }
-                rules.append(&mut own);
+            let mut own = sheet(&content(node), notes.line(node), notes);
+            if applies.is_none() {
+                let unread = format!("<style media=\"{}\">", one_line(condition));
+                own.iter_mut().for_each(|r| r.unread = Some(unread.clone()));
+            }
+            rules.append(&mut own);
+        }
+        let mut index: HashMap<Key, Vec<usize>> = HashMap::new();
+        for (i, rule) in rules.iter().enumerate() {
+            for key in rule.selectors.iter().map(Selector::key) {
+                index.entry(key).or_default().push(i);
+            }
+            if rule.selectors.is_empty() {
+                index.entry(Key::Any).or_default().push(i);
             }
         }
         Self {
             rules,
+            index,
             places: Places::of(document),
         }
     }
@@ -67,64 +86,118 @@ impl Sheets {
     /// The declarations for an element, the strongest first.
     ///
     /// # Errors
-    /// If a rule that is not read may be for the element.
+    /// If a rule that is not read may show the element, or selectors take too long.
     pub fn declared(&self, node: Node) -> Result<Declared> {
-        let mut found: Vec<(Strength, Declaration)> = Vec::new();
-        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-            let name = attribute.name();
-            if !matches!(name, "style" | "class" | "id") {
-                let declaration = Declaration {
-                    name: name.to_owned(),
-                    value: attribute.value().trim().to_owned(),
-                    important: false,
-                    css: false,
-                };
-                found.push(((false, 0, [0; 3]), declaration));
-            }
-        }
-        for rule in &self.rules {
+        let mut found: Vec<(Strength, Declaration)> = attributes(node);
+        let mut fault = None;
+        for rule in self.rules_for(node) {
             let matching = rule
                 .selectors
                 .iter()
                 .filter(|s| s.matches(node, &self.places));
             let specificity = matching.map(|s| s.specificity).max();
+            let declared = || rule.declarations.iter().map(|d| d.name.as_str());
             if let Some(unread) = &rule.unread {
                 let may_match = specificity.is_some() || rule.selectors.is_empty();
-                if may_match && rule.declarations.iter().any(|d| counts(&d.name)) {
-                    return Err(content_fault(format!(
-                        "the drawing has the rule \"{unread}\" (line {}), which is not read; \
-                         give the elements their properties directly",
-                        rule.line
-                    )));
+                if !may_match || !declared().any(counts) {
+                    continue;
                 }
+                let text = format!(
+                    "the drawing has the rule \"{unread}\" (line {}), which is not read; \
+                     give the elements their properties directly",
+                    rule.line
+                );
+                if declared().any(shows) {
+                    return Err(content_fault(text));
+                }
+                fault.get_or_insert(text);
             } else if let Some(specificity) = specificity {
                 for d in &rule.declarations {
                     found.push(((d.important, 1, specificity), d.clone()));
                 }
             }
         }
-        for d in declarations(node.attribute("style").unwrap_or_default()) {
+        if self.places.is_spent() {
+            return Err(content_fault(
+                "the drawing has selectors that take too long; write simpler ones",
+            ));
+        }
+        for d in declarations(attribute(node, "style").unwrap_or_default()) {
             found.push(((d.important, 2, [0; 3]), d));
         }
         // A stable sort keeps the order of the document among equals.
         found.sort_by_key(|(strength, _)| *strength);
-        let mut map: HashMap<String, Vec<Declaration>> = HashMap::new();
+        let mut declared = Declared {
+            properties: HashMap::new(),
+            all: None,
+            fault,
+        };
         for (_, d) in found.into_iter().rev() {
-            if d.name == "marker" && d.css {
-                for name in ["marker-start", "marker-mid", "marker-end"] {
-                    map.entry(name.to_owned()).or_default().push(d.clone());
-                }
-            } else {
-                map.entry(d.name.clone()).or_default().push(d);
-            }
+            declared.add(d)?;
         }
-        Ok(Declared(map))
+        Ok(declared)
     }
+
+    /// The rules that may be for an element, in their order.
+    fn rules_for(&self, node: Node) -> impl Iterator<Item = &Rule> {
+        let classes = attribute(node, "class").unwrap_or_default();
+        let keys = classes
+            .split_ascii_whitespace()
+            .map(|c| Key::Class(c.to_owned()));
+        let keys = keys.chain(attribute(node, "id").map(|id| Key::Id(id.to_owned())));
+        let keys = keys.chain([Key::Type(node.tag_name().name().to_owned()), Key::Any]);
+        let mut found: Vec<usize> = Vec::new();
+        for key in keys {
+            found.extend(self.index.get(&key).into_iter().flatten());
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|i| &self.rules[i])
+    }
+}
+
+/// The attributes that may be properties, as declarations.
+fn attributes(node: Node) -> Vec<(Strength, Declaration)> {
+    let own = node.attributes().filter(|a| a.namespace().is_none());
+    let own = own.filter(|a| !matches!(a.name(), "style" | "class" | "id"));
+    let declaration = |a: roxmltree::Attribute| {
+        let is_value = !matches!(a.name(), "d" | "transform") && a.value().contains("/*");
+        let value = match is_value {
+            true => without_comments(a.value()).trim().to_owned(),
+            false => a.value().trim().to_owned(),
+        };
+        Declaration {
+            name: a.name().to_owned(),
+            value,
+            important: false,
+            css: false,
+        }
+    };
+    own.map(|a| ((false, 0, [0; 3]), declaration(a))).collect()
+}
+
+/// The text of an element. Comments within it leave their line ends.
+fn content(node: Node) -> String {
+    let mut text = String::new();
+    for child in node.children() {
+        match (child.is_text(), child.text()) {
+            (true, Some(own)) => text.push_str(own),
+            (_, own) => text.extend(own.unwrap_or_default().chars().filter(|c| *c == '\n')),
+        }
+    }
+    text
+}
+
+/// Returns true for properties that may show what is hidden.
+fn shows(name: &str) -> bool {
+    matches!(name, "display" | "visibility" | "opacity" | "all") || name.starts_with("--")
 }
 
 /// Returns true for properties that move the outline.
 fn counts(name: &str) -> bool {
-    const PARTS: [&str; 24] = [
+    const PARTS: [&str; 26] = [
+        "all",
+        "background",
         "fill",
         "stroke",
         "opacity",
@@ -155,7 +228,32 @@ fn counts(name: &str) -> bool {
 }
 
 /// Declarations by property, the strongest first.
-pub(super) struct Declared(HashMap<String, Vec<Declaration>>);
+pub(super) struct Declared {
+    properties: HashMap<String, Vec<Declaration>>,
+    /// What `all` makes of the properties without stronger declarations.
+    all: Option<Wide>,
+    /// The refusal of a rule that may be for the element.
+    pub fault: Option<String>,
+}
+
+/// A keyword that every property has.
+#[derive(Clone, Copy, PartialEq)]
+enum Wide {
+    Inherit,
+    Initial,
+    Unset,
+}
+
+impl Wide {
+    fn of(text: &str) -> Option<Self> {
+        Some(match text.to_ascii_lowercase().as_str() {
+            "inherit" => Self::Inherit,
+            "initial" => Self::Initial,
+            "unset" | "revert" => Self::Unset,
+            _ => return None,
+        })
+    }
+}
 
 /// The outcome of the cascade for one property.
 pub(super) enum Picked<T> {
@@ -172,72 +270,115 @@ pub(super) enum Picked<T> {
 }
 
 impl Declared {
+    /// Adds the next weaker declaration.
+    fn add(&mut self, d: Declaration) -> Result<()> {
+        // Ends of lines are no properties.
+        let free = d.name.starts_with("--") || matches!(&*d.name, "x1" | "x2" | "y1" | "y2");
+        if self.all.is_some() && !free {
+            return Ok(());
+        }
+        if d.name == "all" && d.css {
+            self.all = Wide::of(&d.value);
+            return match d.value.eq_ignore_ascii_case("revert-layer") {
+                true => Err(content_fault(
+                    "the drawing has \"all: revert-layer\", which is not read; write the values themselves",
+                )),
+                false => Ok(()),
+            };
+        }
+        let names: &[&str] = match d.name.as_str() {
+            "marker" if d.css => &["marker-start", "marker-mid", "marker-end"],
+            own => &[own],
+        };
+        for name in names {
+            let list = self.properties.entry((*name).to_owned()).or_default();
+            list.push(d.clone());
+        }
+        Ok(())
+    }
+
     /// The custom properties of an element whose parent has `inherited`.
-    pub fn custom(&self, inherited: &Custom) -> Custom {
-        let own = self.0.iter().filter(|(name, _)| name.starts_with("--"));
-        let mut own = own.peekable();
-        if own.peek().is_none() {
-            return Rc::clone(inherited);
+    ///
+    /// # Errors
+    /// If one is set back to a value that is not known here.
+    pub fn custom(&self, inherited: &Custom) -> Result<Custom> {
+        let own = self.properties.iter();
+        let own = own.filter(|(name, _)| name.starts_with("--"));
+        let own = own.filter_map(|(name, list)| Some((name.as_str(), list.first()?)));
+        let own: HashMap<&str, &str> = own.map(|(name, d)| (name, d.value.as_str())).collect();
+        if own.is_empty() {
+            return Ok(Rc::clone(inherited));
+        }
+        let mut filling = Filling {
+            own: &own,
+            inherited,
+            done: HashMap::new(),
+        };
+        for (name, value) in &own {
+            if ["revert", "revert-layer"].contains(&value.to_ascii_lowercase().as_str()) {
+                return Err(content_fault(format!(
+                    "the drawing has \"{name}: {value}\", which is not read; write the value itself"
+                )));
+            }
+            filling.value(name, 0);
         }
         let mut all = HashMap::clone(inherited);
-        for (name, list) in own {
-            match list.first().map(|d| d.value.as_str()) {
-                Some("inherit" | "unset") | None => {}
-                Some("initial") => drop(all.remove(name)),
-                Some(value) => drop(all.insert(name.clone(), value.to_owned())),
+        for (name, value) in filling.done {
+            match value {
+                Some(value) => drop(all.insert(name, value)),
+                None => drop(all.remove(&name)),
             }
         }
-        Rc::new(all)
+        Ok(Rc::new(all))
     }
 
     /// The strongest declaration of CSS of a property, as text.
     pub fn css(&self, name: &str) -> Option<&str> {
-        let first = self.0.get(name)?.iter().find(|d| d.css)?;
+        let first = self.properties.get(name)?.iter().find(|d| d.css)?;
         Some(&first.value)
     }
 
     /// Picks the strongest declaration that `read` can read. It gets the value and `true` for one
-    /// of CSS.
+    /// of CSS. Those that are not read are skipped only if `lenient`, with a warning.
     pub fn pick<T>(
         &self,
         name: &str,
         custom: &Custom,
         node: Node,
         notes: &mut Notes,
+        lenient: bool,
         read: &dyn Fn(&str, bool) -> Value<T>,
     ) -> Picked<T> {
         let mut fault = None;
-        let Some(list) = self.0.get(name) else {
-            return Picked::Absent;
-        };
-        for d in list {
-            let filled = match d.value.contains("var(") {
-                true => substituted(&d.value, custom, 0),
-                false => Some(d.value.clone()),
-            };
+        let list = self.properties.get(name).map_or(&[][..], Vec::as_slice);
+        for d in list.iter().filter(|d| !d.value.is_empty()) {
+            let line = notes.line(node);
             let said = || {
                 let value = one_line(&d.value);
                 match d.css {
-                    true => format!("\"{name}: {value}\" (line {})", line(node)),
-                    false => format!("{name}=\"{value}\" (line {})", line(node)),
+                    true => format!("\"{name}: {value}\" (line {line})"),
+                    false => format!("{name}=\"{value}\" (line {line})"),
                 }
             };
-            let Some(value) = filled else {
+            let is_filled = d.value.contains("var(");
+            let Some(value) = filled(&d.value, custom) else {
                 let text = format!(
                     "the drawing has {}, which is not set; write the value itself",
                     said()
                 );
-                fault.get_or_insert(Picked::Unread(text));
-                continue;
+                return Picked::Unread(text);
             };
-            match value.to_ascii_lowercase().as_str() {
-                "" => continue,
-                "inherit" => return Picked::Inherit,
-                "initial" => return Picked::Initial,
-                "unset" | "revert" | "revert-layer" => return Picked::Unset,
-                _ => {}
+            if let Some(wide) = Wide::of(&value) {
+                return wide.picked();
             }
             match read(&value, d.css) {
+                _ if value.eq_ignore_ascii_case("revert-layer") => {
+                    let text = format!(
+                        "the drawing has {}, which is not read; write the value",
+                        said()
+                    );
+                    return Picked::Unread(text);
+                }
                 Value::Is(v) => {
                     if let Some(Picked::Unread(text)) = fault {
                         let text = text.split(';').next().unwrap_or_default();
@@ -251,20 +392,84 @@ impl Declared {
                 }
                 Value::Unread(remedy) => {
                     let text = format!("the drawing has {}, which is not read; {remedy}", said());
-                    fault.get_or_insert(Picked::Unread(text));
+                    let unread = Picked::Unread(text);
+                    if !lenient {
+                        return unread;
+                    }
+                    fault.get_or_insert(unread);
                 }
+                // Browsers find this too late to go back to the declaration before it.
+                Value::Wrong if is_filled => return Picked::Unset,
                 Value::Wrong => {
                     let text = format!("the drawing has {}, which is not valid", said());
                     fault.get_or_insert(Picked::Wrong(text));
                 }
             }
         }
-        fault.unwrap_or(Picked::Absent)
+        match (fault, self.all) {
+            (Some(fault), _) => fault,
+            (None, Some(all)) => all.picked(),
+            (None, _) => Picked::Absent,
+        }
     }
 }
 
-/// Fills custom properties in. `None` for one that is not set.
-fn substituted(text: &str, custom: &Custom, depth: usize) -> Option<String> {
+impl Wide {
+    fn picked<T>(self) -> Picked<T> {
+        match self {
+            Self::Inherit => Picked::Inherit,
+            Self::Initial => Picked::Initial,
+            Self::Unset => Picked::Unset,
+        }
+    }
+}
+
+/// The custom properties of one element while references between them are followed.
+struct Filling<'a> {
+    own: &'a HashMap<&'a str, &'a str>,
+    inherited: &'a Custom,
+    /// `None` for those that are not valid, and for those that are being read.
+    done: HashMap<String, Option<String>>,
+}
+
+impl Filling<'_> {
+    /// The value of a custom property with all references filled in.
+    fn value(&mut self, name: &str, depth: usize) -> Option<String> {
+        let before = || self.inherited.get(name).cloned();
+        if let Some(done) = self.done.get(name) {
+            return done.clone();
+        }
+        let Some(text) = self.own.get(name) else {
+            return before();
+        };
+        let value = match Wide::of(text) {
+            Some(Wide::Initial) => None,
+            Some(_) => before(),
+            None => {
+                self.done.insert(name.to_owned(), None);
+                substituted(text, &mut |n| self.value(n, depth + 1), depth)
+            }
+        };
+        self.done.insert(name.to_owned(), value.clone());
+        value
+    }
+}
+
+/// A value with custom properties filled in. `None` if one is not set.
+fn filled<'a>(text: &'a str, custom: &Custom) -> Option<Cow<'a, str>> {
+    match text.contains("var(") {
+        true => substituted(text, &mut |name| custom.get(name).cloned(), 0)
+            .map(|value| Cow::Owned(value.trim().to_owned())),
+        false => Some(Cow::Borrowed(text)),
+    }
+}
+
+/// Fills in what `value` gives for the names of custom properties. `None` if that is not set.
+fn substituted(
+    text: &str,
+    value: &mut dyn FnMut(&str) -> Option<String>,
+    depth: usize,
+) -> Option<String> {
     if depth > MOST_NESTED {
         return None;
     }
@@ -280,9 +485,11 @@ fn substituted(text: &str, custom: &Custom, depth: usize) -> Option<String> {
             Some((name, fallback)) => (name, Some(fallback)),
             None => (&after[..end], None),
         };
-        let value = custom.get(name.trim()).map(String::as_str).or(fallback)?;
         out.push_str(before);
-        out.push_str(substituted(value, custom, depth + 1)?.trim());
+        match (value(name.trim()), fallback) {
+            (Some(own), _) => out.push_str(own.trim()),
+            (None, fallback) => out.push_str(substituted(fallback?, value, depth + 1)?.trim()),
+        }
         if out.len() > MOST_BYTES {
             return None;
         }

@@ -115,22 +115,39 @@ fn function(name: &str, arguments: &str) -> Value<Color> {
     if arguments.contains('(') || arguments.trim_start().starts_with("from ") {
         return Value::Unread(REMEDY);
     }
-    let separated = |c: char| c.is_ascii_whitespace() || matches!(c, ',' | '/');
-    let mut words: Vec<&str> = arguments
-        .split(separated)
-        .filter(|w| !w.is_empty())
-        .collect();
+    // Commas are of the older notation, which has no slash.
+    let older = arguments.contains(',');
+    let (body, alpha) = match arguments.split_once('/').filter(|_| !older) {
+        Some((body, alpha)) => (body, Some(alpha.trim())),
+        None => (arguments, None),
+    };
+    let mut words: Vec<&str> = match older {
+        true => body.split(',').map(str::trim).collect(),
+        false => body.split_ascii_whitespace().collect(),
+    };
     let space = (name == "color" && !words.is_empty()).then(|| words.remove(0));
+    let has_commas = matches!(name, "rgb" | "rgba" | "hsl" | "hsla");
+    if (older && !has_commas) || (!older && words.len() != 3) {
+        return Value::Wrong;
+    }
+    words.extend(alpha);
     let parts: Option<Vec<Part>> = words
         .iter()
         .map(|w| match *w {
-            "none" => Some(Part(0.0, "")),
+            "none" if !older => Some(Part(0.0, "")),
             w => split_number(w).map(|(v, unit)| Part(v, unit)),
         })
         .collect();
     let Some(&[a, b, c, ref alpha @ ..]) = parts.as_deref() else {
         return Value::Wrong;
     };
+    let even = match name.starts_with("rgb") {
+        true => a.1 == b.1 && b.1 == c.1,
+        false => b.1 == "%" && c.1 == "%",
+    };
+    if older && !even {
+        return Value::Wrong;
+    }
     let alpha = match alpha {
         [] => Some(1.0),
         [alpha] => alpha.of(1.0),
@@ -314,6 +331,14 @@ mod tests {
             "#12345",
             "#xyz",
             "rgb(1 2)",
+            "rgb(1, 2 3)",
+            "rgb(1 2 3 1)",
+            "rgb(1, 2%, 3)",
+            "rgb(1,,2,3)",
+            "rgb(1 2 3 /)",
+            "hsl(1, 2, 3)",
+            "lab(1, 2, 3)",
+            "color(srgb, 1, 1, 1)",
             "rgb(1 2 3",
             "undefined",
             "fill(1)",

@@ -1,10 +1,12 @@
 //! Style sheets: rules, and the conditions of their media.
 
-use super::notes::Notes;
+use super::notes::{Notes, line_at, line_starts};
+use super::reader::SVG;
 use super::selector::{Selector, selectors};
+use super::value::unescaped;
 
-/// `@media` within `@media` may be nested this deep.
-const MOST_NESTED: usize = 8;
+/// Rules and `@media` may be nested this deep.
+const MOST_NESTED: usize = 32;
 
 /// A property's value, from an attribute, a `style` attribute or a rule.
 #[derive(Clone, Debug)]
@@ -27,6 +29,20 @@ pub(super) struct Rule {
     pub unread: Option<String>,
 }
 
+/// Properties that browsers read with the prefix `-webkit-`, too.
+const PREFIXED: [&str; 10] = [
+    "transform",
+    "transform-origin",
+    "clip-path",
+    "filter",
+    "opacity",
+    "animation",
+    "animation-name",
+    "mask",
+    "mask-image",
+    "mask-box-image",
+];
+
 /// Reads the declarations of a `style` attribute or of a rule.
 pub(super) fn declarations(text: &str) -> Vec<Declaration> {
     let text = without_comments(text);
@@ -38,10 +54,16 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
         let Some((name, value)) = part.split_once(':') else {
             continue;
         };
-        let name = match name.trim() {
-            custom if custom.starts_with("--") => custom.to_owned(),
+        let name = match unescaped(name.trim()) {
+            custom if custom.starts_with("--") => custom,
             name => name.to_ascii_lowercase(),
         };
+        let plain = name.strip_prefix("-webkit-");
+        let name = plain.filter(|p| PREFIXED.contains(p)).unwrap_or(&name);
+        // Ends of lines are attributes alone.
+        if matches!(name, "x1" | "x2" | "y1" | "y2") {
+            continue;
+        }
         let value = value.trim();
         let (value, important) = match value.rsplit_once('!') {
             Some((value, word)) if word.trim().eq_ignore_ascii_case("important") => {
@@ -50,7 +72,7 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
             _ => (value, false),
         };
         found.push(Declaration {
-            name,
+            name: name.to_owned(),
             value: value.to_owned(),
             important,
             css: true,
@@ -64,37 +86,50 @@ pub(super) fn sheet(text: &str, line: u32, notes: &mut Notes) -> Vec<Rule> {
     let text = without_comments(text)
         .replace("<!--", "    ")
         .replace("-->", "   ");
-    let mut rules = Vec::new();
-    Sheet {
+    let mut sheet = Sheet {
         text: &text,
+        starts: line_starts(&text),
         line,
         notes,
-    }
-    .rules(&text, None, 0, &mut rules);
-    rules
+        rules: Vec::new(),
+    };
+    sheet.rules(&text, Context::default());
+    sheet.rules
 }
 
 struct Sheet<'a> {
     text: &'a str,
+    /// Where the lines of the text begin.
+    starts: Vec<usize>,
     line: u32,
     notes: &'a mut Notes,
+    rules: Vec<Rule>,
+}
+
+/// What a rule is within.
+#[derive(Clone, Copy, Default)]
+struct Context<'a> {
+    /// The selectors of the rule about a nested one.
+    parent: Option<&'a str>,
+    /// The condition that is not read.
+    unread: Option<&'a str>,
+    depth: usize,
 }
 
 impl Sheet<'_> {
     /// The line of the document at which a part of the sheet begins.
     fn line_of(&self, part: &str) -> u32 {
         let offset = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
-        let before = self.text.as_bytes().get(..offset).unwrap_or_default();
-        self.line + before.iter().filter(|&&b| b == b'\n').count() as u32
+        self.line - 1 + line_at(&self.starts, offset)
     }
 
-    fn rules(&mut self, text: &str, unread: Option<&str>, depth: usize, rules: &mut Vec<Rule>) {
+    /// Reads rules, and within a rule its declarations.
+    fn rules(&mut self, text: &str, within: Context) {
         let mut rest = text.trim_start();
         while !rest.is_empty() {
-            let stops: &[char] = if rest.starts_with('@') {
-                &[';', '{']
-            } else {
-                &['{']
+            let stops: &[char] = match within.parent.is_some() || rest.starts_with('@') {
+                true => &[';', '{'],
+                false => &['{'],
             };
             let (head, stop, after) = until(rest, stops);
             let (block, after) = match stop {
@@ -105,80 +140,111 @@ impl Sheet<'_> {
                 _ => (None, after),
             };
             if let Some(at_rule) = head.strip_prefix('@') {
-                self.at_rule(at_rule.trim(), head, block, unread, depth, rules);
+                self.at_rule(at_rule.trim(), head, block, within);
+            } else if let Some(parent) = within.parent
+                && (block.is_none() || head.starts_with("--"))
+            {
+                let own = &rest[..rest.len() - after.len()];
+                if !head.is_empty() {
+                    self.add(parent, own, own, within);
+                }
             } else if let Some(block) = block {
-                rules.push(self.rule(head, block, unread));
+                self.rule(head, block, within);
             }
             rest = after.trim_start();
         }
     }
 
-    fn rule(&self, head: &str, block: &str, unread: Option<&str>) -> Rule {
-        let read = selectors(head);
-        let nested = block
-            .contains('{')
-            .then(|| format!("{} {{ ... {{", one_line(head)));
-        Rule {
-            unread: match &read {
-                None => Some(one_line(head)),
-                Some(_) => nested.or_else(|| unread.map(str::to_owned)),
-            },
-            selectors: read.unwrap_or_default(),
-            declarations: declarations(block),
-            line: self.line_of(head),
+    fn rule(&mut self, head: &str, block: &str, within: Context) {
+        if within.depth >= MOST_NESTED {
+            return self.refuse(&one_line(head), head);
         }
+        let own = match within.parent {
+            Some(parent) => nested(head, parent),
+            None => head.to_owned(),
+        };
+        if !block.contains('{') {
+            return self.add(&own, head, block, within);
+        }
+        let inner = Context {
+            parent: Some(&own),
+            depth: within.depth + 1,
+            ..within
+        };
+        self.rules(block, inner);
     }
 
-    fn at_rule(
-        &mut self,
-        text: &str,
-        head: &str,
-        block: Option<&str>,
-        unread: Option<&str>,
-        depth: usize,
-        rules: &mut Vec<Rule>,
-    ) {
+    fn add(&mut self, selector: &str, at: &str, block: &str, within: Context) {
+        let read = selectors(selector);
+        let unread = match &read {
+            None => Some(one_line(selector)),
+            Some(_) => within.unread.map(str::to_owned),
+        };
+        self.rules.push(Rule {
+            unread,
+            selectors: read.unwrap_or_default(),
+            declarations: declarations(block),
+            line: self.line_of(at),
+        });
+    }
+
+    /// Adds a rule that refuses every element.
+    fn refuse(&mut self, name: &str, at: &str) {
+        self.rules.push(Rule {
+            declarations: declarations("--any:0"),
+            unread: Some(name.to_owned()),
+            line: self.line_of(at),
+            ..Rule::default()
+        });
+    }
+
+    fn at_rule(&mut self, text: &str, head: &str, block: Option<&str>, within: Context) {
         let name_end = text.find(|c: char| !(c.is_alphanumeric() || c == '-'));
         let (name, condition) = text.split_at(name_end.unwrap_or(text.len()));
         let name = name.to_ascii_lowercase();
-        if name == "import" {
-            let line = self.line_of(head);
-            self.notes.warn(format!(
-                "the drawing has @import (line {line}), which is not read; copy the rules into the drawing"
-            ));
-            return;
-        }
-        let conditional = [
-            "media",
-            "supports",
-            "layer",
-            "container",
-            "scope",
-            "document",
-        ];
-        let (Some(block), true) = (block, conditional.contains(&name.as_str())) else {
-            return;
-        };
-        let applies = match name.as_str() {
-            "media" => media(condition),
-            _ => None,
-        };
         let own = format!("@{}", one_line(text));
-        let unread = match applies {
-            Some(false) => return,
-            Some(true) => unread,
-            None => Some(own.as_str()),
+        let applies = match name.as_str() {
+            "import" => {
+                let line = self.line_of(head);
+                return self.notes.warn(format!(
+                    "the drawing has @import (line {line}), which is not read; copy the rules into the drawing"
+                ));
+            }
+            "namespace" if condition.contains(SVG) => return,
+            "namespace" | "property" => return self.refuse(&own, head),
+            "media" => media(condition),
+            "supports" | "layer" | "container" | "scope" | "document" | "starting-style" => None,
+            _ => return,
         };
-        if depth < MOST_NESTED {
-            self.rules(block, unread, depth + 1, rules);
-        } else {
-            let declarations = declarations(block.trim_start_matches(|c| c != '{'));
-            let unread = Some(own.clone());
-            rules.push(Rule {
-                declarations,
-                unread,
-                ..Rule::default()
-            });
+        let (Some(block), true) = (block, applies != Some(false)) else {
+            return;
+        };
+        if within.depth >= MOST_NESTED {
+            return self.refuse(&own, head);
+        }
+        let inner = Context {
+            unread: applies.map_or(Some(own.as_str()), |_| within.unread),
+            depth: within.depth + 1,
+            ..within
+        };
+        self.rules(block, inner);
+    }
+}
+
+/// The selectors of a rule within the rule of `parent`.
+fn nested(head: &str, parent: &str) -> String {
+    let parent = format!(":is({})", parent.trim());
+    match head.contains('&') {
+        true => head.replace('&', &parent),
+        false => {
+            let mut parts = Vec::new();
+            let mut rest = Some(head);
+            while let Some(text) = rest {
+                let (part, stop, after) = until(text, &[',']);
+                parts.push(format!("{parent} {}", part.trim()));
+                rest = stop.map(|_| after);
+            }
+            parts.join(",")
         }
     }
 }
@@ -275,18 +341,45 @@ fn until<'a>(text: &'a str, stops: &[char]) -> (&'a str, Option<char>, &'a str) 
 }
 
 /// Comments become blanks, their line ends stay.
-fn without_comments(text: &str) -> String {
+pub(super) fn without_comments(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
-    while let Some((before, after)) = rest.split_once("/*") {
+    while let Some(at) = rest.find(['"', '\'', '/']) {
+        let (before, found) = rest.split_at(at);
         out.push_str(before);
-        let (comment, after) = after.split_once("*/").unwrap_or((after, ""));
-        out.push(' ');
-        out.extend(comment.chars().filter(|&c| c == '\n'));
-        rest = after;
+        let comment = found.strip_prefix("/*");
+        rest = match comment {
+            Some(comment) => {
+                let (comment, after) = comment.split_once("*/").unwrap_or((comment, ""));
+                out.push(' ');
+                out.extend(comment.chars().filter(|&c| c == '\n'));
+                after
+            }
+            None => {
+                let length = string_length(found);
+                out.push_str(&found[..length]);
+                &found[length..]
+            }
+        };
     }
     out.push_str(rest);
     out
+}
+
+/// Length of the string that a text begins with, to the end of its line at most; 1 for another
+/// letter.
+fn string_length(text: &str) -> usize {
+    let mut letters = text.char_indices();
+    let quote = letters.next().map(|(_, c)| c).filter(|c| *c != '/');
+    while let (Some(quote), Some((i, c))) = (quote, letters.next()) {
+        match c {
+            '\\' => drop(letters.next()),
+            '\n' => return i,
+            c if c == quote => return i + 1,
+            _ => {}
+        }
+    }
+    quote.map_or(1, |_| text.len())
 }
 
 #[cfg(test)]
@@ -335,10 +428,27 @@ mod tests {
             Some("@supports (x: y)")
         );
         assert_eq!(names("@media (min-width: 9px) { a {c:d} }")[0].0, 1);
-        assert!(names("a { b:c; & d { e:f } }")[0].2.is_some());
+        let deep = "a {".repeat(40) + "b:c" + &"}".repeat(40);
+        assert!(names(&deep)[0].2.is_some());
         let mut notes = Notes::default();
         assert!(sheet("@import 'a.css'; a{b:c}", 1, &mut notes).len() == 1);
         assert!(notes.into_warnings()[0].contains("@import (line 1)"));
+    }
+
+    #[test]
+    fn rules_within_rules_are_in_order() {
+        let text = "a, .b {c:1; &:hover, d {e:2} > f {g:3} --h:{i:4}; @media screen {j:5} k:6}";
+        let got: Vec<(usize, Vec<String>)> = names(text).into_iter().map(|r| (r.0, r.1)).collect();
+        let wanted = [
+            (2, "c=1"),
+            (2, "e=2"),
+            (1, "g=3"),
+            (2, "--h={i:4}"),
+            (2, "j=5"),
+            (2, "k=6"),
+        ];
+        assert_eq!(got, wanted.map(|(n, d)| (n, vec![d.to_owned()])));
+        assert_eq!(nested("d, e", "a"), ":is(a) d,:is(a) e");
     }
 
     #[test]

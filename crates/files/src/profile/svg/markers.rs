@@ -1,11 +1,11 @@
 //! Markers: the content that is repeated at the corners of a line.
 
-use super::notes::{line, misled};
+use super::notes::misled;
 use super::reader::{Place, Reader};
 use super::shapes::Curve;
 use super::style::{Style, Target};
 use super::tree::{Clip, Group, Node as Drawn};
-use super::value::{Value, length, split_number};
+use super::value::{Value, attribute, length, split_number};
 use super::viewport::{fitted, view_box};
 use kurbo::{Affine, PathEl, Point, Rect, Vec2};
 use revmap::error::Result;
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
             let (Ok(id) | Err(id)) = target;
             self.notes.warn(format!(
                 "the drawing has a marker \"{id}\" (line {}), which is not in it and is left out",
-                line(node)
+                self.notes.line(node)
             ));
         }
         marker
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
         );
         style.context = Rc::new(paints);
         let size = |name: &str, whole: f64, usual: f64| {
-            let text = marker.attribute(name).map(str::trim);
+            let text = attribute(marker, name).map(str::trim);
             let read = text.map(|t| length(t, style.fonts, true));
             read.and_then(Value::ok).map_or(usual, |l| l.of(whole))
         };
@@ -120,17 +120,18 @@ impl<'a> Reader<'a> {
             size("markerWidth", place.viewport.0, 3.0),
             size("markerHeight", place.viewport.1, 3.0),
         );
+        let inner = view_box(marker, &mut self.notes);
         if own.0 <= 0.0
             || own.1 <= 0.0
-            || (width <= 0.0 && marker.attribute("markerUnits").is_none())
+            || inner.is_some_and(|i| i.area() <= 0.0)
+            || (width <= 0.0 && attribute(marker, "markerUnits").is_none())
         {
             return Ok(());
         }
-        let inner = view_box(marker, &mut self.notes);
         let fit = inner.map_or(Affine::IDENTITY, |i| fitted(marker, i, own));
         let whole = inner.map_or(own, |i| (i.width(), i.height()));
         let reference = fit * Point::new(size("refX", whole.0, 0.0), size("refY", whole.1, 0.0));
-        let angle = match marker.attribute("orient").map(str::trim) {
+        let angle = match attribute(marker, "orient").map(str::trim) {
             Some("auto") => corner.angle(),
             Some("auto-start-reverse") if is_start => corner.angle() + std::f64::consts::PI,
             Some("auto-start-reverse") => corner.angle(),
@@ -142,7 +143,7 @@ impl<'a> Reader<'a> {
                 _ => 0.0,
             },
         };
-        let scale = match marker.attribute("markerUnits") {
+        let scale = match attribute(marker, "markerUnits") {
             Some("userSpaceOnUse") => 1.0,
             _ => width,
         };
@@ -154,7 +155,7 @@ impl<'a> Reader<'a> {
         let mut content = Vec::new();
         let within = Place {
             viewport: whole,
-            depth: place.depth + 1,
+            ..place.deeper()
         };
         self.children(marker, &style, within, &mut content)?;
         self.open.pop();
@@ -162,17 +163,12 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         let clip = (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, own.0, own.1)));
-        let inner = Drawn::Group(Group {
-            transform: fit,
-            opacity: 1.0,
-            clip: None,
-            children: content,
-        });
+        style.own.check()?;
         out.push(Drawn::Group(Group {
-            transform,
             opacity: style.own.opacity,
             clip,
-            children: vec![inner],
+            is_marker: true,
+            ..Group::moved(transform, vec![Drawn::Group(Group::moved(fit, content))])
         }));
         Ok(())
     }

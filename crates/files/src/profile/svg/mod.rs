@@ -25,7 +25,7 @@ pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
 
 use crate::content_fault;
 use kurbo::{Affine, Rect, Shape};
-use reader::{Place, Reader, premultiplied, root_fault};
+use reader::{Place, Reader, SVG, premultiplied, root_fault};
 use revmap::error::{Error, Result};
 use revmap::profile::FillRule;
 use style::Paint;
@@ -48,6 +48,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
     if root.tag_name().name() != "svg" {
         return Err(root_fault(root.tag_name().name()));
     }
+    if let Some(other) = root.tag_name().namespace().filter(|n| *n != SVG) {
+        return Err(content_fault(format!(
+            "the drawing has the namespace \"{other}\"; write xmlns=\"{SVG}\""
+        )));
+    }
     let mut reader = Reader::new(&document);
     let style = reader.style_of(root)?;
     let inner = viewport::view_box(root, &mut reader.notes);
@@ -56,27 +61,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
     let viewport = inner.map_or(size, |i| (i.width(), i.height()));
     let mut content = Vec::new();
     if style.own.display && style.own.opacity > 0.0 {
-        reader.children(root, &style, Place { viewport, depth: 0 }, &mut content)?;
+        reader.children(root, &style, Place::within(viewport), &mut content)?;
     }
-    let children = vec![Node::Group(Group {
-        transform: fit,
-        opacity: 1.0,
-        clip: None,
-        children: content,
-    })];
+    let children = vec![Node::Group(Group::moved(fit, content))];
     let mut content = Vec::new();
-    reader.wrap(
-        root,
-        &style,
-        Place {
-            viewport: size,
-            depth: 0,
-        },
-        children,
-        &mut content,
-    )?;
-    if let Paint::Color(color) = style.own.background {
-        let color = premultiplied(color, 1.0);
+    reader.wrap(root, &style, Place::within(size), children, &mut content)?;
+    tree::prune(&mut content);
+    if let Paint::Color(color) = style.resolved(&style.own.background) {
+        let color = premultiplied(*color, 1.0);
         let page = Rect::new(0.0, 0.0, size.0, size.1);
         let path = Path {
             curve: page.to_path(0.1),

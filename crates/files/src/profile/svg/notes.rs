@@ -13,9 +13,23 @@ pub(super) struct Notes {
     warnings: Vec<String>,
     /// What is said without its line.
     known: HashSet<String>,
+    /// Where the lines of the document begin.
+    starts: Vec<usize>,
 }
 
 impl Notes {
+    pub fn of(document: &roxmltree::Document) -> Self {
+        Self {
+            starts: line_starts(document.input_text()),
+            ..Self::default()
+        }
+    }
+
+    /// The line of the document on which an element begins.
+    pub fn line(&self, node: roxmltree::Node) -> u32 {
+        line_at(&self.starts, node.range().start)
+    }
+
     /// Adds a warning. Those that differ only in the line are given once.
     pub fn warn(&mut self, text: String) {
         let mut key = text.clone();
@@ -41,8 +55,18 @@ impl Notes {
     }
 }
 
-/// The line of the document on which an element begins.
-pub(super) fn line(node: roxmltree::Node) -> u32 {
+/// Where the lines of a text begin, after the first.
+pub(super) fn line_starts(text: &str) -> Vec<usize> {
+    text.match_indices('\n').map(|(i, _)| i + 1).collect()
+}
+
+/// The line of a place in a text.
+pub(super) fn line_at(starts: &[usize], place: usize) -> u32 {
+    1 + starts.partition_point(|&start| start <= place) as u32
+}
+
+/// The line of the document on which an element begins, for one refusal: it reads the document.
+fn line(node: roxmltree::Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 

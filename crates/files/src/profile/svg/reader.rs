@@ -3,16 +3,17 @@
 use super::super::paint::{self, Rgba};
 use super::cascade::Sheets;
 use super::color::Color;
-use super::notes::{Notes, line, misled, unsupported};
-use super::shapes::{Curve, curve};
+use super::notes::{Notes, misled, unsupported};
+use super::shapes::{Curve, crossings, curve};
 use super::style::{Own, Paint, Reference, Style, Target};
 use super::transform::{Base, origin, rotate, scale, transform, translate};
-use super::tree::{Band, Clip, ClipShape, Group, Node as Drawn, Path, bounds};
-use super::value::Value;
+use super::tree::{Band, Clip, ClipShape, Group, Node as Drawn, Path, bounds, is_painted};
+use super::value::{Value, attribute};
 use super::viewport::{fitted, view_box};
 use crate::content_fault;
-use kurbo::{Affine, Rect, Shape, Stroke, Vec2};
+use kurbo::{Affine, BezPath, Cap, Rect, Shape, Stroke, Vec2};
 use revmap::error::{Error, Result};
+use revmap::profile::{FillRule, Profile};
 use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -21,12 +22,14 @@ use std::rc::Rc;
 const MOST_NESTED: usize = 200;
 /// Most elements of a drawing after references are followed.
 const MOST_ELEMENTS: usize = 200_000;
+/// Most crossings of a path with itself.
+const MOST_CROSSINGS: f64 = 1.5e5;
 /// References from gradient to gradient.
 const MOST_LINKS: usize = 32;
 
-const SVG: &str = "http://www.w3.org/2000/svg";
+pub(super) const SVG: &str = "http://www.w3.org/2000/svg";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
-const XHTML: &str = "http://www.w3.org/1999/xhtml";
+pub(super) const XHTML: &str = "http://www.w3.org/1999/xhtml";
 
 /// Elements of SVG that show nothing where they are.
 const UNSEEN: [&str; 33] = [
@@ -73,10 +76,20 @@ type Shade = (Rgba, Option<Rgba>);
 pub(super) struct Place {
     pub viewport: (f64, f64),
     pub depth: usize,
+    /// False within what is transparent: only the boxes of shapes count there.
+    pub shown: bool,
 }
 
 impl Place {
-    fn deeper(self) -> Self {
+    pub fn within(viewport: (f64, f64)) -> Self {
+        Self {
+            viewport,
+            depth: 0,
+            shown: true,
+        }
+    }
+
+    pub fn deeper(self) -> Self {
         Self {
             depth: self.depth + 1,
             ..self
@@ -90,15 +103,18 @@ pub(super) struct Reader<'a> {
     pub notes: Notes,
     /// Elements whose content is being read through a reference.
     pub open: Vec<NodeId>,
+    /// Clips that were read, by their element and what their lengths refer to.
+    clips: HashMap<(NodeId, [u64; 6]), Clip>,
     count: usize,
 }
 
 impl<'a> Reader<'a> {
     pub fn new(document: &'a roxmltree::Document<'a>) -> Self {
-        let mut notes = Notes::default();
+        let mut notes = Notes::of(document);
         let mut ids = HashMap::new();
         for node in document.descendants() {
-            if let Some(id) = node.attribute("id") {
+            warn_of_motion(node, &mut notes);
+            if let Some(id) = attribute(node, "id") {
                 ids.entry(id).or_insert(node);
             }
         }
@@ -107,26 +123,35 @@ impl<'a> Reader<'a> {
             ids,
             notes,
             open: Vec::new(),
+            clips: HashMap::new(),
             count: 0,
         }
     }
 
     pub fn by_id(&self, id: &str) -> Option<Node<'a, 'a>> {
-        self.ids.get(id).copied()
+        let found = self.ids.get(id).or_else(|| {
+            let plain = percent_decoded(id)?;
+            self.ids.get(plain.as_str())
+        });
+        found.copied()
     }
 
     /// The style of an element where it is in the document.
-    pub fn style_of(&mut self, node: Node) -> Result<Style> {
+    pub fn style_of(&mut self, node: Node) -> Result<Box<Style>> {
         let mut ancestors: Vec<Node> = node.ancestors().filter(Node::is_element).collect();
         ancestors.reverse();
-        let start = Style::default();
-        ancestors
-            .into_iter()
-            .try_fold(start, |s, n| self.styled(n, &s))
+        let start = Box::new(Style::default());
+        ancestors.into_iter().try_fold(start, |parent, n| {
+            let mut style = self.styled(n, &parent)?;
+            style.own.fault = style.own.fault.or(parent.own.fault);
+            Ok(style)
+        })
     }
 
-    pub fn styled(&mut self, node: Node, parent: &Style) -> Result<Style> {
-        Style::of(node, parent, &self.sheets, &mut self.notes)
+    /// The style of an element within another. Boxes keep the stack of nested elements small.
+    #[inline(never)]
+    pub fn styled(&mut self, node: Node, parent: &Style) -> Result<Box<Style>> {
+        Style::of(node, parent, &self.sheets, &mut self.notes).map(Box::new)
     }
 
     pub fn children(
@@ -152,37 +177,80 @@ impl<'a> Reader<'a> {
         if !is_svg(node) || !self.is_seen(node) {
             return Ok(());
         }
-        self.count += 1;
-        if self.count > MOST_ELEMENTS {
-            return Err(content_fault(format!(
-                "the drawing has more than {MOST_ELEMENTS} elements; simplify it"
-            )));
-        }
+        self.counted()?;
         if place.depth > MOST_NESTED {
             let what = format!("elements nested more than {MOST_NESTED} deep");
             return Err(misled(&what, node, "too many", "ungroup them"));
         }
         let style = self.styled(node, parent)?;
-        if !style.own.display || style.own.opacity <= 0.0 {
+        if !style.own.display {
             return Ok(());
         }
+        let hidden = style.own.opacity <= 0.0 || self.vanishes(node, &style, place)?;
+        let place = Place {
+            shown: place.shown && !hidden,
+            ..place
+        };
+        let open = self.open.len();
+        match self.shown(node, &style, place, out) {
+            Err(_) if !place.shown => {
+                self.open.truncate(open);
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    /// Counts one more element.
+    fn counted(&mut self) -> Result<()> {
+        self.count += 1;
+        match self.count > MOST_ELEMENTS {
+            true => Err(content_fault(format!(
+                "the drawing has more than {MOST_ELEMENTS} elements, those of clips and references included; simplify it"
+            ))),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns true if an element is scaled to nothing, or clipped by an empty clip.
+    #[inline(never)]
+    fn vanishes(&mut self, node: Node, style: &Style, place: Place) -> Result<bool> {
+        let target = style.own.clip_path.as_ref();
+        let clip = target
+            .and_then(|t| t.as_ref().ok())
+            .and_then(|id| self.by_id(id));
+        let is_empty =
+            |n: Node| n.tag_name().name() == "clipPath" && n.first_element_child().is_none();
+        let is_box = style.own.reference == Reference::Stroke;
+        Ok(clip.is_some_and(is_empty)
+            || (!is_box && self.transform(node, style, place, &[])?.determinant() == 0.0))
+    }
+
+    /// Adds an element that is displayed.
+    fn shown(
+        &mut self,
+        node: Node<'a, 'a>,
+        style: &Style,
+        place: Place,
+        out: &mut Vec<Drawn>,
+    ) -> Result<()> {
         let mut content = Vec::new();
         match node.tag_name().name() {
-            "g" | "a" => self.children(node, &style, place, &mut content)?,
-            "svg" => self.viewport(node, node, &style, place, &mut content)?,
-            "use" => self.reference(node, &style, place, &mut content)?,
+            "g" | "a" => self.children(node, style, place, &mut content)?,
+            "svg" => self.viewport(node, node, style, place, &mut content)?,
+            "use" => self.reference(node, style, place, &mut content)?,
             "switch" => {
                 let first = node.children().find(|n| is_svg(*n) && passes(*n));
                 if let Some(child) = first {
-                    self.element(child, &style, place.deeper(), &mut content)?;
+                    self.element(child, style, place.deeper(), &mut content)?;
                 }
             }
             "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" => {
-                self.shape(node, &style, place, &mut content)?;
+                self.shape(node, style, place, &mut content)?;
             }
-            name => return self.without_outline(node, name, &style, place),
+            name => return self.without_outline(node, name, style, place),
         }
-        self.wrap(node, &style, place, content, out)
+        self.wrap(node, style, place, content, out)
     }
 
     /// Returns false for elements that show nothing, with a warning if something may be missing.
@@ -209,24 +277,17 @@ impl<'a> Reader<'a> {
         if known.contains(&name) {
             return passes(node);
         }
-        let moves = name.starts_with("animate") || matches!(name, "set" | "discard");
-        let what = match name {
-            _ if moves => "an animation, which is drawn at rest",
-            "script" if node.text().is_some_and(|t| !t.trim().is_empty()) => {
-                "a script, which is not run"
-            }
-            "script" => return false,
-            name if UNSEEN.contains(&name) || name.starts_with("fe") => return false,
-            _ => "an element that SVG does not have, which is left out",
-        };
-        self.notes.warn(format!(
-            "the drawing has <{name}> (line {}): {what}",
-            line(node)
-        ));
+        if !(UNSEEN.contains(&name) || name.starts_with("fe") || is_motion(name)) {
+            self.notes.warn(format!(
+                "the drawing has <{name}> (line {}): an element that SVG does not have, which is left out",
+                self.notes.line(node)
+            ));
+        }
         false
     }
 
     /// Refuses elements that have no outline here, if they show.
+    #[inline(never)]
     fn without_outline(
         &mut self,
         node: Node,
@@ -234,6 +295,9 @@ impl<'a> Reader<'a> {
         style: &Style,
         place: Place,
     ) -> Result<()> {
+        if !place.shown {
+            return Ok(());
+        }
         let sized = || {
             let side = |name: &str, whole: f64| style.geometry(name).map(|l| l.of(whole));
             let (w, h) = (
@@ -287,7 +351,9 @@ impl<'a> Reader<'a> {
         if depth > MOST_NESTED {
             return Ok(true);
         }
-        for child in node.children().filter(Node::is_element) {
+        let described = |n: &Node| matches!(n.tag_name().name(), "title" | "desc" | "metadata");
+        let children = node.children().filter(Node::is_element);
+        for child in children.filter(|n| !described(n)) {
             let own = self.styled(child, style)?;
             if own.own.display
                 && own.own.opacity > 0.0
@@ -309,7 +375,7 @@ impl<'a> Reader<'a> {
         out: &mut Vec<Drawn>,
     ) -> Result<()> {
         let of_frame = match frame == node {
-            true => style.clone(),
+            true => Box::new(style.clone()),
             false => self.style_of(frame)?,
         };
         let (width, height) = place.viewport;
@@ -328,6 +394,9 @@ impl<'a> Reader<'a> {
             false => Vec2::ZERO,
         };
         let inner = view_box(node, &mut self.notes);
+        if inner.is_some_and(|i| i.area() <= 0.0) {
+            return Ok(());
+        }
         let fit = inner.map_or(Affine::IDENTITY, |i| fitted(node, i, size));
         let viewport = inner.map_or(size, |i| (i.width(), i.height()));
         let mut children = Vec::new();
@@ -338,17 +407,10 @@ impl<'a> Reader<'a> {
         }
         let clip =
             (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, size.0, size.1)));
-        let inner = Drawn::Group(Group {
-            transform: fit,
-            opacity: 1.0,
-            clip: None,
-            children,
-        });
+        let inner = Drawn::Group(Group::moved(fit, children));
         out.push(Drawn::Group(Group {
-            transform: Affine::translate(at),
-            opacity: 1.0,
             clip,
-            children: vec![inner],
+            ..Group::moved(Affine::translate(at), vec![inner])
         }));
         Ok(())
     }
@@ -364,7 +426,7 @@ impl<'a> Reader<'a> {
         let Some(target) = self.used(node)? else {
             return Ok(());
         };
-        let mut inherited = style.clone();
+        let mut inherited = Box::new(style.clone());
         inherited.context = Rc::new((
             style.resolved(&style.fill).clone(),
             style.resolved(&style.stroke).clone(),
@@ -386,12 +448,8 @@ impl<'a> Reader<'a> {
         if !children.is_empty() {
             let (width, height) = place.viewport;
             let at = |name: &str, whole: f64| style.geometry(name).map_or(0.0, |l| l.of(whole));
-            out.push(Drawn::Group(Group {
-                transform: Affine::translate((at("x", width), at("y", height))),
-                opacity: 1.0,
-                clip: None,
-                children,
-            }));
+            let moved = Affine::translate((at("x", width), at("y", height)));
+            out.push(Drawn::Group(Group::moved(moved, children)));
         }
         Ok(())
     }
@@ -429,6 +487,7 @@ impl<'a> Reader<'a> {
         Ok(Some(target))
     }
 
+    #[inline(never)]
     fn shape(
         &mut self,
         node: Node<'a, 'a>,
@@ -436,43 +495,57 @@ impl<'a> Reader<'a> {
         place: Place,
         out: &mut Vec<Drawn>,
     ) -> Result<()> {
-        if !style.visible {
+        let plain = |curve: &BezPath| Path {
+            curve: curve.clone(),
+            band: None,
+            rule: style.fill_rule,
+            color: [0.0; 4],
+            lightest: None,
+        };
+        if !style.visible || !place.shown {
+            let curve = curve(node, style, place.viewport).path;
+            if curve.is_finite() {
+                out.push(Drawn::Path(plain(&curve)));
+            }
             return Ok(());
         }
-        for child in node.children().filter(|c| is_svg(*c)) {
-            // Children of shapes are descriptions and animations.
-            self.is_seen(child);
-        }
+        style.own.check()?;
         let curve = self.curve(node, style, place)?;
         if curve.path.elements().len() < 2 {
             return Ok(());
         }
         let bounds = curve.path.bounding_box();
+        let has_inside = bounds.area() > 0.0 && node.tag_name().name() != "line";
         let (width, height) = place.viewport;
         let diagonal = (0.5 * (width * width + height * height)).sqrt();
         let thickness = style.stroke_width.of(diagonal);
+        let mut painted = false;
         for part in style.order {
-            let (shade, opacity, band) = match part {
-                0 => (&style.fill, style.fill_opacity, None),
-                1 if thickness > 0.0 => {
-                    let band = band(node, style, &curve, thickness, diagonal);
-                    (&style.stroke, style.stroke_opacity, Some(band))
-                }
-                1 => continue,
+            let (shade, opacity) = match part {
+                0 if has_inside => (&style.fill, style.fill_opacity),
+                1 if thickness > 0.0 => (&style.stroke, style.stroke_opacity),
+                0 | 1 => continue,
                 _ => {
                     self.markers(node, style, place, &curve, thickness, out)?;
                     continue;
                 }
             };
-            if let Some((color, lightest)) = self.solid(shade, opacity, style, bounds, node)? {
-                out.push(Drawn::Path(Path {
-                    curve: curve.path.clone(),
-                    band,
-                    rule: style.fill_rule,
-                    color,
-                    lightest: lightest.map(|color| (color, line(node))),
-                }));
-            }
+            let Some((color, lightest)) = self.solid(shade, opacity, style, bounds, node)? else {
+                continue;
+            };
+            painted = true;
+            let shape = match part {
+                1 => stroked(node, style, &curve, thickness, diagonal)?,
+                _ => plain(&curve.path),
+            };
+            out.push(Drawn::Path(Path {
+                color,
+                lightest: lightest.map(|color| (color, self.notes.line(node))),
+                ..shape
+            }));
+        }
+        if !painted {
+            out.push(Drawn::Path(plain(&curve.path)));
         }
         Ok(())
     }
@@ -482,8 +555,13 @@ impl<'a> Reader<'a> {
         if let Some(mistake) = &curve.mistake {
             self.notes.warn(format!(
                 "the drawing has {mistake} (line {}); the path ends there, as in browsers",
-                line(node)
+                self.notes.line(node)
             ));
+        }
+        let crossings = crossings(&curve.path);
+        if crossings > MOST_CROSSINGS {
+            let what = format!("a path that crosses itself about {crossings:.0} times");
+            return Err(misled(&what, node, "which is too often", "simplify it"));
         }
         match curve.path.is_finite() {
             true => Ok(curve),
@@ -562,7 +640,7 @@ impl<'a> Reader<'a> {
             if stops.is_empty() {
                 stops = n.children().filter(is_stop).collect();
             }
-            units = units.or_else(|| n.attribute("gradientUnits"));
+            units = units.or_else(|| attribute(n, "gradientUnits"));
             at = href(n)
                 .and_then(|h| h.strip_prefix('#'))
                 .and_then(|id| self.by_id(id));
@@ -574,6 +652,7 @@ impl<'a> Reader<'a> {
         let mut colors = Vec::new();
         for stop in stops {
             let style = self.style_of(stop)?;
+            style.own.check()?;
             let alpha = style.own.stop_opacity * opacity;
             match style.resolved(&style.own.stop_color) {
                 Paint::Color(color) => colors.push(premultiplied(*color, alpha)),
@@ -585,6 +664,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds an element's content under its transform, clip and opacity.
+    #[inline(never)]
     pub fn wrap(
         &mut self,
         node: Node<'a, 'a>,
@@ -596,15 +676,25 @@ impl<'a> Reader<'a> {
         if content.is_empty() {
             return Ok(());
         }
-        self.refuse_effects(node, &style.own)?;
+        let is_painted = place.shown && is_painted(&content);
+        if is_painted {
+            style.own.check()?;
+            self.refuse_effects(node, &style.own)?;
+        }
         let transform = self.transform(node, style, place, &content)?;
         if transform.determinant() == 0.0 {
             return Ok(());
         }
-        let clip = match &style.own.clip_path {
+        let clip = match style.own.clip_path.as_ref().filter(|_| is_painted) {
             Some(target) => {
                 let target = target.clone();
-                self.clip(&target, node, place, bounds(&content, Affine::IDENTITY))?
+                let mut clip =
+                    self.clip(&target, node, place, bounds(&content, Affine::IDENTITY))?;
+                if let Some(clip) = &mut clip {
+                    clip.crop(&content);
+                    self.count += clip.size();
+                }
+                clip
             }
             None => None,
         };
@@ -612,10 +702,9 @@ impl<'a> Reader<'a> {
             out.extend(content);
         } else {
             out.push(Drawn::Group(Group {
-                transform,
                 opacity: style.own.opacity,
                 clip,
-                children: content,
+                ..Group::moved(transform, content)
             }));
         }
         Ok(())
@@ -643,7 +732,7 @@ impl<'a> Reader<'a> {
     fn missing(&mut self, name: &str, id: &str, node: Node) {
         self.notes.warn(format!(
             "the drawing has a {name} \"{id}\" (line {}), which is not in it and is ignored, as in browsers",
-            line(node)
+            self.notes.line(node)
         ));
     }
 
@@ -702,10 +791,6 @@ impl<'a> Reader<'a> {
         let plain = Base { css: false, ..css };
         let about = own.origin.as_deref().and_then(|t| origin(t, plain).ok());
         let about = corner + about.unwrap_or(usual);
-        if own.origin.is_none() && node.parent_element().is_some() {
-            // The usual origin is that of the coordinates, whatever the box is.
-            return Ok(product);
-        }
         Ok(Affine::translate(about) * product * Affine::translate(-about))
     }
 
@@ -739,10 +824,19 @@ impl<'a> Reader<'a> {
                 "remove the inner ones",
             ));
         }
-        self.open.push(clip.id());
         let style = self.style_of(clip)?;
+        style.own.check()?;
+        let is_of_box = attribute(clip, "clipPathUnits") == Some("objectBoundingBox");
+        let known = about.filter(|_| is_of_box || style.own.clip_path.is_some());
+        let known = known.unwrap_or_default();
+        let (width, height) = place.viewport;
+        let key = [width, height, known.x0, known.y0, known.x1, known.y1].map(f64::to_bits);
+        if let Some(read) = self.clips.get(&(clip.id(), key)) {
+            return Ok(Some(read.clone()));
+        }
+        self.open.push(clip.id());
         let (mut place, mut to_box) = (place, Affine::IDENTITY);
-        if clip.attribute("clipPathUnits") == Some("objectBoundingBox") {
+        if is_of_box {
             let about = about.unwrap_or_default();
             to_box = Affine::new([about.width(), 0.0, 0.0, about.height(), about.x0, about.y0]);
             place.viewport = (1.0, 1.0);
@@ -759,11 +853,13 @@ impl<'a> Reader<'a> {
             None => None,
         };
         self.open.pop();
-        Ok(Some(Clip {
+        let read = Clip {
             transform,
             shapes,
             within,
-        }))
+        };
+        self.clips.insert((clip.id(), key), read.clone());
+        Ok(Some(read))
     }
 
     fn clip_shape(
@@ -782,11 +878,12 @@ impl<'a> Reader<'a> {
         if !is_svg(node) || !(shape || matches!(name, "use" | "text")) || !passes(node) {
             return Ok(());
         }
-        self.count += 1;
+        self.counted()?;
         let style = self.styled(node, parent)?;
         if !style.own.display || (name != "use" && !style.visible) {
             return Ok(());
         }
+        style.own.check()?;
         if name == "text" {
             return match self.text_shows(node, &style, place.depth)? {
                 true => Err(unsupported(
@@ -852,6 +949,8 @@ impl<'a> Reader<'a> {
             let Some(mut clip) = self.clip(&target, node, place, about)? else {
                 return Ok(());
             };
+            self.count += clip.size();
+            self.counted()?;
             clip.transform = transform * clip.transform;
             clip.within = match (clip.within.take(), shape.clip.take()) {
                 (within, None) => within,
@@ -875,8 +974,58 @@ pub(super) fn premultiplied([r, g, b, alpha]: Color, opacity: f32) -> Rgba {
     [r * a, g * a, b * a, a]
 }
 
+/// The path that an element's stroke covers, without its colour.
+fn stroked(node: Node, style: &Style, curve: &Curve, width: f64, diagonal: f64) -> Result<Path> {
+    if width > Profile::EXTENT * diagonal {
+        let what = format!("a stroke {width} wide");
+        return Err(unsupported(&what, node, "draw a rectangle instead"));
+    }
+    let band = band(node, style, curve, width, diagonal)?;
+    let mut path = Path {
+        curve: curve.path.clone(),
+        band: None,
+        rule: FillRule::NonZero,
+        color: [0.0; 4],
+        lightest: None,
+    };
+    let bounds = curve.path.bounding_box();
+    let is_round = matches!(node.tag_name().name(), "circle" | "ellipse");
+    let is_full = width >= bounds.width().min(bounds.height());
+    if is_round && is_full && band.style.dash_pattern.is_empty() && !band.on_page {
+        // The inner border would be turned inside out.
+        path.curve = outer_border(bounds, 0.5 * width);
+        return Ok(path);
+    }
+    path.band = Some(band);
+    Ok(path)
+}
+
+/// The curve at this distance outside of the ellipse in a box.
+fn outer_border(bounds: Rect, distance: f64) -> BezPath {
+    const CORNERS: u32 = 2048;
+    let (rx, ry) = (0.5 * bounds.width(), 0.5 * bounds.height());
+    let mut border = BezPath::new();
+    for k in 0..CORNERS {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
+        let out = Vec2::new(ry * cos, rx * sin).normalize() * distance;
+        let p = bounds.center() + Vec2::new(rx * cos, ry * sin) + out;
+        match k {
+            0 => border.move_to(p),
+            _ => border.line_to(p),
+        }
+    }
+    border.close_path();
+    border
+}
+
+/// Most dashes of a stroke, and most pairs of round or square ones that overlap.
+const MOST_DASHES: f64 = 2e4;
+const MOST_OVERLAPS: f64 = 2e5;
+/// Gaps between round or square dashes of at most this part of the width are closed.
+const CLOSED_GAP: f64 = 2.5e-3;
+
 /// The shape of an element's stroke.
-fn band(node: Node, style: &Style, curve: &Curve, width: f64, diagonal: f64) -> Band {
+fn band(node: Node, style: &Style, curve: &Curve, width: f64, diagonal: f64) -> Result<Band> {
     let mut dashes: Vec<f64> = style.dashes.iter().map(|d| d.of(diagonal)).collect();
     let mut offset = style.dash_offset.of(diagonal);
     if dashes.iter().sum::<f64>() <= 0.0 {
@@ -885,40 +1034,114 @@ fn band(node: Node, style: &Style, curve: &Curve, width: f64, diagonal: f64) -> 
     if dashes.len() % 2 == 1 {
         dashes.extend_from_within(..);
     }
-    let stated = node
-        .attribute("pathLength")
-        .and_then(|t| t.trim().parse::<f64>().ok());
+    let stated = attribute(node, "pathLength").and_then(|t| t.trim().parse::<f64>().ok());
     if let Some(stated) = stated.filter(|v| *v > 0.0 && !dashes.is_empty()) {
         let factor = curve.path.perimeter(1e-3 * width) / stated;
         dashes.iter_mut().for_each(|d| *d *= factor);
         offset *= factor;
     }
+    let mut gaps = dashes.iter().skip(1).step_by(2);
+    if style.cap != Cap::Butt && gaps.all(|gap| *gap <= CLOSED_GAP * width) {
+        dashes.clear();
+    }
+    if !dashes.is_empty() {
+        check_dashes(node, style, curve, width, &dashes)?;
+    }
     let stroke = Stroke::new(width)
         .with_miter_limit(style.miter_limit)
         .with_caps(style.cap)
         .with_join(style.join);
-    Band {
+    Ok(Band {
         style: stroke.with_dashes(offset, dashes),
         on_page: style.own.vector_effect,
-    }
+    })
 }
 
-fn is_svg(node: Node) -> bool {
+/// Refuses strokes with more dashes than can be seen.
+fn check_dashes(
+    node: Node,
+    style: &Style,
+    curve: &Curve,
+    width: f64,
+    dashes: &[f64],
+) -> Result<()> {
+    let period = dashes.iter().sum::<f64>() / (0.5 * dashes.len() as f64);
+    let count = curve.path.perimeter(1e-3 * width.max(period)) / period;
+    let overlaps = match style.cap {
+        Cap::Butt => 0.0,
+        _ => count * (width / period).floor(),
+    };
+    if count <= MOST_DASHES && overlaps <= MOST_OVERLAPS {
+        return Ok(());
+    }
+    let what = format!("a stroke of {count:.0} dashes");
+    Err(misled(
+        &what,
+        node,
+        "which are too many",
+        "make them longer",
+    ))
+}
+
+/// Warns of scripts and animations, wherever they are.
+fn warn_of_motion(node: Node, notes: &mut Notes) {
+    let name = node.tag_name().name();
+    let is_html = node.tag_name().namespace() == Some(XHTML);
+    let rest = match name {
+        "link" if is_html && attribute(node, "rel") == Some("stylesheet") => {
+            return notes.warn(
+                "the drawing has a style sheet in another file, which is not read; copy the rules into the drawing"
+                    .to_owned(),
+            );
+        }
+        "script" if (is_svg(node) || is_html) && runs(node) => "a script, which is not run",
+        _ if !is_svg(node) => return,
+        _ if is_motion(name) => "an animation, which is drawn at rest",
+        _ if attribute(node, "onload").is_some() => "a script on loading, which is not run",
+        _ => return,
+    };
+    notes.warn(format!(
+        "the drawing has <{name}> (line {}): {rest}",
+        notes.line(node)
+    ));
+}
+
+fn runs(script: Node) -> bool {
+    let has_text = script.text().is_some_and(|t| !t.trim().is_empty());
+    has_text || href(script).is_some() || attribute(script, "src").is_some()
+}
+
+fn is_motion(name: &str) -> bool {
+    name.starts_with("animate") || matches!(name, "set" | "discard" | "script")
+}
+
+/// Text with `%20` and alike decoded; `None` if nothing is.
+fn percent_decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::new();
+    let mut rest = text.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        let code = after.get(..2).filter(|_| first == b'%');
+        let code = code.and_then(|c| u8::from_str_radix(str::from_utf8(c).ok()?, 16).ok());
+        bytes.push(code.unwrap_or(first));
+        rest = code.map_or(after, |_| &after[2..]);
+    }
+    String::from_utf8(bytes).ok().filter(|t| t != text)
+}
+
+pub(super) fn is_svg(node: Node) -> bool {
     node.is_element() && matches!(node.tag_name().namespace(), None | Some(SVG))
 }
 
 /// The address of a reference, without blanks around it; `None` for an empty one.
 fn href<'n>(node: Node<'n, '_>) -> Option<&'n str> {
-    let address = node
-        .attribute("href")
-        .or_else(|| node.attribute((XLINK, "href")))?;
+    let address = attribute(node, "href").or_else(|| node.attribute((XLINK, "href")))?;
     Some(address.trim()).filter(|a| !a.is_empty())
 }
 
 /// Returns true if the conditions of an element hold in an English browser.
 fn passes(node: Node) -> bool {
-    let extensions = node.attribute("requiredExtensions").map_or("", str::trim);
-    let languages = node.attribute("systemLanguage");
+    let extensions = attribute(node, "requiredExtensions").map_or("", str::trim);
+    let languages = attribute(node, "systemLanguage");
     (extensions.is_empty() || extensions == XHTML)
         && languages.is_none_or(|l| {
             l.split(',')

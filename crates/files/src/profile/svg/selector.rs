@@ -1,6 +1,8 @@
 //! Selectors of CSS: which elements a rule is for.
 
+use super::value::attribute;
 use roxmltree::{Node, NodeId};
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 /// `:is(:not(:is(...)))` may be nested this deep.
@@ -49,8 +51,23 @@ enum Test {
     NoneOf(Vec<Selector>),
 }
 
+/// What the last part of a selector asks for, so that few rules need be tried.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Key {
+    Id(String),
+    Class(String),
+    Type(String),
+    Any,
+}
+
+/// Most tries to match a part of a selector with an element, of one drawing.
+const MOST_TRIES: u64 = 30_000_000;
+
 /// The place of each element among its siblings.
-pub(super) struct Places(HashMap<NodeId, Place>);
+pub(super) struct Places {
+    places: HashMap<NodeId, Place>,
+    tries: Cell<u64>,
+}
 
 #[derive(Clone, Copy, Default)]
 struct Place {
@@ -85,11 +102,33 @@ impl Places {
                 }
             }
         }
-        Self(places)
+        Self {
+            places,
+            tries: Cell::new(0),
+        }
+    }
+
+    /// Returns true after too many tries; then selectors match nothing.
+    pub fn is_spent(&self) -> bool {
+        self.tries.get() > MOST_TRIES
     }
 }
 
 impl Selector {
+    /// What an element needs for the last part of the selector.
+    pub fn key(&self) -> Key {
+        let mut key = Key::Any;
+        for test in self.parts.last().map_or(&[][..], |(_, tests)| tests) {
+            match test {
+                Test::Id(id) => return Key::Id(id.clone()),
+                Test::Class(class) => key = Key::Class(class.clone()),
+                Test::Type(name) if key == Key::Any => key = Key::Type(name.clone()),
+                _ => {}
+            }
+        }
+        key
+    }
+
     /// Returns true if the selector is for this element.
     pub fn matches(&self, node: Node, places: &Places) -> bool {
         self.matches_to(self.parts.len(), node, places, &mut HashSet::new())
@@ -107,6 +146,10 @@ impl Selector {
         let Some((combinator, tests)) = self.parts[..count].last() else {
             return true;
         };
+        places.tries.set(places.tries.get() + 1);
+        if places.is_spent() {
+            return false;
+        }
         if !tests.iter().all(|t| t.matches(node, places)) {
             return false;
         }
@@ -140,9 +183,8 @@ impl Test {
     fn matches(&self, node: Node, places: &Places) -> bool {
         match self {
             Self::Type(name) => node.tag_name().name() == name,
-            Self::Id(id) => node.attribute("id") == Some(id),
-            Self::Class(class) => node
-                .attribute("class")
+            Self::Id(id) => attribute(node, "id") == Some(id),
+            Self::Class(class) => attribute(node, "class")
                 .is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),
             Self::Attribute {
                 name,
@@ -150,10 +192,10 @@ impl Test {
                 value,
                 any_case,
             } => {
-                let found = node.attributes().find(|a| a.name() == name);
+                let found = attribute(node, name);
                 found.is_some_and(|a| match any_case {
-                    true => compare(*how, &a.value().to_lowercase(), &value.to_lowercase()),
-                    false => compare(*how, a.value(), value),
+                    true => compare(*how, &a.to_lowercase(), &value.to_lowercase()),
+                    false => compare(*how, a, value),
                 })
             }
             Self::Nth {
@@ -162,7 +204,7 @@ impl Test {
                 from_end,
                 of_type,
             } => {
-                let place = places.0.get(&node.id()).copied().unwrap_or_default();
+                let place = places.places.get(&node.id()).copied().unwrap_or_default();
                 let kind = usize::from(*of_type);
                 let index = match from_end {
                     true => place.count[kind] + 1 - place.index[kind],
@@ -324,7 +366,12 @@ impl<'a> Cursor<'a> {
             tests.push(Test::Type(name));
         }
         if self.take('|') {
-            // A prefix of a namespace: drawings have one.
+            // A prefix of a namespace: drawings have one. Without a prefix, it is none.
+            if !universal && tests.is_empty() {
+                tests.push(Test::Never);
+                universal = self.take('*') || self.name().is_some();
+                return universal.then_some(tests);
+            }
             tests.clear();
             universal = self.take('*');
             if !universal {
@@ -396,8 +443,18 @@ impl<'a> Cursor<'a> {
 
     fn pseudo(&mut self, depth: usize, specificity: &mut [u32; 3]) -> Option<Test> {
         if self.take(':') {
-            // A pseudo-element, such as `::selection`.
-            self.name()?;
+            // A pseudo-element, such as `::selection`. Others make the rule invalid.
+            let name = self.name()?.to_ascii_lowercase();
+            let known = [
+                "before",
+                "after",
+                "selection",
+                "marker",
+                "first-line",
+                "first-letter",
+            ];
+            let known = known.contains(&name.as_str()) || name.starts_with("-webkit-");
+            known.then_some(())?;
             if self.take('(') {
                 self.arguments()?;
             }

@@ -1,8 +1,8 @@
 //! The curves of basic shapes and of path data, in double precision.
 
 use super::style::Style;
-use super::value::Value;
-use kurbo::{BezPath, Ellipse, Point, RoundedRect, Shape, SvgArc, Vec2};
+use super::value::{Value, attribute};
+use kurbo::{BezPath, Ellipse, Line, ParamCurve, Point, Shape, SvgArc, Vec2};
 use svgtypes::{PathParser, PathSegment};
 
 /// Curves of circles and arcs are within this part of their radius.
@@ -58,8 +58,8 @@ pub(super) fn curve(node: roxmltree::Node, style: &Style, viewport: (f64, f64)) 
             path.line_to((zero(across("x2")), zero(down("y2"))));
             path.into()
         }
-        "polyline" => points(node.attribute("points").unwrap_or_default(), false),
-        "polygon" => points(node.attribute("points").unwrap_or_default(), true),
+        "polyline" => points(attribute(node, "points").unwrap_or_default(), false),
+        "polygon" => points(attribute(node, "points").unwrap_or_default(), true),
         _ => path_data(style.own.path_data.as_deref().unwrap_or_default()),
     }
 }
@@ -87,10 +87,33 @@ fn rectangle(corner: (f64, f64), (w, h): (f64, f64), (rx, ry): (f64, f64)) -> Be
     if rx <= 0.0 || ry <= 0.0 {
         return kurbo::Rect::new(x, y, x + w, y + h).to_path(0.1);
     }
-    // Corners of one radius, stretched.
-    let stretch = ry / rx;
-    let round = RoundedRect::new(0.0, 0.0, w, h / stretch, rx).to_path(ROUNDNESS * rx);
-    kurbo::Affine::new([1.0, 0.0, 0.0, stretch, x, y]) * round
+    let (right, bottom) = (x + w, y + h);
+    let mut pen = Pen {
+        at: Point::new(x + rx, y),
+        ..Pen::default()
+    };
+    pen.path.move_to(pen.at);
+    for (from, to) in [
+        ((right - rx, y), (right, y + ry)),
+        ((right, bottom - ry), (right - rx, bottom)),
+        ((x + rx, bottom), (x, bottom - ry)),
+        ((x, y + ry), (x + rx, y)),
+    ] {
+        let (from, to) = (Point::from(from), Point::from(to));
+        if from != pen.at {
+            pen.line(from);
+        }
+        pen.arc(SvgArc {
+            from,
+            to,
+            radii: Vec2::new(rx, ry),
+            x_rotation: 0.0,
+            large_arc: false,
+            sweep: true,
+        });
+    }
+    pen.path.close_path();
+    pen.path
 }
 
 fn points(text: &str, closed: bool) -> Curve {
@@ -128,12 +151,15 @@ fn points(text: &str, closed: bool) -> Curve {
 
 /// The path of the property `d`, which browsers read from CSS as `path("...")`.
 pub(super) fn css_path(text: &str) -> Value<Option<String>> {
-    if text == "none" {
+    if text.eq_ignore_ascii_case("none") {
         return Value::Is(None);
     }
     let inner = text.strip_prefix("path(").and_then(|t| t.strip_suffix(')'));
-    let quoted = inner.map(|t| t.trim().trim_matches(['"', '\'']).to_owned());
-    Value::from_option(quoted.map(Some))
+    let quoted = inner.map(str::trim).and_then(|t| {
+        let within = |q: char| t.strip_prefix(q).and_then(|t| t.strip_suffix(q));
+        within('"').or_else(|| within('\''))
+    });
+    Value::from_option(quoted.map(|t| Some(t.to_owned())))
 }
 
 /// Reads path data up to the first mistake, as browsers do.
@@ -293,6 +319,36 @@ impl Pen {
     }
 }
 
+/// An estimate of how often a path with many segments crosses itself, by chords in fixed random
+/// pairs.
+pub(super) fn crossings(path: &BezPath) -> f64 {
+    const PAIRS: u32 = 20_000;
+    const FEW: usize = 600;
+    let chords: Vec<Line> = path
+        .segments()
+        .map(|s| Line::new(s.start(), s.end()))
+        .collect();
+    if chords.len() < FEW {
+        return 0.0;
+    }
+    let mut state = 1u64;
+    let mut pick = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        chords[(state >> 33) as usize % chords.len()]
+    };
+    let side = |l: Line, p: Point| (l.p1 - l.p0).cross(p - l.p0) > 0.0;
+    let parted = |a: Line, b: Line| side(a, b.p0) != side(a, b.p1);
+    let found = (0..PAIRS).filter(|_| {
+        let (a, b) = (pick(), pick());
+        parted(a, b) && parted(b, a)
+    });
+    // A few hits may be chance.
+    let hits = found.count().saturating_sub(10);
+    hits as f64 / f64::from(PAIRS) * 0.5 * (chords.len() as f64).powi(2)
+}
+
 /// Names of the attributes that are lengths of shapes.
 pub(super) const LENGTHS: [&str; 13] = [
     "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2",
@@ -300,7 +356,7 @@ pub(super) const LENGTHS: [&str; 13] = [
 
 /// `auto` is a missing length.
 pub(super) fn is_auto(text: &str) -> bool {
-    text == "auto"
+    text.eq_ignore_ascii_case("auto")
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::cascade::{Custom, Declared, Picked, Sheets};
 use super::color::{BLACK, Color, color};
-use super::notes::{Notes, line};
+use super::notes::{Notes, unsupported};
 use super::shapes::{LENGTHS, css_path, is_auto};
 use super::transform::{Base, origin, rotate, scale, transform, translate};
-use super::value::{Fonts, Length, Value, alpha, length, list, number, url};
+use super::value::{Fonts, Length, Value, alpha, length, list, number, unescaped, url};
 use crate::content_fault;
 use kurbo::{Cap, Join};
 use revmap::error::Result;
@@ -62,6 +62,8 @@ pub(super) struct Style {
 #[derive(Clone, Debug)]
 pub(super) struct Own {
     pub display: bool,
+    /// The refusal of a property that is not read, if the element shows.
+    pub fault: Option<Rc<str>>,
     pub opacity: f32,
     pub clip_path: Option<Target>,
     pub filter: Option<Target>,
@@ -91,10 +93,22 @@ pub(super) enum Reference {
     Stroke,
 }
 
+impl Own {
+    /// # Errors
+    /// If a property is not read.
+    pub fn check(&self) -> Result<()> {
+        match &self.fault {
+            Some(text) => Err(content_fault(&**text)),
+            None => Ok(()),
+        }
+    }
+}
+
 impl Default for Own {
     fn default() -> Self {
         Self {
             display: true,
+            fault: None,
             opacity: 1.0,
             clip_path: None,
             filter: None,
@@ -159,25 +173,27 @@ impl Style {
             own: Own::default(),
             ..parent.clone()
         };
-        style.custom = declared.custom(&parent.custom);
+        style.custom = declared.custom(&parent.custom)?;
         let custom = Rc::clone(&style.custom);
         let mut c = Computed {
             declared: &declared,
             custom,
             node,
             notes,
+            fault: declared.fault.as_deref().map(Rc::from),
         };
         style.read_fonts(parent, &mut c)?;
         style.read_paints(parent, &initial, &mut c)?;
         style.read_strokes(parent, &initial, &mut c)?;
         style.read_own(parent, &mut c)?;
         style.read_geometry(&mut c)?;
+        style.own.fault = c.fault;
         Ok(style)
     }
 
     fn read_fonts(&mut self, parent: &Self, c: &mut Computed) -> Result<()> {
         let (size, root) = (parent.fonts.own, parent.fonts.root);
-        let own = |text: &str, _: bool| {
+        let own = |text: &str, css: bool| {
             let step = match text.to_ascii_lowercase().as_str() {
                 "xx-small" => 0.5625,
                 "x-small" => 0.625,
@@ -189,7 +205,7 @@ impl Style {
                 "smaller" => return Value::Is(size / 1.2),
                 "larger" => return Value::Is(size * 1.2),
                 _ => {
-                    return match length(text, parent.fonts, true).map(|l| l.of(size)) {
+                    return match length(text, parent.fonts, !css).map(|l| l.of(size)) {
                         // Fonts matter only to lengths in em.
                         Value::Unread(_) => Value::Is(size),
                         other => other,
@@ -351,7 +367,7 @@ impl Style {
             &joins,
         )?;
         let limit = |text: &str, _: bool| match number(text) {
-            Value::Is(v) if v < 1.0 => Value::Wrong,
+            Value::Is(v) if v < 0.0 => Value::Wrong,
             other => other,
         };
         c.take(
@@ -365,6 +381,9 @@ impl Style {
         let dashes = |text: &str, _: bool| {
             if text.eq_ignore_ascii_case("none") {
                 return Value::Is(Vec::new());
+            }
+            if text.split(',').any(|part| part.trim().is_empty()) {
+                return Value::Wrong;
             }
             let mut dashes = Vec::new();
             for part in list(text) {
@@ -419,7 +438,16 @@ impl Style {
 
     fn read_own(&mut self, parent: &Self, c: &mut Computed) -> Result<()> {
         let (own, before) = (&mut self.own, &parent.own);
-        let display = |text: &str, _: bool| Value::Is(!text.eq_ignore_ascii_case("none"));
+        let is_container = matches!(
+            c.node.tag_name().name(),
+            "g" | "svg" | "use" | "a" | "switch"
+        );
+        let display = |text: &str, _: bool| match text.to_ascii_lowercase().as_str() {
+            "none" => Value::Is(false),
+            // Shapes have no content of their own.
+            "contents" => Value::Is(is_container),
+            word => Value::from_option(is_display(word).then_some(true)),
+        };
         c.take(
             "display",
             &mut own.display,
@@ -446,7 +474,7 @@ impl Style {
             Value::Wrong => Value::Unread("clip with a path, or cut the shape"),
             other => other,
         };
-        for name in ["-webkit-mask", "-webkit-mask-image", "mask-image", "mask"] {
+        for name in ["mask-image", "mask"] {
             c.take(name, &mut own.mask, &before.mask, &None, false, &mask)?;
         }
         let filter = |text: &str, _: bool| match target(text) {
@@ -466,12 +494,13 @@ impl Style {
             false,
             &effect,
         )?;
-        let overflow = |text: &str, _: bool| {
-            Value::Is(matches!(
-                text.to_ascii_lowercase().as_str(),
-                "visible" | "auto"
-            ))
-        };
+        let overflow = words(&[
+            ("visible", true),
+            ("auto", true),
+            ("hidden", false),
+            ("scroll", false),
+            ("clip", false),
+        ]);
         c.take(
             "overflow",
             &mut own.overflow,
@@ -480,19 +509,33 @@ impl Style {
             false,
             &overflow,
         )?;
-        c.refuse("mix-blend-mode", "normal", "set it to normal")?;
-        c.refuse("zoom", "1", "scale the drawing instead")?;
-        c.refuse("offset-path", "none", "write the place as a transform")?;
-        c.refuse("offset", "none", "write the place as a transform")?;
+        c.refuse("mix-blend-mode", &["normal"], "set it to normal");
+        c.refuse(
+            "zoom",
+            &["1", "100%", "normal"],
+            "scale the drawing instead",
+        );
+        c.refuse("offset-path", &["none"], "write the place as a transform");
+        c.refuse("offset", &["none"], "write the place as a transform");
+        c.refuse(
+            "mask-box-image",
+            &["none"],
+            "clip with a path, or cut the shape",
+        );
         for name in ["animation", "animation-name"] {
             if c.declared.css(name).is_some_and(|v| !v.starts_with("none")) {
                 c.notes.warn(format!(
                     "the drawing has an animation (line {}), which is drawn at rest",
-                    line(c.node)
+                    c.notes.line(c.node)
                 ));
             }
         }
         if c.node.parent_element().is_none() {
+            c.refuse(
+                "background-image",
+                &["none"],
+                "draw a shape of one colour instead",
+            );
             for name in ["background", "background-color"] {
                 if c.declared.css(name).is_some() {
                     let slot = &mut own.background;
@@ -575,11 +618,17 @@ impl Style {
 
     fn read_geometry(&mut self, c: &mut Computed) -> Result<()> {
         let fonts = self.fonts;
+        if matches!(c.node.tag_name().name(), "g" | "a" | "text" | "tspan") {
+            // Text has lists of coordinates.
+            return Ok(());
+        }
         for name in LENGTHS {
             let mut slot = None;
-            let read = |text: &str, css: bool| match is_auto(text) {
-                true => Value::Is(None),
-                false => length(text, fonts, !css).map(Some),
+            let is_size = matches!(name, "width" | "height" | "r");
+            let read = |text: &str, css: bool| match length(text, fonts, !css) {
+                _ if is_auto(text) => Value::Is(None),
+                Value::Is(Length::Px(v) | Length::Part(v)) if v < 0.0 && is_size => Value::Wrong,
+                read => read.map(Some),
             };
             c.take(name, &mut slot, &None, &None, false, &read)?;
             if let Some(length) = slot {
@@ -613,6 +662,8 @@ struct Computed<'a, 'b> {
     custom: Custom,
     node: Node<'b, 'b>,
     notes: &'a mut Notes,
+    /// The first refusal, for an element that shows.
+    fault: Option<Rc<str>>,
 }
 
 impl Computed<'_, '_> {
@@ -628,14 +679,17 @@ impl Computed<'_, '_> {
     ) -> Result<()> {
         match self
             .declared
-            .pick(name, &self.custom, self.node, self.notes, read)
+            .pick(name, &self.custom, self.node, self.notes, false, read)
         {
             Picked::Absent => {}
             Picked::Is(value) => *slot = value,
             Picked::Inherit => *slot = parent.clone(),
             Picked::Unset if inherited => *slot = parent.clone(),
             Picked::Initial | Picked::Unset => *slot = initial.clone(),
-            Picked::Unread(text) => return Err(content_fault(text)),
+            Picked::Unread(text) if matches!(name, "display" | "visibility" | "opacity") => {
+                return Err(content_fault(text));
+            }
+            Picked::Unread(text) => drop(self.fault.get_or_insert(text.into())),
             Picked::Wrong(text) => self
                 .notes
                 .warn(format!("{text}; it is ignored, as browsers do")),
@@ -655,7 +709,7 @@ impl Computed<'_, '_> {
     ) {
         *slot = match self
             .declared
-            .pick(name, &self.custom, self.node, self.notes, read)
+            .pick(name, &self.custom, self.node, self.notes, true, read)
         {
             Picked::Absent => return,
             Picked::Is(value) => value,
@@ -670,16 +724,15 @@ impl Computed<'_, '_> {
         };
     }
 
-    /// Refuses a property of CSS with another value than `usual`.
-    fn refuse(&mut self, name: &str, usual: &str, remedy: &str) -> Result<()> {
-        let unusual = |v: &&str| ![usual, "", "initial", "unset", "inherit", "auto"].contains(v);
-        match self.declared.css(name).filter(unusual) {
-            Some(value) => Err(super::notes::unsupported(
-                &format!("\"{name}: {value}\""),
-                self.node,
-                remedy,
-            )),
-            None => Ok(()),
+    /// Refuses a property of CSS with another value than the `usual` ones, if the element shows.
+    fn refuse(&mut self, name: &str, usual: &[&str], remedy: &str) {
+        let known = ["", "initial", "unset", "inherit", "auto"];
+        let mut usual = usual.iter().chain(&known);
+        let unusual = |v: &&str| !usual.any(|u| u.eq_ignore_ascii_case(v));
+        if let Some(value) = self.declared.css(name).filter(unusual) {
+            let what = format!("\"{name}: {value}\"");
+            let text = unsupported(&what, self.node, remedy).to_string();
+            self.fault.get_or_insert(text.into());
         }
     }
 }
@@ -695,9 +748,13 @@ fn words<T: Clone>(list: &[(&'static str, T)]) -> impl Fn(&str, bool) -> Value<T
 
 fn paint(text: &str) -> Value<Paint> {
     if let Some((target, fallback)) = url(text) {
-        let target = target.map(Rc::from).map_err(Rc::from);
+        let target = address(target);
         if fallback.is_empty() {
             return Value::Is(Paint::Server(target, None));
+        }
+        // Only a colour may follow.
+        if url(fallback).is_some() {
+            return Value::Wrong;
         }
         return paint(fallback).map(|f| Paint::Server(target, Some(Box::new(f))));
     }
@@ -708,6 +765,20 @@ fn paint(text: &str) -> Value<Paint> {
         "context-stroke" => Value::Is(Paint::Context(true)),
         _ => color(text).map(Paint::Color),
     }
+}
+
+fn address(target: std::result::Result<&str, &str>) -> Target {
+    let kept = |text: &str| Rc::from(unescaped(text));
+    target.map(kept).map_err(kept)
+}
+
+/// Words of `display` that show an element.
+fn is_display(word: &str) -> bool {
+    let plain = word.split(['-', ' ']).next().unwrap_or_default();
+    let known = [
+        "inline", "block", "flex", "grid", "table", "list", "flow", "ruby", "run",
+    ];
+    known.contains(&plain)
 }
 
 /// The ground of the page: one colour.
@@ -724,7 +795,7 @@ fn target(text: &str) -> Value<Option<Target>> {
         return Value::Is(None);
     }
     match url(text) {
-        Some((target, "")) => Value::Is(Some(target.map(Rc::from).map_err(Rc::from))),
+        Some((target, "")) => Value::Is(Some(address(target))),
         _ => Value::Wrong,
     }
 }

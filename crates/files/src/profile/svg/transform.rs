@@ -41,7 +41,7 @@ impl Base {
 pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
     let mut rest = text.trim();
     let mut product = Affine::IDENTITY;
-    if rest == "none" {
+    if rest.eq_ignore_ascii_case("none") {
         return Value::Is(product);
     }
     while !rest.is_empty() {
@@ -52,15 +52,46 @@ pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
         let Some((arguments, after)) = after.split_once(')') else {
             return Value::Wrong;
         };
-        match function(name.trim(), &list(arguments), base) {
+        let (name, arguments) = match base.css {
+            true => (name, Some(arguments.split(',').map(str::trim).collect())),
+            false => (name.trim_end(), numbers(arguments)),
+        };
+        let known = base.css || ATTRIBUTE_FUNCTIONS.contains(&name);
+        let Some(arguments) = arguments.filter(|_| known) else {
+            return Value::Wrong;
+        };
+        match function(name, &arguments, base) {
             Value::Is(factor) => product *= factor,
             other => return other,
         }
-        rest = after.trim_start_matches(|c: char| c.is_ascii_whitespace() || c == ',');
+        rest = after.trim_start();
+        if let (false, Some(after)) = (base.css, rest.strip_prefix(',')) {
+            rest = after.trim_start();
+            if rest.is_empty() {
+                return Value::Wrong;
+            }
+        }
     }
     match product.is_finite() {
         true => Value::Is(product),
         false => Value::Wrong,
+    }
+}
+
+/// Functions of the attribute `transform`.
+const ATTRIBUTE_FUNCTIONS: [&str; 6] = ["matrix", "translate", "scale", "rotate", "skewX", "skewY"];
+
+/// The numbers of an attribute. Blanks, one comma, or signs and points of their own separate them.
+fn numbers(text: &str) -> Option<Vec<&str>> {
+    let (mut rest, mut parts) = (text.trim_start(), Vec::new());
+    loop {
+        let (_, after) = split_number(rest)?;
+        parts.push(&rest[..rest.len() - after.len()]);
+        rest = after.trim_start();
+        if rest.is_empty() {
+            return Some(parts);
+        }
+        rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
     }
 }
 
@@ -92,15 +123,13 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
             }
             Affine::new(values)
         }
-        ("translate", &[x]) | ("translatex" | "translateX", &[x]) => {
+        ("translate", &[x]) | ("translatex", &[x]) => {
             Affine::translate((read!(base.length(x, width)), 0.0))
         }
         ("translate", &[x, y]) => {
             Affine::translate((read!(base.length(x, width)), read!(base.length(y, height))))
         }
-        ("translatey" | "translateY", &[y]) => {
-            Affine::translate((0.0, read!(base.length(y, height))))
-        }
+        ("translatey", &[y]) => Affine::translate((0.0, read!(base.length(y, height)))),
         ("scale", &[s]) => Affine::scale(read!(factor(s))),
         ("scale", &[x, y]) => Affine::scale_non_uniform(read!(factor(x)), read!(factor(y))),
         ("scalex", &[x]) => Affine::scale_non_uniform(read!(factor(x)), 1.0),
@@ -166,7 +195,8 @@ fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
 /// The property `transform-origin`, within the reference box.
 pub(super) fn origin(text: &str, base: Base) -> Value<Vec2> {
     let (width, height) = base.size;
-    let parts = list(text);
+    let text = text.to_ascii_lowercase();
+    let parts = list(&text);
     let (mut x, mut y) = match parts.as_slice() {
         &[x] => (x, "center"),
         &[x, y] | &[x, y, _] => (x, y),
@@ -219,12 +249,20 @@ mod tests {
         maps("translate(50%, 10px)", true, (110.0, 30.0));
         maps("rotate(0.25turn)", true, (-20.0, 10.0));
         maps("scaleY(50%)", true, (10.0, 10.0));
+        maps("translate(5-5)rotate(0),scale(2.0.5)", false, (25.0, 5.0));
         maps("none", true, (10.0, 20.0));
         maps("", false, (10.0, 20.0));
         for (text, css) in [
             ("rotate(90deg)", false),
             ("rotate(90)", true),
             ("translate(5, 5)", true),
+            ("translate(5px 5px)", true),
+            ("translate (5px)", true),
+            ("translate(5,,5)", false),
+            ("translate(5,)", false),
+            ("scale(50%)", false),
+            ("translateX(5)", false),
+            ("scale(2),", false),
             ("translate(a)", false),
             ("spin(5)", true),
             ("rotate(5", false),

@@ -29,6 +29,8 @@ pub(in crate::profile) struct Group {
     pub opacity: f32,
     pub clip: Option<Clip>,
     pub children: Vec<Node>,
+    /// Markers are no geometry of the shape that has them.
+    pub is_marker: bool,
 }
 
 #[derive(Debug)]
@@ -38,7 +40,7 @@ pub(in crate::profile) struct Path {
     pub band: Option<Band>,
     /// Inside of the fill.
     pub rule: FillRule,
-    /// The colour, or the darkest colour of a gradient.
+    /// The colour, or the darkest colour of a gradient; transparent for geometry without paint.
     pub color: Rgba,
     /// The lightest colour of a gradient from dark to light, and its line.
     pub lightest: Option<(Rgba, u32)>,
@@ -53,7 +55,7 @@ pub(in crate::profile) struct Band {
 }
 
 /// The union of shapes, cut by a further clip.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(in crate::profile) struct Clip {
     /// Maps the clip's coordinates to those of the clipped group.
     pub transform: Affine,
@@ -61,7 +63,7 @@ pub(in crate::profile) struct Clip {
     pub within: Option<Box<Clip>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(in crate::profile) struct ClipShape {
     pub curve: BezPath,
     pub rule: FillRule,
@@ -69,6 +71,28 @@ pub(in crate::profile) struct ClipShape {
 }
 
 impl Clip {
+    /// Number of shapes, with those of further clips.
+    pub fn size(&self) -> usize {
+        let of = |clip: &Self| clip.size();
+        let shapes = self
+            .shapes
+            .iter()
+            .map(|s| 1 + s.clip.as_ref().map_or(0, of));
+        shapes.sum::<usize>() + self.within.as_deref().map_or(0, of)
+    }
+
+    /// Keeps the shapes near the geometry of `content`, if nothing is painted outside of it.
+    pub fn crop(&mut self, content: &[Node]) {
+        let Some(area) = bounds(content, Affine::IDENTITY).filter(|_| !exceeds(content)) else {
+            return;
+        };
+        let transform = self.transform;
+        self.shapes.retain(|shape| {
+            let own = (transform * &shape.curve).bounding_box();
+            own.x0 <= area.x1 && own.x1 >= area.x0 && own.y0 <= area.y1 && own.y1 >= area.y0
+        });
+    }
+
     /// A clip to a rectangle.
     pub fn to_rect(rect: Rect) -> Self {
         let shape = ClipShape {
@@ -84,9 +108,49 @@ impl Clip {
     }
 }
 
-/// The box about the geometry of nodes, without strokes and clips.
+impl Group {
+    /// A group that moves its children and does no more.
+    pub fn moved(transform: Affine, children: Vec<Node>) -> Self {
+        Self {
+            transform,
+            opacity: 1.0,
+            clip: None,
+            children,
+            is_marker: false,
+        }
+    }
+}
+
+/// Returns true if anything is painted.
+pub(super) fn is_painted(nodes: &[Node]) -> bool {
+    nodes.iter().any(|node| match node {
+        Node::Group(group) => is_painted(&group.children),
+        Node::Path(path) => path.color[3] > 0.0 || path.lightest.is_some(),
+    })
+}
+
+/// Returns true if paint may reach beyond the geometry: strokes and markers.
+fn exceeds(nodes: &[Node]) -> bool {
+    nodes.iter().any(|node| match node {
+        Node::Group(group) => group.is_marker || exceeds(&group.children),
+        Node::Path(path) => path.band.is_some(),
+    })
+}
+
+/// Removes geometry that is not painted.
+pub(super) fn prune(nodes: &mut Vec<Node>) {
+    nodes.retain_mut(|node| {
+        if let Node::Group(group) = node {
+            prune(&mut group.children);
+        }
+        is_painted(std::slice::from_ref(node))
+    });
+}
+
+/// The box about the geometry of nodes, painted or not, without strokes and clips.
 pub(super) fn bounds(nodes: &[Node], transform: Affine) -> Option<Rect> {
     let boxes = nodes.iter().filter_map(|node| match node {
+        Node::Group(group) if group.is_marker => None,
         Node::Group(group) => bounds(&group.children, transform * group.transform),
         Node::Path(path) if path.curve.elements().len() < 2 => None,
         Node::Path(path) => Some((transform * &path.curve).bounding_box()),

@@ -1,5 +1,7 @@
 //! Values of attributes and of CSS properties: numbers, lengths, lists.
 
+use roxmltree::Node;
+
 /// The reading of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value<T> {
@@ -180,6 +182,39 @@ pub(super) fn list(text: &str) -> Vec<&str> {
     parts.push(&text[start..]);
     parts.retain(|p| !p.is_empty());
     parts
+}
+
+/// An attribute of SVG: those of other namespaces do not count.
+pub(super) fn attribute<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
+    let mut own = node.attributes();
+    let found = own.find(|a| a.namespace().is_none() && a.name() == name);
+    found.map(|a| a.value())
+}
+
+/// Text with the escapes of CSS resolved.
+pub(super) fn unescaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('\\') {
+        out.push_str(before);
+        let digits = after
+            .bytes()
+            .take(6)
+            .take_while(u8::is_ascii_hexdigit)
+            .count();
+        let code = u32::from_str_radix(&after[..digits], 16);
+        let letter = code.ok().and_then(char::from_u32);
+        let own = after.chars().next().filter(|_| digits == 0);
+        out.extend(letter.or(own));
+        rest = &after[digits.max(own.map_or(0, char::len_utf8))..];
+        if digits > 0 {
+            rest = rest
+                .strip_prefix(|c: char| c.is_ascii_whitespace())
+                .unwrap_or(rest);
+        }
+    }
+    out.push_str(rest);
+    out
 }
 
 /// The target of `url(#name)` and the text after it: `Ok` for one in the drawing, `Err` for an

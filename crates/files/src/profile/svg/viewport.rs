@@ -1,33 +1,36 @@
 //! Viewports: the page, nested `svg` elements, symbols and markers.
 
-use super::notes::{Notes, line};
+use super::notes::Notes;
 use super::style::Style;
-use super::value::Length;
+use super::value::{Length, attribute};
 use crate::content_fault;
 use kurbo::{Affine, Rect};
 use revmap::error::Result;
 use revmap::profile::Profile;
 use roxmltree::Node;
 use std::str::FromStr;
-use svgtypes::{Align, AspectRatio, ViewBox};
+use svgtypes::{Align, AspectRatio, NumberListParser};
 
-/// The `viewBox` of an element.
+/// The `viewBox` of an element. One without area shows nothing.
 pub(super) fn view_box(node: Node, notes: &mut Notes) -> Option<Rect> {
-    let text = node.attribute("viewBox")?;
-    let read = ViewBox::from_str(text).ok();
-    let valid = read.filter(|v| v.w > 0.0 && v.h > 0.0);
+    let text = attribute(node, "viewBox")?;
+    let numbers: std::result::Result<Vec<f64>, _> = NumberListParser::from(text).collect();
+    let valid = match numbers.as_deref() {
+        Ok(&[x, y, w, h]) if w >= 0.0 && h >= 0.0 => Some(Rect::new(x, y, x + w, y + h)),
+        _ => None,
+    };
     if valid.is_none() {
         notes.warn(format!(
             "the drawing has viewBox=\"{text}\" (line {}), which is not valid; it is ignored, as browsers do",
-            line(node)
+            notes.line(node)
         ));
     }
-    valid.map(|v| Rect::new(v.x, v.y, v.x + v.w, v.y + v.h))
+    valid
 }
 
 /// Maps a `viewBox` to a viewport of this size.
 pub(super) fn fitted(node: Node, inner: Rect, (width, height): (f64, f64)) -> Affine {
-    let aspect = node.attribute("preserveAspectRatio");
+    let aspect = attribute(node, "preserveAspectRatio");
     let aspect = aspect
         .and_then(|a| AspectRatio::from_str(a).ok())
         .unwrap_or_default();
@@ -55,6 +58,11 @@ pub(super) fn fitted(node: Node, inner: Rect, (width, height): (f64, f64)) -> Af
 
 /// Width and height of the page in pixels.
 pub(super) fn page(style: &Style, inner: Option<Rect>) -> Result<(f64, f64)> {
+    if inner.is_some_and(|i| i.area() <= 0.0) {
+        return Err(content_fault(
+            "the drawing has a viewBox without area, which shows nothing; correct it",
+        ));
+    }
     let given = |name: &str, whole: Option<f64>| match style.geometry(name) {
         Some(Length::Px(v)) => Some(v),
         Some(Length::Part(part)) => whole.map(|w| part * w),
