@@ -17,9 +17,10 @@ use crate::error::Result;
 use glam::DVec2;
 
 /// Points this close to the axis, on either side, in units of the largest radius, are moved onto
-/// it. `0.5 * sin(pi)` is not quite 0, and files keep six digits. A sliver along the axis would
-/// count as surface, and a negative offset would open a bore there.
-const AXIS_SLACK: f64 = 1e-6;
+/// it; of a radius above 1, in object units. `0.5 * sin(pi)` is not quite 0, and drawings are
+/// inexact. No picture shows a gap so narrow, but it would count as surface, and a negative offset
+/// would open a bore there.
+const AXIS_SLACK: f64 = 1e-4;
 
 /// The solid's boundary as closed chains of straight segments.
 ///
@@ -87,7 +88,7 @@ impl Profile {
     }
 
     /// A profile with a known outline. The loops are used unchanged, except that points within
-    /// 1e-6 of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
+    /// 1e-4 of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
     #[must_use]
     pub fn new(mut outline: Outline, radius: f64) -> Self {
         let points = || outline.loops.iter().flatten();
@@ -98,6 +99,8 @@ impl Profile {
                 point.x = 0.0;
             }
         }
+        let has_area = |points: &Vec<DVec2>| points.iter().any(|point| point.x > 0.0);
+        outline.loops.retain(has_area);
         Self {
             outline,
             radius,

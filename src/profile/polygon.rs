@@ -42,7 +42,7 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
         clean.push(DVec2::new(if r < slack { 0.0 } else { r }, z));
     }
     let outline = Outline::enclosed(&[clean], FillRule::NonZero);
-    if outline.area() < 1e-12 * widest.min(1.0).powi(2) {
+    if outline.area() <= 1e-12 * widest.min(1.0).powi(2) {
         return fault("the polygon has no area; give corners that enclose some".into());
     }
     Ok(Profile::new(outline, radius))
@@ -107,7 +107,7 @@ mod tests {
         ]);
         assert_eq!(o.surface_segments().count(), 2);
         // A gap of rounding is no bore, on either side.
-        for gap in [1e-8, -1e-8, 3e-7] {
+        for gap in [1e-8, -1e-8, 3e-7, 3e-5] {
             let o = outline(&[[gap, 0.0], [0.4, 0.0], [0.4, 1.0], [gap, 1.0]]);
             assert_eq!(o.surface_segments().count(), 3, "{gap}");
             let loops = vec![
@@ -130,6 +130,7 @@ mod tests {
         assert!(message(&[ok[0], ok[1], [-0.1, 0.4]]).contains("crosses the axis"));
         assert!(message(&[ok[0], ok[1], ok[0]]).contains("no area"));
         assert!(message(&[[0.0, 0.0], [0.1, 0.1], [0.2, 0.2]]).contains("no area"));
+        assert!(message(&[[0.0, 0.0], [0.0, 0.5], [0.0, 1.0]]).contains("no area"));
         assert!(message(&[ok[0], ok[1], [1e9, 0.4]]).contains("too far"));
         assert!(
             profile(&ok, 0.0)

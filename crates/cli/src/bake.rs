@@ -74,7 +74,10 @@ impl Bake {
             invert: self.profile_invert,
             smooth: self.profile_smooth,
         };
-        let profile = revmap_files::profile(&self.profile, options)?;
+        let profile = revmap_files::profile(&self.profile, options).map_err(|mut e| {
+            e.message = with_options(&e.message);
+            e
+        })?;
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
@@ -86,7 +89,8 @@ impl Bake {
 
         revmap_files::write_shape_map(&map, &map_file)?;
         if !self.quiet {
-            profile.warnings.iter().for_each(|w| output::warn(w));
+            let warnings = profile.warnings.iter();
+            warnings.for_each(|w| output::warn(&with_options(w)));
         }
         self.tell(&format!(
             "{}: {}x{} texels, {}, baked in {took:.1} ms",
@@ -109,6 +113,17 @@ impl Bake {
             output::result(line);
         }
     }
+}
+
+/// A message with options in place of the keys of a scene file.
+fn with_options(message: &str) -> String {
+    let mut text = message.replace("profile_invert = true", "profile_invert");
+    for key in ["axis", "invert", "smooth", "threshold"] {
+        let (key, option) = (format!("profile_{key}"), format!("--profile-{key}"));
+        text = text.replace(&format!("{key} = "), &format!("{option} "));
+        text = text.replace(&key, &option);
+    }
+    text
 }
 
 /// A number of pixels, or `auto`.
@@ -147,6 +162,16 @@ fn beside(map: &Path) -> PathBuf {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn keys_of_scenes_become_options() {
+        let text =
+            with_options("set profile_axis = 0.1 and profile_invert = true, or profile_smooth");
+        assert_eq!(
+            text,
+            "set --profile-axis 0.1 and --profile-invert, or --profile-smooth"
+        );
+    }
 
     #[test]
     fn names_of_files() {

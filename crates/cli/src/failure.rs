@@ -7,9 +7,13 @@ use revmap::error::{Error, ErrorKind};
 use std::process::ExitCode;
 
 /// Keys of the library, each with the option that sets it.
-const OPTIONS: [(&str, &str); 6] = [
+const OPTIONS: [(&str, &str); 10] = [
     ("device", "--device"),
     ("out", "--out"),
+    ("profile_axis", "--profile-axis"),
+    ("profile_invert", "--profile-invert"),
+    ("profile_smooth", "--profile-smooth"),
+    ("profile_threshold", "--profile-threshold"),
     ("sets", "--set"),
     ("size", "--size"),
     ("solver", "--solver"),

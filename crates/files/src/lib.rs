@@ -60,6 +60,7 @@ pub use scene::{SceneFile, scene, warnings};
 pub use trace::trace;
 
 use revmap::error::{Error, ErrorKind};
+use std::io::Read as _;
 
 /// A picture as the bytes of a PNG.
 #[cfg(test)]
@@ -69,6 +70,25 @@ fn png_bytes(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
     let picture = picture.into();
     picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
     out.into_inner()
+}
+
+/// Most bytes of a file that is read.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// All bytes of a file, which may be a pipe. A device without end is refused, too.
+fn read_bytes(path: &std::path::Path) -> std::io::Result<Vec<u8>> {
+    let most = |_| std::io::Error::new(std::io::ErrorKind::FileTooLarge, "holds more than 1 GiB");
+    let file = std::fs::File::open(path)?;
+    let size = file.metadata()?.len();
+    let size = (size <= MOST_BYTES)
+        .then_some(size)
+        .ok_or(())
+        .map_err(most)?;
+    let mut bytes = Vec::new();
+    bytes.try_reserve(size as usize)?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    let fits = bytes.len() as u64 <= MOST_BYTES;
+    fits.then_some(bytes).ok_or(()).map_err(most)
 }
 
 /// A failure of a file.

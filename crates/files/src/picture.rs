@@ -1,7 +1,7 @@
 //! Writes frames as PNG: 8-bit sRGB RGBA, for viewing.
 
 use crate::pixels::decode;
-use crate::{file_fault, write_atomically};
+use crate::{file_fault, read_bytes, write_atomically};
 use revmap::error::Result;
 use revmap::frame::{Frame, linear_from_srgb};
 use revmap::host_memory;
@@ -56,7 +56,7 @@ impl Picture {
     /// picture, larger than 16384 on a side.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|e| {
+        let bytes = read_bytes(path).map_err(|e| {
             file_fault(format!("cannot be read ({e}); give a picture")).in_file(path)
         })?;
         let pixels = decode(&bytes, "PNG or JPEG").map_err(|e| e.in_file(path))?;

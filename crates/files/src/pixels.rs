@@ -156,9 +156,38 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
         };
         return pixels.upright(reader.exif().map(Vec::as_slice));
     }
-    Err(file_fault(format!(
-        "is no picture that can be read; give a {kinds} file"
-    )))
+    let unknown = || format!("is no picture that can be read; give a {kinds} file");
+    Err(file_fault(foreign(bytes).unwrap_or_else(unknown)))
+}
+
+/// Formats that are not read: name, place of the mark, mark.
+const FOREIGN: [(&str, usize, &[u8]); 12] = [
+    ("GIF", 0, b"GIF8"),
+    ("WebP", 8, b"WEBP"),
+    ("BMP", 0, b"BM"),
+    ("TIFF", 0, b"II*\0"),
+    ("TIFF", 0, b"MM\0*"),
+    ("AVIF", 4, b"ftypavi"),
+    ("HEIC", 4, b"ftyphei"),
+    ("HEIC", 4, b"ftypmif1"),
+    ("JPEG XL", 0, b"\xff\x0a"),
+    ("PDF", 0, b"%PDF"),
+    ("PostScript", 0, b"%!PS"),
+    ("PSD", 0, b"8BPS"),
+];
+
+/// What is wrong with a file that is empty or of a known format that is not read.
+pub(crate) fn foreign(bytes: &[u8]) -> Option<String> {
+    if bytes.is_empty() {
+        return Some("is empty (0 bytes); save or copy it again".to_owned());
+    }
+    let is_of = |(_, at, mark): &&(&str, usize, &[u8])| {
+        bytes.get(*at..).is_some_and(|rest| rest.starts_with(mark))
+    };
+    let (name, ..) = FOREIGN.iter().find(is_of)?;
+    Some(format!(
+        "is a {name} file, which is not read; convert it to PNG"
+    ))
 }
 
 /// A PNG whose header was read.

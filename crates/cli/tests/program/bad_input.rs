@@ -52,6 +52,7 @@ fn polygons_that_turn_into_nothing() {
         "[[0, 0], [0.3, inf], [0, 1]]",
         "[[-0.2, 0.1], [0.3, 0.1], [0, 0.9]]",
         "[[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]",
+        "[[0, 0], [0, 0.5], [0, 1]]",
     ] {
         bench.object(&format!("polygon = {points}"));
         bench.refused(RENDER, 1, &["scene.toml", "object.0.polygon"]);

@@ -141,7 +141,7 @@ fn cut_outs_and_axes_are_named() {
     warned(
         &bench,
         "bake aside.png -o map.png",
-        "set profile_axis = 0.625",
+        "set --profile-axis 0.625",
     );
     warned(
         &bench,
@@ -160,7 +160,7 @@ fn cut_outs_and_axes_are_named() {
     bench.refused(
         "bake aside.png -o no.png --profile-axis 1.5",
         1,
-        &["profile_axis", "1.5"],
+        &["--profile-axis", "1.5"],
     );
     bench.refused(
         "bake aside.png -o no.png --profile-axis middle",

@@ -77,10 +77,10 @@ fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
     assert_eq!(warned(&bench, mended), [""; 0]);
 
     let bake = "bake light.png -o map.png --map-rows 64";
-    warned_once(&bench, bake, &["profile_invert"]);
+    warned_once(&bench, bake, &["--profile-invert if light"]);
     bench.done(&format!("{bake} --profile-invert"));
     let bake = "bake light.png -o map2.png --profile-threshold 2";
-    bench.refused(bake, 1, &["light.png", "profile_threshold"]);
+    bench.refused(bake, 1, &["light.png", "--profile-threshold"]);
 
     bench.object("profile = \"light.png\"\nprofile_smooth = -1");
     bench.refused(RENDER, 1, &["object.0.profile_smooth", "0 to 100"]);

@@ -5,7 +5,7 @@ use super::source::{BINARY, binary_distances};
 use super::{encode_png, extension};
 use crate::openexr::{first_layer, layer, layer_sizes, write_layer};
 use crate::pixels::{Pixels, Png, Samples};
-use crate::{file_fault, raster, write_atomically};
+use crate::{file_fault, raster, read_bytes, write_atomically};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{FlatSamples, LayerAttributes, Text};
 use revmap::error::{Error, Result};
@@ -53,7 +53,7 @@ pub fn write_shape_map(map: &ShapeMap, path: impl AsRef<Path>) -> Result<()> {
 pub fn shape_map(path: impl AsRef<Path>) -> Result<ShapeMap> {
     let path = path.as_ref();
     let read = || {
-        let bytes = std::fs::read(path).map_err(|e| {
+        let bytes = read_bytes(path).map_err(|e| {
             file_fault(format!(
                 "the map cannot be read ({e}); give a file that `revmap bake` wrote"
             ))

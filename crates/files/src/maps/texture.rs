@@ -3,7 +3,7 @@
 use super::header::Header;
 use super::{encode_png, extension};
 use crate::pixels::decode;
-use crate::{file_fault, write_atomically};
+use crate::{file_fault, read_bytes, write_atomically};
 use revmap::error::{Error, Result};
 use revmap::host_memory;
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
@@ -100,7 +100,7 @@ fn read<T>(path: &Path, what: &str, make: impl Fn(&[u8]) -> Result<T>) -> Result
                 "is a folder; give the {what} as a PNG or JPEG file"
             )));
         }
-        std::fs::read(path).map_err(|e| {
+        read_bytes(path).map_err(|e| {
             file_fault(format!(
                 "the {what} cannot be read ({e}); give a PNG or JPEG file"
             ))

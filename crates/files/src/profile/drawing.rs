@@ -7,10 +7,10 @@
 //! difference. Text, pictures, patterns, masks, filters and blend modes have no outline here and
 //! are refused by name.
 
+use super::form::{DRAWING, Silhouette};
 use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened};
 use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
-use super::symmetry;
-use super::{ProfileAxis, empty_fault, full_fault, hints, svg};
+use super::{ProfileAxis, empty_fault, full_fault, svg};
 use crate::content_fault;
 use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};
@@ -57,42 +57,35 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     let whole = tile.dark(&paints)?;
     let mut warnings = drawing.warnings;
     warnings.extend(check_gradients(&paints, &whole, tile)?);
-    let rows = hints::rows(&whole.outline(canvas.grid));
-    let half_read_as_whole = symmetry::hint_of_rows(&rows, left / height, width / height, axis);
-    let is_other_half = half_read_as_whole.is_some();
-    warnings.extend(half_read_as_whole);
+    let user = |x: f64| {
+        (drawing.to_user * page.inverse() * Point::new(x / DRAWING - left / height, 0.0)).x
+    };
+    let place = |x: f64| format!("x = {:.4}", user(x));
+    let page_at = [left / height, width / height];
+    let form = Silhouette::of_outline(&whole.outline(canvas.grid), page_at, &place);
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
-            let user = |r: f64| (drawing.to_user * page.inverse() * Point::new(r, 0.0)).x;
-            if let Some(at) = hints::other_axis(&rows).filter(|_| !is_other_half) {
-                warnings.push(format!(
-                    "the halves of the drawing differ about the axis (x = {:.4}) and agree about x = {:.4}; \
-                     set profile_axis = {:.4}, or move the drawing or its viewBox so that this is the middle",
-                    user(0.0),
-                    user(at),
-                    (left + at * height) / width
-                ));
-            }
             let right = Region::rectangle(canvas.grid, DVec2::ZERO, canvas.high);
             whole.intersection(&right)
         }
     };
-    let outline = on_borders(half.outline(canvas.grid), &canvas);
+    let mut profile = Profile::new(on_cylinder(half.outline(canvas.grid), &canvas), radius);
+    without_slivers(&mut profile.outline);
+    let outline = &profile.outline;
     if outline.area() <= 0.0 {
         return Err(empty_fault("drawing"));
     }
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
     }
-    if !is_other_half && hints::is_shell(&outline) {
-        warnings.push(
-            "the drawing is an outline: the solid is a thin shell about a hollow; fill the shape if it is meant to \
-             be solid"
+    warnings.extend(match form.is_light_on_dark() {
+        true => vec![
+            "the drawing looks like a light solid on dark ground; draw the solid dark on white if light is solid"
                 .to_owned(),
-        );
-    }
-    let mut profile = Profile::new(outline, radius);
+        ],
+        false => form.hints(outline, axis),
+    });
     profile.warnings = warnings;
     Ok(profile)
 }
@@ -130,30 +123,25 @@ fn check_gradients(paints: &[Paint], darkest: &Region, tile: Tile) -> Result<Opt
     )))
 }
 
-/// The outline with its points on the axis and on the cylinder. Points nearer to the axis than the
-/// flattening tolerance are on it: a gap there would be a bore.
-fn on_borders(mut outline: Outline, canvas: &Canvas) -> Outline {
-    // The viewport's right border is the cylinder, to the last bit.
+/// The outline with the viewport's right border on the cylinder, to the last bit.
+fn on_cylinder(mut outline: Outline, canvas: &Canvas) -> Outline {
     let edge = canvas.grid.rounded(canvas.high).x;
     for p in outline.loops.iter_mut().flatten() {
         if p.x == edge {
             p.x = canvas.high.x;
-        } else if p.x <= FLATNESS {
-            p.x = 0.0;
         }
     }
-    without_slivers(outline)
+    outline
 }
 
 /// Drops loops thinner than the flattening tolerance. Rounding leaves cracks and specks between
 /// abutting shapes, and each would become a surface.
-fn without_slivers(mut outline: Outline) -> Outline {
+fn without_slivers(outline: &mut Outline) {
     outline.loops.retain(|points| {
         let next = points.iter().cycle().skip(1);
         let length: f64 = points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum();
         loop_area(points).abs() > FLATNESS * length
     });
-    outline
 }
 
 /// The drawing area: the viewport or its right half, on the integer grid.

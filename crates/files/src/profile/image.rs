@@ -1,6 +1,7 @@
 //! Profiles from pictures: dark is solid.
 
-use super::{ProfileOptions, full_fault, options, symmetry, transparency};
+use super::form::Silhouette;
+use super::{ProfileOptions, full_fault, options, transparency};
 use crate::content_fault;
 use crate::maps::header::Header;
 use crate::pixels::{decode, luminance};
@@ -41,6 +42,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         alpha * if options.invert { grey } else { 1.0 - grey }
     })?;
     // What hints need; the picture is dropped before the next large list.
+    let contrast = options::contrast(&dark, width as usize, options);
     let solid = dark.iter().map(|&d| d > options.edge());
     let solid = host_memory::collected(solid, PICTURE)?;
     let opaque = picture.map(|[.., alpha]| alpha > 0.5)?;
@@ -67,13 +69,19 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     let coverage = host_memory::collected(raster.coverage.iter().copied(), PICTURE)?;
     let traced = Raster { coverage, ..raster };
     let mut profile = trace_split(traced, split)?;
-    let of_form = || {
-        let axis_at = 0.5 * f64::from(halves);
-        let beside = symmetry::hint(&solid, width as usize, axis_at, options.axis);
-        let hints = [beside, transparency::hint(&solid, &opaque, options.invert)];
-        hints.into_iter().flatten().collect()
+    if contrast.is_some() {
+        profile.warnings.extend(contrast);
+        return Ok(profile);
+    }
+    let form = Silhouette::of_pixels(&solid, width as usize, 0.5 * f64::from(halves));
+    let of_form = |half: &_| {
+        let mut hints = form.hints(half, options.axis);
+        hints.extend(transparency::hint(&solid, &opaque, options.invert));
+        hints
     };
-    profile.warnings = options::warnings(&raster, split, &profile.outline, options, of_form);
+    let reversed = !options.invert && form.is_light_on_dark();
+    profile.warnings =
+        options::warnings(&raster, split, &profile.outline, options, reversed, of_form);
     Ok(profile)
 }
 
@@ -207,6 +215,6 @@ mod tests {
         let whole = png(GrayImage::from_fn(64, 64, |x, y| Luma([(x ^ y) as u8 * 4])));
         assert!(text(&whole[..whole.len() / 2]).contains("damaged"));
         assert!(text(&whole[..20]).contains("damaged"));
-        assert!(text(b"BM not a picture").contains("PNG, JPEG or SVG"));
+        assert!(text(b"no picture").contains("PNG, JPEG or SVG"));
     }
 }

@@ -1,20 +1,21 @@
 //! Profiles from drawings and pictures.
 
 mod drawing;
-mod hints;
+mod form;
+mod gaps;
 mod image;
 mod noise;
 mod options;
 mod paint;
 mod svg;
-mod symmetry;
 mod transparency;
 
+pub(crate) use gaps::hints as gap_hints;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions};
 
 use crate::pixels::is_picture;
-use crate::{content_fault, file_fault};
+use crate::{content_fault, file_fault, read_bytes};
 use revmap::error::{Error, Result};
 use revmap::profile::Profile;
 use std::path::Path;
@@ -63,8 +64,9 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
         return Err(file_fault("is a folder; give a PNG, JPEG or SVG file"));
     }
-    std::fs::read(path).map_err(|e| match e.kind() {
+    read_bytes(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => file_fault("does not exist; give a PNG, JPEG or SVG file"),
+        std::io::ErrorKind::FileTooLarge => file_fault(format!("{e}; give a smaller file")),
         _ => file_fault(format!(
             "cannot be read ({e}); check the file's permissions"
         )),

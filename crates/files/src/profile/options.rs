@@ -118,14 +118,32 @@ impl ProfileOptions {
     /// Refuses options that apply only to pictures. [`Smooth::Auto`] is accepted, since a drawing
     /// has no noise.
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
-        let plain = Self::from(self.axis);
+        let mut own = Self {
+            axis: ProfileAxis::default(),
+            ..*self
+        };
+        if own.smooth == Smooth::Auto {
+            own.smooth = Smooth::default();
+        }
+        own.unset("counts for pictures alone; leave it out for a drawing")?;
+        Ok(self.axis)
+    }
+
+    /// Refuses every option: a polygon has no file.
+    pub(crate) fn for_polygon(&self) -> Result<()> {
+        self.unset("counts for files alone; leave it out for a polygon")
+    }
+
+    /// Refuses the first option that differs from its default.
+    fn unset(&self, message: &str) -> Result<()> {
+        let plain = Self::default();
         let key = match self {
+            _ if self.axis != plain.axis => "profile_axis",
             _ if self.threshold != plain.threshold => "profile_threshold",
             _ if self.invert => "profile_invert",
-            _ if ![plain.smooth, Smooth::Auto].contains(&self.smooth) => "profile_smooth",
-            _ => return Ok(self.axis),
+            _ if self.smooth != plain.smooth => "profile_smooth",
+            _ => return Ok(()),
         };
-        let message = "counts for pictures alone; leave it out for a drawing";
         Err(content_fault(message).at_key(key))
     }
 
@@ -162,17 +180,17 @@ const SPECK: f64 = 9.0;
 const NOISE: usize = 8;
 
 /// Features of a picture and its outline that look unintended: one sentence each, with the key that
-/// changes it. `split`: the axis is the middle of column 0. `of_form` looks at the solid as a whole,
-/// where the picture shows it clearly.
+/// changes it. `split`: the axis is the middle of column 0. `reversed`: the solid looks light.
+/// `of_form` looks at the solid as a whole, where the picture shows it clearly.
 pub(super) fn warnings(
     raster: &Raster,
     split: bool,
     outline: &Outline,
     options: &ProfileOptions,
-    of_form: impl FnOnce() -> Vec<String>,
+    reversed: bool,
+    of_form: impl FnOnce(&Outline) -> Vec<String>,
 ) -> Vec<String> {
     let mut found = Vec::new();
-    let reversed = !options.invert && is_light_on_dark(raster);
     if reversed {
         found.push(
             "the picture looks like a light solid on dark ground; set profile_invert = true if light is solid"
@@ -187,7 +205,7 @@ pub(super) fn warnings(
     let specks = specks.count();
     let noisy = specks >= NOISE;
     if !noisy && !reversed {
-        found.extend(of_form());
+        found.extend(of_form(outline));
     }
     if noisy {
         found.push(format!(
@@ -204,21 +222,63 @@ pub(super) fn warnings(
     found
 }
 
-/// Returns true if the ground is dark and the middle is light.
-fn is_light_on_dark(raster: &Raster) -> bool {
-    let columns = raster.columns as usize;
-    let dark = |values: &mut dyn Iterator<Item = &f32>| {
-        let (mut count, mut all) = (0.0, 0.0f64);
-        for value in values {
-            count += f64::from(u8::from(*value > 0.5));
-            all += 1.0;
-        }
-        count / all.max(1.0)
+/// Shades that are told apart.
+const SHADES: usize = 256;
+/// The threshold must be this part of the contrast away from both shades.
+const MARGIN: f64 = 0.05;
+
+/// A warning if the threshold does not part the picture's two main shades. `dark` has what counts as
+/// darkness, `width` values to a row.
+pub(super) fn contrast(dark: &[f32], width: usize, options: &ProfileOptions) -> Option<String> {
+    let [low, high] = main_shades(dark)?;
+    let (edge, margin) = (f64::from(options.edge()), MARGIN * (high - low));
+    if (low + margin..=high - margin).contains(&edge) {
+        return None;
+    }
+    let middle = 0.5 * (low + high);
+    let threshold = if options.invert { middle } else { 1.0 - middle };
+    let border = dark
+        .iter()
+        .take(width)
+        .chain(dark.iter().skip(width - 1).step_by(width));
+    let on_dark = border
+        .map(|d| if f64::from(*d) > middle { 1 } else { -1 })
+        .sum::<i64>()
+        > 0;
+    let invert = match on_dark && !options.invert {
+        true => " and profile_invert = true",
+        false => "",
     };
-    let column = |k: usize| raster.coverage.iter().skip(k).step_by(columns.max(1));
-    dark(&mut column(columns.saturating_sub(1))) >= 0.95
-        && dark(&mut raster.coverage.iter().take(columns)) >= 0.6
-        && dark(&mut column(0)) <= 0.7
+    Some(format!(
+        "the picture has low contrast: solid and ground are both {} than the threshold; set profile_threshold = {threshold:.2}{invert}",
+        if (edge < middle) == options.invert {
+            "lighter"
+        } else {
+            "darker"
+        }
+    ))
+}
+
+/// The two shades into which the values fall, by the largest variance between them (N. Otsu, *A
+/// threshold selection method from gray-level histograms*, 1979).
+fn main_shades(values: &[f32]) -> Option<[f64; 2]> {
+    let mut counts = [0.0f64; SHADES];
+    for value in values {
+        counts[(value.clamp(0.0, 1.0) * (SHADES - 1) as f32).round() as usize] += 1.0;
+    }
+    let shade = |k: usize| k as f64 / (SHADES - 1) as f64;
+    let sum: f64 = counts.iter().enumerate().map(|(k, n)| n * shade(k)).sum();
+    let (mut count, mut below, mut best) = (0.0, 0.0, (0.0, None));
+    for (k, n) in counts.iter().enumerate() {
+        (count, below) = (count + n, below + n * shade(k));
+        let rest = values.len() as f64 - count;
+        let shades = [below / count.max(1.0), (sum - below) / rest.max(1.0)];
+        let between = count * rest * (shades[1] - shades[0]).powi(2);
+        if between > best.0 {
+            best = (between, Some(shades));
+        }
+    }
+    best.1
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! the order of a heading.
 
 use super::decoded;
-use crate::{content_fault, file_fault};
+use crate::{content_fault, file_fault, read_bytes};
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
 use revmap::host_memory;
@@ -24,7 +24,7 @@ const MAX_COPIES: usize = 1 << 20;
 /// it has exactly the known names. Rotations are normalised to unit length. A byte order mark, as
 /// spreadsheets write it, is skipped.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
-    let bytes = std::fs::read(file)
+    let bytes = read_bytes(file)
         .map_err(|e| file_fault(format!("cannot be read ({e}); give a CSV file")).in_file(file))?;
     let no_text = || file_fault("is no text in UTF-8; save it as CSV in UTF-8");
     decoded(&bytes)

@@ -14,8 +14,9 @@ mod warnings;
 pub use keys::decimal_comma;
 pub use warnings::warnings;
 
+use crate::pixels::foreign;
 use crate::profile::is_profile;
-use crate::{file_fault, text};
+use crate::{file_fault, read_bytes, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
@@ -52,7 +53,7 @@ impl SceneFile {
     pub fn open(file: impl AsRef<Path>) -> Result<Self> {
         let file = file.as_ref();
         let folder = file.parent().unwrap_or(Path::new(""));
-        let bytes = std::fs::read(file).map_err(|e| {
+        let bytes = read_bytes(file).map_err(|e| {
             file_fault(format!(
                 "cannot be read ({e}); give a scene in TOML, or a profile"
             ))
@@ -61,8 +62,10 @@ impl SceneFile {
         if is_profile(&bytes) {
             return Ok(Self::of_profile(file, folder, bytes));
         }
-        let no_text =
-            || file_fault("is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it");
+        let no_text = || {
+            let other = "is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it";
+            file_fault(foreign(&bytes).unwrap_or_else(|| other.to_owned()))
+        };
         let text = decoded(&bytes).map_err(|e| e.in_file(file))?;
         let text = text.ok_or_else(no_text);
         match text.and_then(|text| Self::parse(&text, folder)) {

@@ -3,6 +3,7 @@
 use super::instances;
 use super::keys::Keys;
 use super::polygon;
+use crate::profile::gap_hints;
 use crate::{
     ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, profile_from_bytes,
     projection_of,
@@ -32,6 +33,8 @@ pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold 
     metalness height_map bump bump_form \
     projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
     instances";
+/// Keys that place one copy.
+const PLACEMENT: [&str; 3] = ["position", "rotation", "scale"];
 /// `R` of a polygon's box unless the file gives another.
 const RADIUS: f64 = 0.5;
 
@@ -157,6 +160,12 @@ impl Reader {
         keys.set("mirror", &mut object.mirror)?;
         object.placement = placement(&keys)?;
         if let Some(file) = keys.file("instances", &self.folder)? {
+            if let Some(key) = PLACEMENT.into_iter().find(|key| table.contains_key(*key)) {
+                return Err(keys.fail(
+                    key,
+                    "stands beside instances, whose rows place the copies; leave it out",
+                ));
+            }
             object.instances = instances::load(&file)?.into();
             if !self.instances.contains(&file) {
                 self.instances.push(file);
@@ -193,6 +202,9 @@ impl Reader {
                 Ok(object)
             }
             (None, Some(points)) => {
+                options
+                    .for_polygon()
+                    .map_err(|e| below(keys, "polygon", e))?;
                 let same =
                     |known: &&(Vec<[f64; 2]>, f64, _)| known.0 == points && known.1 == radius;
                 if let Some((_, _, profile)) = self.polygons.iter().find(same) {
@@ -201,6 +213,7 @@ impl Reader {
                 let mut profile =
                     Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
                 profile.warnings.extend(polygon::cut_off(&points, radius));
+                profile.warnings.extend(gap_hints(&profile.outline));
                 let profile = Arc::new(profile);
                 self.polygons.push((points, radius, profile.clone()));
                 Ok(Object::new("polygon", profile))

@@ -121,6 +121,8 @@ mirror = [true, false, true]
 position = [1, 2, 3]
 rotation = [0, 0, 2, 0]
 scale = [1, 2, 0.5]
+[[object]]
+profile = "half.spherical.png"
 instances = "copies.csv"
 "#;
     let scene = parse(text, folder.path(), &[]).unwrap();
@@ -165,9 +167,9 @@ instances = "copies.csv"
         object.placement.position => DVec3::new(1.0, 2.0, 3.0);
         object.placement.rotation => DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
         object.placement.scale => DVec3::new(1.0, 2.0, 0.5);
-        object.instances.len() => 2;
-        object.instances[1].scale.z => 2.0;
-        object.placements().len() => 2;
+        scene.objects[1].instances.len() => 2;
+        scene.objects[1].instances[1].scale.z => 2.0;
+        scene.objects[1].placements().len() => 2;
     }
 }
 
@@ -344,5 +346,34 @@ fn every_key_is_documented() {
     }
     for key in ["background", "ambient", "shadow"] {
         assert!(documented(key), "{key}");
+    }
+}
+
+#[test]
+fn keys_without_effect_are_refused() {
+    for (key, value) in [
+        ("profile_axis", "\"left\""),
+        ("profile_threshold", "0.3"),
+        ("profile_invert", "true"),
+        ("profile_smooth", "2"),
+        ("profile_smooth", "\"auto\""),
+    ] {
+        fault(
+            cone(&format!("{key} = {value}")),
+            &format!("object.0.{key}: counts for files"),
+        );
+    }
+    let folder = folder();
+    for key in ["position", "rotation", "scale"] {
+        let value = if key == "rotation" {
+            "[0, 0, 0, 1]"
+        } else {
+            "[1, 1, 1]"
+        };
+        let lines = format!("{CAMERA_LINES}{CONE}instances = \"copies.csv\"\n{key} = {value}");
+        fault(
+            parse(&lines, folder.path(), &[]),
+            &format!("object.0.{key}: stands beside instances"),
+        );
     }
 }

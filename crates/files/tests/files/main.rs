@@ -8,6 +8,7 @@ mod drawings;
 mod map_accuracy;
 mod profiles;
 mod scenes;
+mod seeming;
 mod shape_maps;
 
 /// A file of the repository's `assets`.

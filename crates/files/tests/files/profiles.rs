@@ -30,7 +30,9 @@ fn what_cannot_be_read_is_refused_in_one_line() {
     };
     assert!(refusal(&folder.path().join("missing.svg")).contains("does not exist"));
     assert!(refusal(folder.path()).contains("folder"));
-    assert!(refusal(&file("empty.png", b"")).contains("give a PNG, JPEG or SVG"));
+    for name in ["empty.png", "empty.svg"] {
+        assert!(refusal(&file(name, b"")).contains("empty (0 bytes)"));
+    }
     assert!(refusal(&file("noise.svg", b"\x01\x02\x03")).contains("give a PNG, JPEG or SVG"));
     assert!(refusal(&file("text.svg", b"<svg")).contains("damaged"));
     let bottle = std::fs::read(crate::asset("profiles/bottle.png")).unwrap();
@@ -40,6 +42,54 @@ fn what_cannot_be_read_is_refused_in_one_line() {
     // A file is read by its content, not its name.
     let renamed = revmap_files::profile(file("bottle.svg", &bottle), ProfileAxis::Center);
     assert_eq!(renamed.unwrap(), asset("bottle.png"));
+}
+
+#[test]
+fn other_formats_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in [
+        ("GIF", &b"GIF89a\x01\0\x01\0"[..]),
+        ("WebP", b"RIFF\x24\0\0\0WEBPVP8 "),
+        ("BMP", b"BM\x46\0\0\0\0\0\0\0"),
+        ("TIFF", b"II*\0\x08\0\0\0"),
+        ("TIFF", b"MM\0*\0\0\0\x08"),
+        ("AVIF", b"\0\0\0\x1cftypavif"),
+        ("HEIC", b"\0\0\0\x1cftypheic"),
+        ("PDF", b"%PDF-1.7\n"),
+        ("PSD", b"8BPS\0\x01"),
+    ] {
+        let path = folder.path().join("profile.png");
+        std::fs::write(&path, bytes).unwrap();
+        let words = format!("is a {name} file, which is not read; convert it to PNG");
+        assert!(refusal(&path).contains(&words), "{}", refusal(&path));
+        let texture = revmap_files::color_map(&path).unwrap_err().to_string();
+        assert!(texture.contains(&words), "{texture}");
+        let scene = revmap_files::scene(folder.path().join("profile.png")).unwrap_err();
+        assert!(scene.to_string().contains(&words), "{scene}");
+    }
+}
+
+/// A file without end is refused before it fills the memory.
+#[cfg(target_os = "linux")]
+#[test]
+fn files_without_end_are_refused() {
+    let endless = Path::new("/dev/zero");
+    let texture = revmap_files::color_map(endless).unwrap_err().to_string();
+    let scene = revmap_files::scene(endless).unwrap_err().to_string();
+    for text in [refusal(endless), texture, scene] {
+        assert!(
+            text.contains("/dev/zero") && text.contains("1 GiB"),
+            "{text}"
+        );
+    }
+    // A large file is refused by its size alone.
+    let folder = tempfile::tempdir().unwrap();
+    let large = folder.path().join("large.png");
+    std::fs::File::create(&large)
+        .unwrap()
+        .set_len(3 << 30)
+        .unwrap();
+    assert!(refusal(&large).contains("1 GiB"));
 }
 
 /// Every real profile touches its axis, is inside its box, and is one patch of plausible size.

@@ -1,0 +1,254 @@
+//! What a profile seems to be: one warning for each fault, the same for drawings and pictures.
+
+use image::{GrayImage, Luma, Rgba, RgbaImage};
+use revmap::profile::Profile;
+use revmap_files::ProfileAxis::{self, Center, Left};
+use revmap_files::profile_from_bytes;
+
+const VASE: &str = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-16c-6-2-14-10-14-24c0-18 20-22 20-34c0-8-6-12-6-26z";
+const HALF: &str = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-8z";
+const OPEN_HALF: &str = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-8";
+
+/// A drawing of 100 x 100.
+fn svg(body: &str) -> Vec<u8> {
+    format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{body}</svg>")
+        .into_bytes()
+}
+
+fn path(d: &str, attributes: &str) -> Vec<u8> {
+    svg(&format!("<path d='{d}' {attributes}/>"))
+}
+
+fn png(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let picture = picture.into();
+    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
+}
+
+/// A drawing as a picture of `side` pixels: the colours of its body, black on white otherwise.
+fn pictured(bytes: &[u8], side: u32) -> Vec<u8> {
+    let drawing = profile_from_bytes(bytes, Left).unwrap();
+    let half = revmap_files::raster::pictured(&drawing, side, side, 64).unwrap();
+    let coverage = half.raster.unwrap().coverage;
+    png(GrayImage::from_fn(side, side, |x, y| {
+        Luma([(255.0 * (1.0 - coverage[(y * side + x) as usize])).round() as u8])
+    }))
+}
+
+fn read(bytes: &[u8], axis: ProfileAxis) -> Profile {
+    profile_from_bytes(bytes, axis).unwrap()
+}
+
+#[track_caller]
+fn warned(bytes: &[u8], axis: ProfileAxis, words: &str) {
+    let found = read(bytes, axis).warnings;
+    assert!(
+        found.len() == 1 && found[0].contains(words),
+        "{words}: {found:?}"
+    );
+}
+
+/// Wants the warning of a drawing and of its picture.
+#[track_caller]
+fn both_warned(drawing: &[u8], axis: ProfileAxis, words: &str) {
+    warned(drawing, axis, words);
+    warned(&pictured(drawing, 300), axis, words);
+}
+
+#[track_caller]
+fn both_silent(drawing: &[u8], axis: ProfileAxis) {
+    for bytes in [drawing, &pictured(drawing, 300)] {
+        assert_eq!(read(bytes, axis).warnings, [""; 0]);
+    }
+}
+
+#[test]
+fn usual_forms_bring_no_warning() {
+    both_silent(&path(VASE, ""), Center);
+    both_silent(&path(HALF, "transform='translate(-50)'"), Left);
+    // A tube and a torus beside the axis, a cup, a needle.
+    both_silent(&svg("<rect x='30' y='10' width='30' height='80'/>"), Left);
+    both_silent(&svg("<circle cx='50' cy='50' r='20'/>"), Left);
+    both_silent(&svg("<path d='M20 10h4v70h52v-70h4v80h-60z'/>"), Center);
+    both_silent(&svg("<path d='M0 5h1l40 80h-41z'/>"), Left);
+    // A conical and a round hollow end on the axis.
+    both_silent(&svg("<path d='M0 40L30 10H40V90H0z'/>"), Left);
+    both_silent(
+        &svg("<path d='M0 60A30 30 0 0 0 30 30V10H40V90H0z'/>"),
+        Left,
+    );
+}
+
+#[test]
+fn the_repositorys_files_bring_no_warning() {
+    let files = |folder: &str| {
+        let entries = std::fs::read_dir(crate::asset(folder)).unwrap();
+        entries.map(|entry| entry.unwrap().path())
+    };
+    let all = ["gallery", "scenes"].into_iter().flat_map(files);
+    for file in all.filter(|file| file.extension() == Some("toml".as_ref())) {
+        let scene = revmap_files::scene(&file).unwrap();
+        let found = revmap_files::warnings(&scene, 80, 60);
+        assert!(found.is_empty(), "{}: {found:?}", file.display());
+    }
+}
+
+#[test]
+fn outlines_in_place_of_shapes() {
+    for width in ["0.4", "1", "3"] {
+        let line = format!("fill='none' stroke='#000' stroke-width='{width}'");
+        for form in [VASE, HALF, OPEN_HALF] {
+            both_warned(&path(form, &line), Center, "fill the shape");
+        }
+        let moved = format!("{line} transform='translate(-50)'");
+        for form in [HALF, OPEN_HALF] {
+            both_warned(&path(form, &moved), Left, "fill the shape");
+        }
+    }
+    let thick = "fill='none' stroke='#000' stroke-width='6'";
+    both_warned(&path("M20 12H80V88H20z", thick), Center, "fill the shape");
+    let light = "fill='#ddd' stroke='#000' stroke-width='1'";
+    both_warned(&path(VASE, light), Center, "fill the shape");
+    let dashed = "fill='none' stroke='#000' stroke-width='1' stroke-dasharray='4 3'";
+    both_warned(&path(VASE, dashed), Center, "fill the shape");
+    let centre_line = "<path d='M50 2V98' stroke='#000' stroke-dasharray='6 2 1 2'/>";
+    let half = format!("<path d='{OPEN_HALF}' fill='none' stroke='#000'/>{centre_line}");
+    warned(&svg(&half), Center, "fill the shape");
+}
+
+#[test]
+fn a_white_cut_out_with_a_black_line_is_an_outline() {
+    let picture = RgbaImage::from_fn(200, 200, |x, y| {
+        let from = (f64::from(x) - 100.3).hypot(f64::from(y) - 100.0);
+        match from {
+            ..70.0 => Rgba([255, 255, 255, 255]),
+            70.0..73.0 => Rgba([0, 0, 0, 255]),
+            _ => Rgba([0; 4]),
+        }
+    });
+    let found = read(&png(picture), Center).warnings.join("\n");
+    assert!(
+        found.contains("fill the shape") && !found.contains("halves"),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_gap_beside_the_axis() {
+    let polygon = |gap: f64| {
+        let points = [[gap, 0.1], [0.3, 0.1], [0.15, 0.4], [0.25, 0.9], [gap, 0.9]];
+        format!(
+            "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n[[object]]\npolygon = {points:?}"
+        )
+    };
+    let of_polygon = |gap| {
+        let scene = revmap_files::SceneFile::parse(&polygon(gap), "")
+            .unwrap()
+            .scene(&[]);
+        scene.unwrap().objects[0].profile.clone()
+    };
+    let drawing = |gap: f64| {
+        let x = 100.0 * gap;
+        read(&path(&format!("M{x} 10H25L15 60L30 90H{x}z"), ""), Left)
+    };
+    for gap in [5e-7, 1e-6, 1e-5, 2e-5] {
+        for profile in [&*of_polygon(gap), &drawing(gap)] {
+            assert_eq!(profile.outline.bounds().unwrap().r_min, 0.0, "{gap}");
+            assert_eq!(profile.outline.surface_segments().count(), 4, "{gap}");
+            assert_eq!(profile.warnings, [""; 0]);
+        }
+    }
+    for gap in [1e-4, 1e-3, 5e-3] {
+        for profile in [&*of_polygon(gap), &drawing(gap)] {
+            let found = &profile.warnings;
+            assert!(
+                found.len() == 1 && found[0].contains(&format!("{gap} ")),
+                "{found:?}"
+            );
+        }
+    }
+    assert_eq!(of_polygon(0.02).warnings, [""; 0]);
+}
+
+#[test]
+fn a_seam_between_two_shapes() {
+    let stacked = |gap: f64| {
+        svg(&format!(
+            "<path d='M0 10H25V50H0z'/><path d='M0 {}H30V90H0z'/>",
+            50.0 + gap
+        ))
+    };
+    for gap in [3e-4, 3e-2] {
+        warned(&stacked(gap), Left, "are 0.0");
+    }
+    for gap in [0.0, -0.1, 2.0] {
+        assert_eq!(read(&stacked(gap), Left).warnings, [""; 0], "{gap}");
+    }
+    let beside = svg("<path d='M0 10H25V50H0z'/><path d='M25.001 20H30V90H25.001z'/>");
+    warned(&beside, Left, "are 0.00001");
+}
+
+#[test]
+fn silhouettes_that_are_not_as_the_axis_wants() {
+    let page = "<path d='M0 0H100V100H0z'/>";
+    both_warned(
+        &svg(&format!("{page}<path fill='#fff' d='{VASE}'/>")),
+        Center,
+        "light solid on dark",
+    );
+    both_warned(&path(VASE, ""), Left, "profile_axis = \"center\"");
+    for (degrees, words) in [(2, "tilted by "), (5, "tilted by "), (-5, "tilted by ")] {
+        both_warned(
+            &path(VASE, &format!("transform='rotate({degrees} 50 50)'")),
+            Center,
+            words,
+        );
+    }
+    for side in [1, -1] {
+        let turned = format!("transform='translate(50) scale({side} 1) translate(-50)'");
+        let handle =
+            "<path d='M68 55C90 50 90 84 66 82' fill='none' stroke='#000' stroke-width='4'/>";
+        let jug = format!("<g {turned}><path d='{VASE}'/>{handle}</g>");
+        both_warned(&svg(&jug), Center, "on one side alone");
+    }
+    both_warned(
+        &path(VASE, "transform='translate(8)'"),
+        Center,
+        "profile_axis = 0.58",
+    );
+}
+
+#[test]
+fn halves_and_lying_solids() {
+    let mirrored = "transform='translate(150) scale(-1 1)'";
+    both_warned(&path(HALF, mirrored), Left, "mirror it");
+    both_warned(
+        &path(HALF, "transform='translate(-20)'"),
+        Center,
+        "profile_axis = 0.3",
+    );
+    let lying = path(VASE, "transform='rotate(90 50 50)'");
+    both_warned(&lying, Center, "on its side");
+}
+
+/// A ball of one grey on another.
+fn ball(solid: u8, ground: u8, noise: u8) -> Vec<u8> {
+    png(GrayImage::from_fn(128, 128, |x, y| {
+        let within = (f64::from(x) - 63.5).hypot(f64::from(y) - 63.5) < 40.0;
+        let hash = (x * 131 + y * 7919).wrapping_mul(2_654_435_761) >> 16;
+        let grey = if within { solid } else { ground };
+        Luma([grey.saturating_add((hash % (u32::from(noise) + 1)) as u8)])
+    }))
+}
+
+#[test]
+fn low_contrast() {
+    warned(&ball(0, 120, 16), Center, "profile_threshold = 0.2");
+    warned(&ball(250, 120, 16), Center, "profile_threshold = 0.7");
+    let found = read(&ball(250, 120, 16), Center).warnings;
+    assert!(found[0].contains("profile_invert = true"), "{found:?}");
+    for (solid, ground) in [(0, 255), (90, 160), (118, 255), (0, 140), (60, 190)] {
+        assert_eq!(read(&ball(solid, ground, 0), Center).warnings, [""; 0]);
+    }
+}
