@@ -70,6 +70,9 @@ struct Row {
     rebuilt: u64,
 }
 
+/// The number of a frame that shows nothing, and why.
+type Blank = (u32, String);
+
 impl Animate {
     pub fn run(self) -> Result<()> {
         let Tracing::Device(_) = self.drawing.stage else {
@@ -136,7 +139,7 @@ impl Animate {
         varied: &[Vary],
         first: &Scene,
         progress: &Progress,
-    ) -> Result<(Vec<Row>, Vec<(u32, String)>)> {
+    ) -> Result<(Vec<Row>, Vec<Blank>)> {
         let mut settings = self.drawing.settings(Planes::Color);
         // Silhouettes are smoothed only if pictures are written.
         if self.samples.antialias(false) && self.output.is_some() {
