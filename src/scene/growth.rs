@@ -30,8 +30,8 @@ pub struct Growth {
 
 /// Sizes of boxes are multiples of this, object units.
 const STEP: f64 = 1.0 / 16.0;
-/// Largest growth of a box; the part that offsets add beyond it is cut.
-const MOST: f64 = 64.0;
+/// Largest growth of a box, object units; the part that offsets add beyond it is cut.
+pub const MOST_GROWTH: f64 = 64.0;
 /// Least distance that an offset leaves to a grown box's faces, object units.
 const MARGIN: f64 = 1e-3;
 /// A box shrinks to a solid whose height and diameter are below this part of the box's height.
@@ -65,7 +65,7 @@ impl Growth {
             if least <= 0.0 {
                 return 0.0;
             }
-            let steps = (((least + MARGIN) / STEP).ceil() * STEP).min(MOST);
+            let steps = (((least + MARGIN) / STEP).ceil() * STEP).min(MOST_GROWTH);
             // Rounds up to whole pixels of a picture.
             pixel.map_or(steps, |rows| (steps * rows).ceil() / rows)
         };

@@ -35,7 +35,7 @@ pub use crate::surface::Offset;
 pub use camera::CameraFrame;
 pub(crate) use clusters::Cluster;
 pub use copies::Copies;
-pub use growth::{GrownObject, GrownProfiles, Growth};
+pub use growth::{GrownObject, GrownProfiles, Growth, MOST_GROWTH};
 pub use object::{BumpForm, Clip, Material, Object, Specular, Texturing};
 
 use glam::{DQuat, DVec3};

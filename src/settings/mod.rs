@@ -230,7 +230,13 @@ impl FromStr for Tolerance {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        Self::new(text.parse().unwrap_or(f64::NAN))
+        match text.parse() {
+            Ok(pixels) => Self::new(pixels),
+            Err(_) => usage(
+                "tolerance",
+                format!("{text:?} is no number of pixels; give 0.25, or 0 for exact"),
+            ),
+        }
     }
 }
 

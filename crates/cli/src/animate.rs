@@ -11,6 +11,7 @@ use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::Planes;
 use revmap_files::SceneFile;
+use revmap_files::scene::blank;
 use revmap_lab::method::Edges;
 use revmap_lab::renderer::{MethodDevice, MethodRenderer};
 use std::ffi::OsStr;
@@ -30,7 +31,7 @@ pub struct Animate {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
     /// Turns the camera about its target by so many degrees in all
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES")]
     turn: Option<f64>,
     /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or
     /// lists of numbers; may be given more than once
@@ -69,6 +70,9 @@ struct Row {
     rebuilt: u64,
 }
 
+/// The number of a frame that shows nothing, and why.
+type Blank = (u32, String);
+
 impl Animate {
     pub fn run(self) -> Result<()> {
         let Tracing::Device(_) = self.drawing.stage else {
@@ -96,7 +100,7 @@ impl Animate {
         }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
-        let rows = self.draw(&device, &mut file, &varied, &first, &progress)?;
+        let (rows, blanks) = self.draw(&device, &mut file, &varied, &first, &progress)?;
         drop(progress);
         device.check()?;
         kept.save(&device);
@@ -108,6 +112,18 @@ impl Animate {
             if self.samples.count > 1 && self.output.is_none() {
                 warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
             }
+            let moves = |v: &Vary| v.from != v.to;
+            if self.frames > 1 && self.turn.unwrap_or(0.0) == 0.0 && !varied.iter().any(moves) {
+                warnings.push(
+                    "nothing moves, so all frames are equal; give --turn or --vary".to_owned(),
+                );
+            }
+            if let Some((n, why)) = blanks.first() {
+                let (count, all) = (blanks.len(), self.frames);
+                warnings.push(format!(
+                    "{count} of {all} frames are empty, the first is frame {n}: {why}"
+                ));
+            }
             warnings.iter().for_each(|w| output::warn(w));
         }
         self.tell(&device, &rows);
@@ -115,7 +131,7 @@ impl Animate {
     }
 
     /// Draws every frame: the scene is updated and drawn, and it is read back after its times were
-    /// measured.
+    /// measured. Returns the times, and a warning for each frame that was read and shows nothing.
     fn draw(
         &self,
         device: &Device,
@@ -123,7 +139,7 @@ impl Animate {
         varied: &[Vary],
         first: &Scene,
         progress: &Progress,
-    ) -> Result<Vec<Row>> {
+    ) -> Result<(Vec<Row>, Vec<Blank>)> {
         let mut settings = self.drawing.settings(Planes::Color);
         // Silhouettes are smoothed only if pictures are written.
         if self.samples.antialias(false) && self.output.is_some() {
@@ -132,7 +148,7 @@ impl Animate {
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.offscreen.prewarm()?;
-        let mut rows = Vec::new();
+        let (mut rows, mut blanks) = (Vec::new(), Vec::new());
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
             let scene = self.scene_at(file, varied, n)?;
@@ -157,8 +173,14 @@ impl Animate {
                         renderer.read()
                     })?;
                     revmap_files::write_png(&frame, picture)?;
+                    blanks.extend(blank(&scene, &frame).map(|why| (n, why)));
                 }
-                None => draw(&mut renderer, &scene)?,
+                None => {
+                    draw(&mut renderer, &scene)?;
+                    if n == 0 {
+                        blanks.extend(blank(&scene, &renderer.read()?).map(|why| (n, why)));
+                    }
+                }
             }
             let counts = (device.pipelines_compiled(), renderer.rebuild_count());
             (row.compiled, row.rebuilt) = (counts.0 - compiled, counts.1 - rebuilt);
@@ -166,7 +188,7 @@ impl Animate {
             rows.push(row);
             progress.report(n as usize + 1, self.frames as usize);
         }
-        Ok(rows)
+        Ok((rows, blanks))
     }
 
     /// The file of frame `n`, if pictures are written.
@@ -182,7 +204,13 @@ impl Animate {
         let part = f64::from(n) / f64::from(last);
         let mut sets = self.drawing.set.clone();
         sets.extend(varied.iter().map(|v| v.at(part)));
-        let mut scene = file.scene(&sets)?;
+        let mut scene = file.scene(&sets).map_err(|mut e| {
+            let key = e.key.as_deref().filter(|_| e.kind == ErrorKind::Usage);
+            if let Some(v) = varied.iter().find(|v| key == Some(&v.key)) {
+                e.key = Some(format!("--vary {}", v.key));
+            }
+            e
+        })?;
         if let Some(turn) = self.turn {
             // The last frame is one step before the first is repeated.
             let angle = (turn * f64::from(n) / f64::from(self.frames)).to_radians();
@@ -296,9 +324,15 @@ impl Vary {
     fn at(&self, part: f64) -> String {
         let pairs = self.from.iter().zip(&self.to);
         let values: Vec<f64> = pairs.map(|(a, b)| a + (b - a) * part).collect();
-        let list = format!("{values:?}");
-        let bare = list.trim_matches(['[', ']']);
-        format!("{}={}", self.key, if self.list { &list } else { bare })
+        // Keys of whole numbers take no 10.0.
+        let whole = |x: &f64| x.fract() == 0.0 && x.abs() < 1e15;
+        let texts = values.iter().map(|x| match whole(x) {
+            true => format!("{x}"),
+            false => format!("{x:?}"),
+        });
+        let bare = texts.collect::<Vec<_>>().join(", ");
+        let list = format!("[{bare}]");
+        format!("{}={}", self.key, if self.list { list } else { bare })
     }
 }
 
@@ -329,7 +363,7 @@ mod tests {
         let one = Vary::parse("object.0.extend=0:0.1").unwrap();
         assert_eq!(one.at(0.5), "object.0.extend=0.05");
         let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
-        assert_eq!(three.at(0.0), "camera.eye=[1.0, 2.0, -3.0]");
+        assert_eq!(three.at(0.0), "camera.eye=[1, 2, -3]");
         let bad = [
             "a",
             "a=1",

@@ -3,7 +3,7 @@
 
 use super::lists::Lists;
 use super::options::named;
-use super::progress::{Progress, interrupt};
+use super::progress::{Progress, interrupt, interrupted};
 use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -263,6 +263,10 @@ struct Session {
     device: Device,
     machine: Machine,
     out: PathBuf,
+    /// True if `out` was not there before.
+    made: bool,
+    /// True if the command line names `out`.
+    named: bool,
     quiet: bool,
 }
 
@@ -272,6 +276,9 @@ impl Session {
         let device = Device::open(lists.device.as_deref())?;
         let report = device.report();
         let machine = output::machine(report, &Lists::command());
+        // From here on an early end leaves no empty folder.
+        interrupt()?;
+        let made = !lists.out.as_ref().is_some_and(|out| out.exists());
         let out = lists.folder(&machine.folder())?;
         overrun::keep_folder(&out);
         overrun::try_out(lists.device.as_deref());
@@ -282,6 +289,8 @@ impl Session {
             device,
             machine,
             out,
+            made,
+            named: lists.out.is_some(),
             quiet: lists.quiet,
         })
     }
@@ -305,11 +314,16 @@ impl Session {
                 }
                 album.add(seen)
             },
-            passed: &mut |rows| {
-                folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved)
+            passed: &mut |rows| match rows {
+                [] => Ok(()),
+                _ => folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved),
             },
         };
-        let measured = measure(plan, &mut bench, &file.time, &mut observer)?;
+        let measured = measure(plan, &mut bench, &file.time, &mut observer);
+        if measured.is_err() && !self.out.join("results.csv").exists() {
+            folder::discard(&self.out, self.made)?;
+        }
+        let measured = measured?;
         if let Some(sheets) = &mut sheets {
             sheets.finish()?;
         }
@@ -370,7 +384,6 @@ impl Session {
         if !measured.interrupted {
             return Ok(());
         }
-        let message = "interrupted; it holds what was measured until then, run the command again for the rest";
-        Err(Error::new(ErrorKind::Other, message).in_file(&self.out))
+        Err(interrupted(&self.out, self.named))
     }
 }

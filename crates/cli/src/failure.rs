@@ -4,6 +4,7 @@
 use super::output;
 use super::progress::ended_by_signal;
 use revmap::error::{Error, ErrorKind};
+use revmap::gpu::DEVICE_VARIABLE;
 use std::process::ExitCode;
 
 /// Keys of the library, each with the option that sets it.
@@ -39,11 +40,19 @@ fn exit_code(kind: ErrorKind) -> u8 {
 
 fn text(mut error: Error) -> String {
     let kind = error.kind;
+    // A scene's key that has the name of an option.
+    let of_file = kind == ErrorKind::Content && error.file.is_some();
+    let meant = error.key.as_deref().and_then(option).filter(|_| of_file);
+    if let Some(option) = meant {
+        error.message += &format!("; it is the option {option} of the command line");
+    }
     error.key = error.key.map(|key| match option(&key) {
-        Some(option) => option.to_owned(),
+        Some(option) if meant.is_none() => option.to_owned(),
         // A key of the scene that was set on the command line.
-        None if kind == ErrorKind::Usage && !key.starts_with('-') => format!("--set {key}"),
-        None => key,
+        None if kind == ErrorKind::Usage && !key.starts_with('-') && key != DEVICE_VARIABLE => {
+            format!("--set {key}")
+        }
+        _ => key,
     });
     let named = error.key.as_ref().is_some_and(|key| key.starts_with('-'));
     format!("{error}{}", if named { "" } else { remedy(kind) })
@@ -73,9 +82,8 @@ pub fn wrong_usage(error: &clap::Error) -> ExitCode {
         error.kind(),
         clap::error::ErrorKind::DisplayHelp | clap::error::ErrorKind::DisplayVersion
     ) {
-        // A reader that closes the pipe early, such as `head`, causes no failure.
-        let _ = error.print();
-        return ExitCode::SUCCESS;
+        output::keep_fault(error.print());
+        return output::end();
     }
     if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         output::complain("names no command; give render or another one that `revmap --help` lists");
@@ -83,9 +91,14 @@ pub fn wrong_usage(error: &clap::Error) -> ExitCode {
         let mut line = one_line(&error.to_string());
         let value = error.get(clap::error::ContextKind::InvalidValue);
         if let Some(clap::error::ContextValue::String(value)) = value
+            && !line.contains("write it as")
             && let Some(point) = revmap_files::scene::decimal_comma(value)
         {
-            line += &format!("; write {point}");
+            // Whole numbers have no point.
+            line += &match line.contains("invalid digit") {
+                true => "; write a whole number".to_owned(),
+                false => format!("; write {point}"),
+            };
         }
         output::complain(&line);
     }
@@ -125,6 +138,11 @@ mod tests {
             assert_eq!(exit_code(kind), code);
             assert_eq!(text(Error::new(kind, "no").at_key(key)), wanted);
         }
+        let of_file = Error::new(ErrorKind::Content, "unknown key")
+            .at_key("size")
+            .in_file("a");
+        let wanted = "a: size: unknown key; it is the option --size of the command line";
+        assert_eq!(text(of_file), wanted);
         let lost = text(Error::new(ErrorKind::DeviceLost, "lost"));
         assert_eq!(lost, "lost; see --size, --max-steps");
     }

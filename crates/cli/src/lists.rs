@@ -51,10 +51,10 @@ pub struct Lists {
     pub map_format: Vec<MapFormat>,
     /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact
     /// [default: 0]
-    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = tolerance)]
+    #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', value_parser = tolerance)]
     pub tolerance: Vec<Tolerance>,
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]
-    #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', allow_negative_numbers = true, value_parser = elevation)]
+    #[arg(long, value_name = "DEGREES,...", value_delimiter = ',', value_parser = elevation)]
     pub elevation: Vec<f64>,
     /// Framing of the views. Whole: as the camera stands; the program's own solids fill 9 to 23 % of
     /// the picture. Close: a narrower field of view, in which the solid's box is a quarter larger

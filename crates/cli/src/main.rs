@@ -31,6 +31,7 @@ mod view;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use revmap::error::{Error, ErrorKind};
+use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -47,7 +48,7 @@ const AFTER_HELP: &str = "Examples:\n  \
     revmap bench --quick\n  \
     revmap render --help\n\n\
     Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
-feature. A failure is one line on standard error.";
+feature; 128 + N ended by the signal N. A failure is one line on standard error.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -93,6 +94,26 @@ impl Command {
 /// A panic is a bug of the program, reported in one line like every failure.
 const FAILED: u8 = 1;
 
+/// The words of the command line, each negative number joined to the option before it: clap takes
+/// `--turn -.5` and `--size -5x5` for two options.
+fn words() -> Vec<OsString> {
+    let mut words: Vec<OsString> = Vec::new();
+    for word in std::env::args_os() {
+        let text = word.to_string_lossy();
+        let number = text.strip_prefix('-').unwrap_or_default();
+        let number = number.strip_prefix('.').unwrap_or(number);
+        let option = words.last_mut().filter(|last| {
+            let last = last.to_string_lossy();
+            last.starts_with("--") && last.len() > 2 && !last.contains('=')
+        });
+        match option.filter(|_| number.starts_with(|c: char| c.is_ascii_digit())) {
+            Some(option) => option.push(format!("={text}")),
+            None => words.push(word),
+        }
+    }
+    words
+}
+
 fn no_threads(error: rayon::ThreadPoolBuildError) -> Error {
     let message =
         format!("no threads can be begun ({error}); give more memory, or allow more threads");
@@ -100,10 +121,11 @@ fn no_threads(error: rayon::ThreadPoolBuildError) -> Error {
 }
 
 fn main() -> ExitCode {
-    let program = match Program::try_parse() {
+    let program = match Program::try_parse_from(words()) {
         Ok(program) => program,
         Err(error) => return failure::wrong_usage(&error),
     };
+    progress::watch();
     overrun::watch();
     // If RUST_BACKTRACE is set, the usual panic message is kept. Otherwise a bug is one line too,
     // below.
@@ -119,7 +141,7 @@ fn main() -> ExitCode {
         program.command.run()
     };
     match catch_unwind(AssertUnwindSafe(run)) {
-        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Ok(())) => output::end(),
         Ok(Err(error)) => failure::report(error),
         Err(cause) => {
             let text = cause.downcast_ref::<String>().map(String::as_str);

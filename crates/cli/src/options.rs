@@ -75,7 +75,7 @@ pub struct Drawing {
     pub map_format: MapFormat,
     /// Allowed error of silhouettes and depths in pixels; 0 is exact [default: 0.25; 0 where an
     /// .exr is written]
-    #[arg(long, value_name = "PIXELS", allow_negative_numbers = true, value_parser = tolerance)]
+    #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
     /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
     /// before virtual before CPU]
@@ -310,9 +310,17 @@ pub fn tolerance(text: &str) -> std::result::Result<Tolerance, String> {
 
 /// `WIDTHxHEIGHT`, each from 1 to [`MAX_SIDE`].
 pub fn size(text: &str) -> std::result::Result<(u32, u32), String> {
-    let sides = text.split_once(['x', 'X']).ok_or("write it as 800x600")?;
-    let side = |side: &str, what: &str| match side.parse::<u64>() {
-        Ok(n) if (1..=u64::from(MAX_SIDE)).contains(&n) => Ok(n as u32),
+    let sides = text.split_once(['x', 'X']).ok_or_else(|| {
+        let numbers = text
+            .split([',', '*', ':', ' '])
+            .filter(|n| n.parse::<u32>().is_ok());
+        match numbers.collect::<Vec<_>>()[..] {
+            [width, height] => format!("write it as {width}x{height}"),
+            _ => "write it as 800x600".to_owned(),
+        }
+    })?;
+    let side = |side: &str, what: &str| match side.parse::<i64>() {
+        Ok(n) if (1..=i64::from(MAX_SIDE)).contains(&n) => Ok(n as u32),
         Ok(n) => Err(format!("the {what} is {n}; give 1 to {MAX_SIDE}")),
         Err(_) => Err(format!(
             "the {what} {side:?} is no number of pixels; write it as 800x600"
@@ -330,6 +338,9 @@ mod tests {
     fn sizes_are_read_and_bounded() {
         assert_eq!(size("800x600"), Ok((800, 600)));
         assert_eq!(size("1X16384"), Ok((1, 16384)));
+        assert_eq!(size("64,48"), Err("write it as 64x48".to_owned()));
+        let negative = "the width is -5; give 1 to 16384";
+        assert_eq!(size("-5x5"), Err(negative.to_owned()));
         let bad = "800 0x0 1x0 100000x100000 16385x1 -1x5 axb 1x2x3 99999999999999999999x1";
         for bad in bad.split(' ').chain([""]) {
             assert!(size(bad).is_err(), "{bad}");

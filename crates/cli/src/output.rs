@@ -2,17 +2,41 @@
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::DeviceReport;
-use revmap_files::destination;
+use revmap_files::{check_writable, destination};
 use revmap_lab::report::machine::Machine;
+use std::io::ErrorKind::BrokenPipe;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::OnceLock;
 
 /// The version, and the commit of a program that was built from a git checkout.
 pub const VERSION: &str = env!("REVMAP_VERSION");
 
-/// Prints a line of results on standard output. A closed standard output is not a failure.
+/// The first fault of standard output.
+static FAULT: OnceLock<std::io::Error> = OnceLock::new();
+
+/// Prints a line of results on standard output.
 pub fn result(line: &str) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+    keep_fault(writeln!(std::io::stdout(), "{line}"));
+}
+
+/// Notes a fault of standard output for [`end`]. A reader that closes the pipe early, such as `head`,
+/// causes none.
+pub fn keep_fault(written: std::io::Result<()>) {
+    if let Some(fault) = written.err().filter(|e| e.kind() != BrokenPipe) {
+        let _ = FAULT.set(fault);
+    }
+}
+
+/// The exit code of a command that is done: its results must have reached standard output.
+pub fn end() -> ExitCode {
+    keep_fault(std::io::stdout().flush());
+    let Some(fault) = FAULT.get() else {
+        return ExitCode::SUCCESS;
+    };
+    complain(&format!("standard output: cannot be written ({fault})"));
+    ExitCode::FAILURE
 }
 
 /// Prints results for programs: one JSON value, indented.
@@ -84,7 +108,7 @@ pub fn check<'a>(
         if files[..i].iter().any(|other| destination(other) == real) {
             return Err(usage("is named twice; name each file once".to_owned()));
         }
-        writable(&real, option).map_err(|e| e.in_file(file))?;
+        check_writable(file).map_err(|e| e.at_key(option).in_file(file))?;
     }
     spare(inputs.iter().copied(), files, option)
 }
@@ -114,26 +138,4 @@ pub fn spare<'a>(
 pub fn has_ending(file: &Path, ending: &str) -> bool {
     file.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-}
-
-/// Tries to make a file beside `file`, as the later write does.
-fn writable(file: &Path, option: &str) -> Result<()> {
-    let fail = |message: String| Error::new(ErrorKind::File, message).at_key(option);
-    if file.is_dir() {
-        return Err(fail("is a folder; name a file".to_owned()));
-    }
-    let parent = file
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    let folder = parent.unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(fail(format!(
-            "the folder {} does not exist; make it first",
-            folder.display()
-        )));
-    }
-    let probe = folder.join(format!(".revmap-probe-{}", std::process::id()));
-    let outcome = std::fs::File::create_new(&probe).map(drop);
-    let _ = std::fs::remove_file(&probe);
-    outcome.map_err(|e| fail(format!("cannot be written ({e}); choose another folder")))
 }

@@ -4,7 +4,8 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use revmap::error::{Error, ErrorKind, Result};
 use std::io::IsTerminal;
-use std::sync::atomic::AtomicBool;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -68,32 +69,56 @@ impl Drop for Progress {
     }
 }
 
-/// The flag that Ctrl-C and the signals TERM and HUP set after this call: long work ends early but
-/// cleanly. A second one ends the program at once.
-pub fn interrupt() -> Result<&'static AtomicBool> {
-    let set = interrupt::flag().as_ref().copied();
-    set.map_err(|why| {
-        let message = format!("interrupts cannot be watched for ({why}); run it again");
-        Error::new(ErrorKind::Other, message)
-    })
+/// Watches for Ctrl-C and the signals TERM and HUP from now on: each removes unfinished files and ends
+/// the program, but the first one leaves that to a command that called [`interrupt`].
+pub fn watch() {
+    // A command that needs it reports a failure.
+    let _ = interrupt::flag();
 }
 
-/// The exit code that shells give to a program ended by TERM or HUP, if one came. Ctrl-C leaves the
-/// code of a failure.
+/// The flag that the first of these signals sets after this call: long work ends early but cleanly.
+pub fn interrupt() -> Result<&'static AtomicBool> {
+    let set = interrupt::flag().as_ref().copied();
+    let set = set.map_err(|why| {
+        let message = format!("interrupts cannot be watched for ({why}); run it again");
+        Error::new(ErrorKind::Other, message)
+    });
+    interrupt::HANDLED.store(true, Ordering::SeqCst);
+    set
+}
+
+/// The exit code that shells give to a program ended by a signal, if one came.
 pub fn ended_by_signal() -> Option<u8> {
     interrupt::code()
 }
 
+/// The failure of a run that was ended early but keeps its results in the folder `out`, which the
+/// command line may have `named`.
+pub fn interrupted(out: &Path, named: bool) -> Error {
+    let again = if named { " with --overwrite" } else { "" };
+    let message = format!(
+        "interrupted; it holds what was done until then, for all run the command again{again}"
+    );
+    Error::new(ErrorKind::Other, message).in_file(out)
+}
+
+/// What a second signal costs.
+const ENDED_AT_ONCE: &str =
+    "ended at once by a second signal; its results are not complete, run the command again";
+
 #[cfg(unix)]
 mod interrupt {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
-    use std::sync::LazyLock;
+    use signal_hook::low_level::emulate_default_handler;
     use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+    use std::sync::{Arc, LazyLock};
 
     /// Shells add this to the number of a signal.
     const SIGNALLED: i32 = 128;
 
+    /// True if a command reads the flag.
+    pub static HANDLED: AtomicBool = AtomicBool::new(false);
     static STOP: AtomicBool = AtomicBool::new(false);
     /// The last of the signals.
     static SIGNAL: AtomicI32 = AtomicI32::new(0);
@@ -105,22 +130,27 @@ mod interrupt {
     }
 
     pub fn code() -> Option<u8> {
-        let signal = SIGNAL.load(Ordering::SeqCst);
-        let signal = Some(signal).filter(|s| [SIGTERM, SIGHUP].contains(s))?;
+        let signal = Some(SIGNAL.load(Ordering::SeqCst)).filter(|s| *s != 0)?;
         u8::try_from(SIGNALLED + signal).ok()
     }
 
-    /// The first signal sets the flag, a second one ends the program.
     fn watch() -> std::io::Result<()> {
+        // A file above the process's limit is an error of the write that passes it.
+        signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
         let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
         let mut signals = Signals::new(watched.filter(|signal| !is_ignored(*signal)))?;
         let wait = move || {
             for signal in signals.forever() {
                 SIGNAL.store(signal, Ordering::SeqCst);
-                if STOP.swap(true, Ordering::SeqCst) {
-                    revmap_files::remove_unfinished();
-                    signal_hook::low_level::exit(SIGNALLED + signal);
+                let handled = HANDLED.load(Ordering::SeqCst);
+                if !STOP.swap(true, Ordering::SeqCst) && handled {
+                    continue;
                 }
+                revmap_files::remove_unfinished();
+                if handled {
+                    crate::output::complain(super::ENDED_AT_ONCE);
+                }
+                let _ = emulate_default_handler(signal);
             }
         };
         std::thread::Builder::new().spawn(wait).map(drop)
@@ -142,15 +172,22 @@ mod interrupt {
     use std::sync::atomic::{AtomicBool, Ordering};
 
     /// The exit code that shells give to a program ended by an interrupt.
-    const INTERRUPTED: i32 = 130;
+    const INTERRUPTED: u8 = 130;
 
+    /// True if a command reads the flag.
+    pub static HANDLED: AtomicBool = AtomicBool::new(false);
     static STOP: AtomicBool = AtomicBool::new(false);
     static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
         let stop = || {
-            if STOP.swap(true, Ordering::Relaxed) {
-                revmap_files::remove_unfinished();
-                std::process::exit(INTERRUPTED);
+            let handled = HANDLED.load(Ordering::SeqCst);
+            if !STOP.swap(true, Ordering::SeqCst) && handled {
+                return;
             }
+            revmap_files::remove_unfinished();
+            if handled {
+                crate::output::complain(super::ENDED_AT_ONCE);
+            }
+            std::process::exit(INTERRUPTED.into());
         };
         ctrlc::set_handler(stop).map_err(|e| e.to_string())?;
         Ok(&STOP)
@@ -161,6 +198,6 @@ mod interrupt {
     }
 
     pub fn code() -> Option<u8> {
-        None
+        STOP.load(Ordering::SeqCst).then_some(INTERRUPTED)
     }
 }

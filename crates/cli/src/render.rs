@@ -95,6 +95,9 @@ impl Render {
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
         };
         picture.warnings = self.drawing.warnings(&scene);
+        picture
+            .warnings
+            .extend(revmap_files::scene::blank(&scene, &picture.frame));
         picture.warnings.extend(exhausted(&picture.frame));
         let faults = other.and_then(|s| folder::check_frame(s, &picture.frame).err());
         picture.warnings.extend(faults.map(|e| e.to_string()));

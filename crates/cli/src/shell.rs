@@ -61,7 +61,6 @@ impl Man {
     }
 }
 
-/// A reader that closes the pipe early causes no failure.
 fn print(text: &[u8]) {
-    let _ = std::io::stdout().write_all(text);
+    output::keep_fault(std::io::stdout().write_all(text));
 }

@@ -2,7 +2,7 @@
 
 use super::lists::Lists;
 use super::options::{MethodParser, searches};
-use super::progress::{Progress, interrupt};
+use super::progress::{Progress, interrupt, interrupted};
 use super::{output, overrun};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -62,6 +62,9 @@ impl Stability {
         let device = Device::open(self.device.as_deref())?;
         let about = device.report();
         let machine = output::machine(about, &Lists::command());
+        // From here on an early end leaves no empty folder.
+        let stop = interrupt()?;
+        let made = !self.out.as_ref().is_some_and(|out| out.exists());
         let out = match &self.out {
             Some(out) => {
                 folder::claim(out, self.overwrite || overrun::is_again(), [])?;
@@ -78,7 +81,6 @@ impl Stability {
             return self.random(&device, count, &out);
         }
         let progress = Progress::start("stability", self.quiet);
-        let stop = interrupt()?;
         let plan = Plan {
             cases: &chosen,
             solvers: &solvers,
@@ -91,6 +93,11 @@ impl Stability {
             !stop.load(Ordering::Relaxed)
         })?;
         drop(progress);
+        if outcome.trials.is_empty() && stop.load(Ordering::Relaxed) {
+            folder::discard(&out, made)?;
+            let message = "interrupted before the first picture; nothing was kept";
+            return Err(Error::new(ErrorKind::Other, message).in_file(out));
+        }
         report::write(&out, &chosen, &solvers, &outcome, &machine)?;
         let tables = [
             Some(report::table(&chosen, &solvers, &outcome)),
@@ -110,8 +117,7 @@ impl Stability {
             output::result(line);
         }
         if stop.load(Ordering::Relaxed) {
-            let message = "interrupted; it holds what was drawn until then, run the command again for the rest";
-            return Err(Error::new(ErrorKind::Other, message).in_file(out));
+            return Err(interrupted(&out, self.out.is_some()));
         }
         if !failures.is_empty() {
             let message = format!(

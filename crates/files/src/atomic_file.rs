@@ -1,10 +1,10 @@
 //! Files that are written completely or not at all: the data goes into a file beside the target,
-//! which is then renamed to the target's name.
+//! which is then renamed to the target's name. A few targets keep their place.
 
 use crate::file_fault;
 use revmap::error::Result;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -20,69 +20,127 @@ pub fn remove_unfinished() {
     }
 }
 
-/// Writes a file by `fill`, which gets a buffered writer that can seek.
+/// What is written: bytes in order, some at earlier places.
+pub trait Sink: Write + Seek {}
+
+impl<T: Write + Seek> Sink for T {}
+
+/// Writes a file by `fill`.
 ///
 /// The bytes go into a new file in the target's folder, are flushed to the disk, and only then get
 /// the target's name. A reader never sees half a file, and a failure leaves the old content. The
 /// permissions of a file that is replaced are kept. A symbolic link is followed, also if it leads to
-/// no file yet. Two kinds of targets cannot be replaced and are written directly: devices and pipes,
-/// and files on which another file system is mounted.
+/// no file yet.
+///
+/// Some targets would lose more than their content if they were replaced. They keep their place and
+/// get the bytes once all of them are in memory: devices and pipes, files with several names (hard
+/// links), files of another owner, files in a folder that takes no new ones, and files on which
+/// another file system is mounted.
 ///
 /// # Errors
 /// The errors of `fill`; [`ErrorKind::File`](revmap::error::ErrorKind::File) if the file cannot be
-/// made or written (folder missing, no permission, full disk). Both errors name the file.
+/// made or written (folder missing, no permission, read-only, full disk). Both errors name the file.
 pub fn write_atomically(
     target: &Path,
-    fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>,
+    fill: impl FnOnce(&mut dyn Sink) -> Result<()>,
 ) -> Result<()> {
-    let failed =
-        |what: &str, e: &io::Error| file_fault(format!("{what}: {}", reason(e))).in_file(target);
-    let real = destination(target);
-    let old = fs::metadata(&real).ok();
-    match &old {
-        Some(meta) if meta.is_dir() => {
-            return Err(file_fault("is a folder; give the name of a file").in_file(target));
+    let failed = |e| file_fault(reason("cannot be written", &e)).in_file(target);
+    match place(target).map_err(|e| e.in_file(target))? {
+        Place::Kept(real) => {
+            let mut bytes = Cursor::new(Vec::new());
+            fill(&mut bytes).map_err(|e| e.in_file(target))?;
+            overwrite(&real, &bytes.into_inner()).map_err(failed)
         }
-        Some(meta) if !meta.is_file() => {
-            let file = OpenOptions::new()
-                .write(true)
-                .open(&real)
-                .map_err(|e| failed("cannot be written", &e))?;
-            let mut writer = BufWriter::new(file);
+        Place::New(part, real) => {
+            let mut writer = BufWriter::new(part.file.try_clone().map_err(failed)?);
             fill(&mut writer).map_err(|e| e.in_file(target))?;
-            return writer.flush().map_err(|e| failed("cannot be written", &e));
+            writer.flush().map_err(failed)?;
+            finish(&part, &real).map_err(failed)
         }
-        _ => {}
     }
-    if real.file_name().is_none() {
-        return Err(file_fault("is not the name of a file").in_file(target));
-    }
-    let (file, part) = create_part(&real).map_err(|e| failed("cannot be created", &e))?;
-    let unfinished = |change: &dyn Fn(&mut Vec<PathBuf>)| {
-        change(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner));
+}
+
+/// Checks that [`write_atomically`] can write `target`, which stays as it is.
+///
+/// # Errors
+/// [`ErrorKind::File`](revmap::error::ErrorKind::File), without the file's name.
+pub fn check_writable(target: &Path) -> Result<()> {
+    place(target).map(drop)
+}
+
+/// Where the bytes of a file go first.
+enum Place {
+    /// Into the file itself.
+    Kept(PathBuf),
+    /// Into a file beside it, which then gets its name.
+    New(Part, PathBuf),
+}
+
+fn place(target: &Path) -> Result<Place> {
+    let failed = |e| file_fault(reason("cannot be written", &e));
+    let real = destination(target);
+    let old = match fs::metadata(target) {
+        Err(e) if e.kind() == io::ErrorKind::NotFound => None,
+        old => Some(old.map_err(failed)?),
     };
-    unfinished(&|parts| parts.push(part.clone()));
-    let mut writer = BufWriter::new(file);
-    let written = fill(&mut writer)
-        .map_err(|e| e.in_file(target))
-        .and_then(|()| {
-            let file = writer
-                .into_inner()
-                .map_err(|e| failed("cannot be written", e.error()))?;
-            if let Some(old) = &old {
-                // Some file systems have no permissions.
-                let _ = file.set_permissions(old.permissions());
-            }
-            // A full disk may be reported only here.
-            file.sync_all().map_err(|e| failed("cannot be written", &e))
-        })
-        .and_then(|()| replace(&part, &real).map_err(|e| failed("cannot be replaced", &e)));
-    if written.is_err() {
-        // Best effort: the first failure is the one to report.
-        let _ = fs::remove_file(&part);
+    match &old {
+        Some(old) if old.is_dir() => {
+            return Err(file_fault("is a folder; give the name of a file"));
+        }
+        // Pipes would wait for a reader here.
+        Some(old) if !old.is_file() => return Ok(Place::Kept(real)),
+        Some(old) if old.permissions().readonly() => {
+            let message = "is read-only; allow writing to it or name another file";
+            return Err(file_fault(message));
+        }
+        Some(_) => drop(OpenOptions::new().write(true).open(&real).map_err(failed)?),
+        None if real.file_name().is_none() => {
+            return Err(file_fault("is not the name of a file"));
+        }
+        None => {}
     }
-    unfinished(&|parts| parts.retain(|other| *other != part));
-    written
+    match (Part::create(&real), old) {
+        (Ok(part), Some(old)) if loses(&old, &part.file).map_err(failed)? => Ok(Place::Kept(real)),
+        (Ok(part), _) => Ok(Place::New(part, real)),
+        (Err(e), Some(_)) if e.kind() == io::ErrorKind::PermissionDenied => Ok(Place::Kept(real)),
+        (Err(e), _) => Err(file_fault(reason("cannot be created", &e))),
+    }
+}
+
+/// Returns true if `new` in place of `old` would have another owner, or leave other names behind.
+#[cfg(unix)]
+fn loses(old: &fs::Metadata, new: &File) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let new = new.metadata()?;
+    Ok(old.nlink() > 1 || (old.uid(), old.gid()) != (new.uid(), new.gid()))
+}
+
+#[cfg(not(unix))]
+fn loses(_: &fs::Metadata, _: &File) -> io::Result<bool> {
+    Ok(false)
+}
+
+/// Puts these bytes in place of a file's content. Pipes and devices have no length to cut and may
+/// have no disk to reach.
+fn overwrite(real: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = OpenOptions::new().write(true).open(real)?;
+    let plain = file.metadata()?.is_file();
+    if plain {
+        file.set_len(0)?;
+    }
+    file.write_all(bytes)?;
+    if plain { file.sync_all() } else { Ok(()) }
+}
+
+/// Gives a finished file the permissions and the name of `real`.
+fn finish(part: &Part, real: &Path) -> io::Result<()> {
+    if let Ok(old) = fs::metadata(real) {
+        // Some file systems have no permissions.
+        let _ = part.file.set_permissions(old.permissions());
+    }
+    // A full disk may be reported only here.
+    part.file.sync_all()?;
+    replace(&part.path, real)
 }
 
 /// Gives the finished `part` the name of `real`. A file on which another is mounted, as containers
@@ -92,8 +150,7 @@ fn replace(part: &Path, real: &Path) -> io::Result<()> {
         Err(e) if e.kind() == io::ErrorKind::ResourceBusy => {
             let mut file = OpenOptions::new().write(true).truncate(true).open(real)?;
             io::copy(&mut File::open(part)?, &mut file)?;
-            file.sync_all()?;
-            fs::remove_file(part)
+            file.sync_all()
         }
         other => other,
     }
@@ -132,35 +189,54 @@ pub fn destination(target: &Path) -> PathBuf {
 /// The errors of [`write_atomically`].
 pub fn write_bytes(target: &Path, bytes: &[u8]) -> Result<()> {
     write_atomically(target, |writer| {
-        let failed = |e| file_fault(format!("cannot be written: {}", reason(&e)));
+        let failed = |e| file_fault(reason("cannot be written", &e));
         writer.write_all(bytes).map_err(failed)
     })
 }
 
-/// A new file in the folder of `target`, with a name that no other writer uses.
-fn create_part(target: &Path) -> io::Result<(File, PathBuf)> {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    loop {
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+/// A file that is being written. It is removed when dropped, unless it has got its name.
+struct Part {
+    file: File,
+    path: PathBuf,
+}
+
+impl Part {
+    /// A new file in the folder of `target`, with a name that no other writer uses.
+    fn create(target: &Path) -> io::Result<Self> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = target.file_name().unwrap_or_default().to_string_lossy();
         // Long names leave no room for the ending.
         let stem: String = name.chars().take(48).collect();
-        let part = target.with_file_name(format!(".{stem}.{}-{count}.part", std::process::id()));
-        match OpenOptions::new()
-            .write(true)
-            .read(true)
-            .create_new(true)
-            .open(&part)
-        {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
-            other => return other.map(|file| (file, part)),
+        loop {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let path =
+                target.with_file_name(format!(".{stem}.{}-{count}.part", std::process::id()));
+            let mut parts = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut options = OpenOptions::new();
+            match options.write(true).read(true).create_new(true).open(&path) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(e),
+                Ok(file) => {
+                    parts.push(path.clone());
+                    return Ok(Self { file, path });
+                }
+            }
         }
     }
 }
 
-/// The system's reason, with a remedy if that is plain.
-fn reason(error: &io::Error) -> String {
-    match error.kind() {
+impl Drop for Part {
+    fn drop(&mut self) {
+        // Best effort: an earlier failure is the one to report.
+        let _ = fs::remove_file(&self.path);
+        let mut parts = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+        parts.retain(|other| *other != self.path);
+    }
+}
+
+/// What failed, the system's reason, and a remedy if that is plain.
+fn reason(what: &str, error: &io::Error) -> String {
+    let why = match error.kind() {
         io::ErrorKind::NotFound => "its folder does not exist; make it first".into(),
         io::ErrorKind::PermissionDenied => "no permission; choose another folder".into(),
         io::ErrorKind::StorageFull => {
@@ -168,7 +244,8 @@ fn reason(error: &io::Error) -> String {
         }
         io::ErrorKind::NotADirectory => "part of its path is not a folder".into(),
         _ => error.to_string(),
-    }
+    };
+    format!("{what}: {why}")
 }
 
 #[cfg(test)]
@@ -285,6 +362,45 @@ mod tests {
                 mode
             );
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_a_new_file_would_lose_is_kept() {
+        use std::os::unix::fs::{MetadataExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let [target, twin] = ["a", "b"].map(|name| folder.path().join(name));
+        fs::write(&target, b"a longer text").unwrap();
+        fs::hard_link(&target, &twin).unwrap();
+        write_bytes(&target, b"new").unwrap();
+        assert_eq!(fs::read(&twin).unwrap(), b"new");
+        fs::remove_file(&twin).unwrap();
+        // Another owner, if the tests may give files away.
+        if std::os::unix::fs::chown(&target, Some(12345), Some(54321)).is_ok() {
+            write_bytes(&target, b"newer").unwrap();
+            let meta = fs::metadata(&target).unwrap();
+            assert_eq!((meta.uid(), meta.gid()), (12345, 54321));
+            assert_eq!(fs::read(&target).unwrap(), b"newer");
+        }
+        symlink("circle", folder.path().join("circle")).unwrap();
+        assert!(write_bytes(&folder.path().join("circle"), b"x").is_err());
+        assert!(folder.path().join("circle").is_symlink());
+        assert_eq!(names(folder.path()), ["a", "circle"]);
+    }
+
+    #[test]
+    fn a_read_only_file_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a.bin");
+        fs::write(&target, b"old").unwrap();
+        let mut permissions = fs::metadata(&target).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&target, permissions).unwrap();
+        for refused in [check_writable(&target), write_bytes(&target, b"new")] {
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains("is read-only"), "{message}");
+        }
+        assert_eq!(fs::read(&target).unwrap(), b"old");
     }
 
     #[test]

@@ -48,7 +48,9 @@ pub mod scene;
 mod text;
 mod trace;
 
-pub use atomic_file::{destination, remove_unfinished, write_atomically, write_bytes};
+pub use atomic_file::{
+    Sink, check_writable, destination, remove_unfinished, write_atomically, write_bytes,
+};
 pub use maps::{
     BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
     shape_map, write_displacement_map, write_shape_map,

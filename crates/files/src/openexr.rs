@@ -73,7 +73,7 @@ pub(crate) fn layer<'a>(
 /// Writes a file of one layer; the error is one line.
 pub(crate) fn write_layer(
     layer: FloatLayer,
-    writer: &mut (impl Write + Seek),
+    writer: &mut (impl Write + Seek + ?Sized),
 ) -> std::result::Result<(), String> {
     let image = Image::from_layer(layer);
     let written = image.write().non_parallel().to_buffered(writer);

@@ -180,7 +180,13 @@ fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
 /// The default is the first by kind.
 pub(crate) fn choose(instance: &Instance, choice: Option<&str>) -> Result<Candidate> {
     let (mut all, variable) = (candidates(instance)?, variable());
-    let chosen = all.swap_remove(position(&all, choice.or(variable.as_deref()))?);
+    let position = position(&all, choice.or(variable.as_deref())).map_err(|mut e| {
+        if choice.is_none() && e.kind == ErrorKind::Usage {
+            e.key = Some(DEVICE_VARIABLE.to_owned());
+        }
+        e
+    });
+    let chosen = all.swap_remove(position?);
     refuse(&chosen)?;
     Ok(chosen)
 }

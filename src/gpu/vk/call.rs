@@ -82,7 +82,9 @@ fn remedy(kind: ErrorKind) -> &'static str {
             "; draw a smaller picture, fewer objects or fewer map rows"
         }
         ErrorKind::OutOfHostMemory => "; free memory of the host",
-        ErrorKind::Unsupported => "; open another device or update its driver",
+        ErrorKind::Unsupported => {
+            "; open another device, update its driver, or allow this process more memory"
+        }
         _ => "",
     }
 }

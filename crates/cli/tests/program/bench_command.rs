@@ -198,12 +198,13 @@ fn wrong_usage_is_told_in_one_line() {
     );
 }
 
-/// Ends a run by a signal after its first pass. Returns what it said, and its exit code.
-fn ended(bench: &Bench, command: &str, signal: &str) -> (String, Option<i32>) {
+/// Ends a run by a signal once a file of its folder is there. Returns what it said, and its exit
+/// code.
+fn ended(bench: &Bench, command: &str, signal: &str, file: &str) -> (String, Option<i32>) {
     let mut command = bench.command(&format!("{command} --out kept"));
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    let results = bench.path("kept/results.csv");
+    let results = bench.path("kept").join(file);
     let begin = Instant::now();
     while !results.exists() {
         assert!(
@@ -227,13 +228,32 @@ fn an_interrupt_keeps_what_was_measured() {
     let bench = Bench::new();
     // After the first pass of five or more there are results.
     let command = format!("bench {SPHERE} --size 800x600 --solver circle");
-    let (said, code) = ended(&bench, &command, "-INT");
-    assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("interrupted"), "{said}");
+    let (said, code) = ended(&bench, &command, "-INT", "results.csv");
+    assert_eq!(code, Some(130), "{said}");
+    assert!(
+        said.contains("interrupted") && said.contains("--overwrite"),
+        "{said}"
+    );
     let floors = if cfg!(feature = "shaderc") { 2 } else { 0 };
     assert_eq!(load(&bench, "kept/results.csv").records.len(), 4 + floors);
     let report = String::from_utf8(bench.read("kept/report.html")).unwrap();
     assert!(report.contains("was interrupted"));
+}
+
+/// A run that is ended before its first result leaves no folder, so that the same command works again.
+#[test]
+fn a_run_without_a_result_leaves_no_folder() {
+    let bench = Bench::new();
+    let measured = format!("{SPHERE} --size 800x600 --solver circle");
+    for command in [
+        format!("bench {measured}"),
+        format!("chart {measured}"),
+        "stability".to_owned(),
+    ] {
+        let (said, code) = ended(&bench, &command, "-INT", "");
+        assert_eq!(code, Some(130), "{command}: {said}");
+        assert!(!bench.path("kept").exists(), "{command}: {said}");
+    }
 }
 
 /// The signals by which systems end programs do as Ctrl-C, with the exit codes of shells.
@@ -243,7 +263,7 @@ fn a_run_that_is_ended_by_the_system_has_its_report() {
         let bench = Bench::new();
         let command =
             format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100");
-        let (said, code) = ended(&bench, &command, signal);
+        let (said, code) = ended(&bench, &command, signal, "results.csv");
         assert_eq!(code, Some(wanted), "{said}");
         assert!(said.contains("interrupted"), "{said}");
         bench.has(&["kept/report.html", "kept/machine.txt", "kept/excluded.csv"]);

@@ -32,6 +32,18 @@ fn wrong_usage() {
          render scene.toml -o a.png --quiet --verbose        | --quiet | --verbose
          render scene.toml -o a.png --set bevel              | --set | key=value
          render scene.toml -o a.png --set object.7.bevel=1   | --set object.7.bevel | has 1
+         render scene.toml -o a.png --size -5x5              | --size | give 1 to 16384
+         render scene.toml -o a.png --size 64,48             | --size | write it as 64x48;
+         render scene.toml -o a.png --samples -4             | --samples | 16
+         render scene.toml -o a.png --tolerance 50%          | --tolerance | 50%
+         render scene.toml -o a.png --tolerance -.5          | --tolerance | -0.5
+         animate scene.toml --frames -1                      | --frames | -1
+         bench --passes -1                                   | --passes | -1
+         bench --passes 0,5                                  | --passes | write a whole number
+         bench --elevation -100.5                            | --elevation | -90 to 90
+         animate scene.toml --frames 2 --vary object.0.position.2=0:1 | --vary object.0.position.2: the scene has no
+         render scene.toml -o a.png --set object.0.color.0=.5 | --set object.0.color.0 | set the whole list first
+         render scene.toml -o a.png --set light.0.radius=5   | --set light.0.radius | no [[light]]
          render scene.toml -o a.gif                          | a.gif | .png, .exr
          render scene.toml -o a                              | --output | .png, .exr
          render scene.toml -o a.png -o a.png                 | a.png | twice
@@ -42,6 +54,29 @@ fn wrong_usage() {
          compare a.exr                                       | <B> | --help
                                                              | render | --help",
     );
+}
+
+/// Numbers below 0 are values of the option before them.
+#[test]
+fn negative_numbers_are_values() {
+    let bench = Bench::new();
+    bench.done("animate scene.toml --frames 2 --turn -.5 --size 16x12");
+    bench.done(
+        "animate scene.toml --frames 3 --vary object.0.map_rows=10:20 --size 16x12 --solver live",
+    );
+    bench.refused("bench none.toml --elevation -.5,10", 1, &["none.toml"]);
+}
+
+/// Keys at the top of a scene that have the names of options.
+#[test]
+fn an_option_in_a_scene_is_named() {
+    let bench = Bench::new();
+    for key in ["size", "tolerance", "device", "solver"] {
+        bench.file("own.toml", format!("{key} = 1\n{CAMERA}{CONE}"));
+        let words = format!("own.toml: {key}: unknown key");
+        let option = format!("option --{key}");
+        bench.refused("render own.toml -o a.png", 1, &[&words, &option]);
+    }
 }
 
 #[test]

@@ -176,7 +176,7 @@ fn points_beyond_the_box_and_insets_that_leave_nothing_are_named() {
     let render = format!("render scene.toml -o out.png {SMALL}");
     warned(
         &bench,
-        &format!("{render} --set camera.eye=[200,0,0]"),
+        &format!("{render} --set camera.eye=[200,0,100]"),
         "object.0.polygon: points outside",
     );
     bench.file("scene.toml", format!("{CAMERA}{CONE}"));
@@ -223,6 +223,7 @@ fn headings_say_which_column_is_which() {
     let other = drawn("qw,qx,qy,qz,x,z,y,sx,sy,sz\n1,0,0,0,0,0.1,0.2,1,1,0.5\n");
     assert!(usual == other);
     for (text, words) in [
+        ("#x,y,z,w,qx,qy,qz,sx,sy,sz\n", "\"w\""),
         ("x,y,z,qx,qy,qz,w,sx,sy,sz\n", "\"w\""),
         ("x,y,z,sx,sy,sz\n", "lacks qx, qy, qz, qw"),
         ("x;y;z\n", "commas"),
@@ -361,6 +362,6 @@ fn a_number_is_the_index_of_a_device() {
     bench.refused_by(
         command.env("REVMAP_DEVICE", "5"),
         2,
-        &["there is no device 5"],
+        &["revmap: REVMAP_DEVICE: there is no device 5"],
     );
 }

@@ -18,5 +18,7 @@ mod shaders_command;
 mod shading_command;
 mod stability_command;
 mod submit_command;
+#[cfg(target_os = "linux")]
+mod system;
 mod warnings;
 mod words;

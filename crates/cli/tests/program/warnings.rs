@@ -32,11 +32,47 @@ fn scenes_that_look_unintended() {
         ("camera.fov_y=0.7", "camera.fov_y"),
         ("object.0.color=[200,100,0]", "object.0.color"),
         ("camera.target=[9,0,0.5]", "nothing is in view"),
+        (
+            "object.0.scale=[1e-6,1e-6,1e-6]",
+            "object.0 is 0.00 pixels large",
+        ),
+        (
+            "camera.eye=[9000,0,0.5]",
+            "pixels large; move camera.eye nearer",
+        ),
+        ("object.0.polygon=[[0,0],[1e-3,0],[0,1e-3]]", "pixels large"),
     ] {
         let arguments = format!("{RENDER} --set {set}");
         warned_once(&bench, &arguments, &[words]);
         assert!(lines(&bench.done(&format!("{arguments} --quiet"))).is_empty());
     }
+}
+
+/// A picture without a hit is named, though the geometry says that there is something.
+#[test]
+fn pictures_that_show_nothing() {
+    let bench = Bench::new();
+    bench.file("a.svg", SVG);
+    let render = "render a.svg -o out.png --size 32x24";
+    let background = "--set background=[0.2,0.3,0.4,1]";
+    for set in ["-0.0499", "-0.0499 --stage reference"] {
+        for more in ["", background] {
+            let arguments = format!("{render} --set object.0.extend={set} {more}");
+            warned_once(&bench, &arguments, &["extend"]);
+        }
+    }
+    let small = "--size 32x24 --set object.0.scale=[1e-6,1e-6,1e-6]";
+    for output in ["", " -o t"] {
+        let animate = format!("animate scene.toml --frames 2 --turn 90 {small}{output}");
+        warned_once(
+            &bench,
+            &animate,
+            &["frames are empty", "object.0 is 0.00 pixels large"],
+        );
+    }
+    let still = "animate scene.toml --frames 2 --size 32x24";
+    warned_once(&bench, still, &["nothing moves, so all frames are equal"]);
+    warned_once(&bench, &format!("{still} --turn 0"), &["--turn or --vary"]);
 }
 
 #[test]

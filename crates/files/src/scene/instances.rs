@@ -20,8 +20,9 @@ const ALL: &str = "x,y,z,qx,qy,qz,qw,sx,sy,sz";
 const MAX_COPIES: usize = 1 << 20;
 
 /// Reads placements. Empty lines and lines that begin with `#` are skipped. A first line that is no
-/// row of numbers is a heading: its names say which column is which. A heading behind `#` counts if
-/// it has exactly the known names. Rotations are normalised to unit length. A byte order mark, as
+/// row of numbers is a heading: its names say which column is which. A comment before the first row
+/// is a heading too if it lists names of columns ([`listed`]). Text behind a `#` in a row is a
+/// comment. Rotations are normalised to unit length. A byte order mark, as
 /// spreadsheets write it, is skipped.
 pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
     let bytes = read_bytes(file)
@@ -35,7 +36,7 @@ pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
 fn parse(text: &str) -> Result<Vec<Placement>> {
     let mut copies = Vec::new();
     let mut order: Option<[usize; COLUMNS]> = None;
-    for (number, line) in text.lines().enumerate() {
+    for (number, line) in lines(text).enumerate() {
         let line = line.trim();
         let at_line = |mut e: revmap::error::Error| {
             let column = e.key.take().map_or(String::new(), |key| format!(", {key}"));
@@ -43,11 +44,12 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
         };
         let may_be_heading = copies.is_empty() && order.is_none();
         if let Some(comment) = line.strip_prefix('#') {
-            if may_be_heading {
-                order = heading(comment).ok();
+            if let Some(names) = listed(comment).filter(|_| may_be_heading) {
+                order = Some(heading(&names).map_err(at_line)?);
             }
             continue;
         }
+        let line = line.split('#').next().unwrap_or(line).trim_end();
         if line.is_empty() {
             continue;
         }
@@ -58,7 +60,8 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
             return Err(at_line(content_fault(message)));
         }
         if may_be_heading && is_heading(line) {
-            order = Some(heading(line).map_err(at_line)?);
+            let names: Vec<_> = fields(line).collect();
+            order = Some(heading(&names).map_err(at_line)?);
             continue;
         }
         let read = row(line, order.as_ref()).and_then(|copy| copy.check().map(|()| copy));
@@ -78,6 +81,31 @@ fn parse(text: &str) -> Result<Vec<Placement>> {
     Ok(copies)
 }
 
+/// The lines of a text that ends them by LF, CR LF or CR.
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    let lines = text.split('\n');
+    lines.flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
+}
+
+/// The words of a comment from its first name of a column to its last, if it lists columns: it holds
+/// names alone, or four or more different ones.
+fn listed(comment: &str) -> Option<Vec<&str>> {
+    let words = comment.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+    let first = words.iter().position(|word| is_name(word))?;
+    let last = words.iter().rposition(|word| is_name(word))?;
+    let held = |name: &&&str| words.iter().any(|word| name.eq_ignore_ascii_case(word));
+    let (count, alone) = (
+        NAMES.iter().filter(held).count(),
+        words.iter().all(|w| is_name(w)),
+    );
+    (count >= 4 || alone && count > 1).then(|| words[first..=last].to_vec())
+}
+
+fn is_name(word: &str) -> bool {
+    NAMES.iter().any(|name| name.eq_ignore_ascii_case(word))
+}
+
 /// The fields of a line, without the quotes that some programs put about names.
 fn fields(line: &str) -> impl Iterator<Item = &str> {
     fn bare(field: &str) -> &str {
@@ -91,19 +119,18 @@ fn fields(line: &str) -> impl Iterator<Item = &str> {
 /// Returns true for a line with the name of a column, or of words alone.
 fn is_heading(line: &str) -> bool {
     let is_word = |field: &str| field.parse::<f64>().is_err();
-    let is_name = |field: &str| NAMES.iter().any(|name| name.eq_ignore_ascii_case(field));
     fields(line).all(is_word) || fields(line).any(is_name)
 }
 
 /// The column of each of [`NAMES`].
-fn heading(line: &str) -> Result<[usize; COLUMNS]> {
-    let found = |name: &str| fields(line).position(|field| field.eq_ignore_ascii_case(name));
+fn heading(fields: &[&str]) -> Result<[usize; COLUMNS]> {
+    let found = |name: &str| fields.iter().position(|f| f.eq_ignore_ascii_case(name));
     let columns: Vec<usize> = NAMES.iter().filter_map(|name| found(name)).collect();
     let missing = || {
         let names = NAMES.iter().filter(|name| found(name).is_none());
         names.copied().collect::<Vec<_>>().join(", ")
     };
-    let mut numbered = fields(line).enumerate();
+    let mut numbered = fields.iter().enumerate();
     let stranger = numbered.find(|(column, _)| !columns.contains(column));
     match (columns.as_slice().try_into(), stranger) {
         (Ok(columns), None) => Ok(columns),
@@ -181,6 +208,11 @@ mod tests {
             "# a comment\n\n\"sz\", \"sy\",sx,qw,qz,qy,qx,z,y,x\n6,5,4,0.9,0.3,0.2,0.1,3,2,1",
             "# z,y,x,qx,qy,qz,qw,sx,sy,sz\n3,2,1,0.1,0.2,0.3,0.9,4,5,6",
             "# x,y,z of the copies\n1,2,3,0.1,0.2,0.3,0.9,4,5,6",
+            "#x y z qw qx qy qz sx sy sz\n1,2,3,0.9,0.1,0.2,0.3,4,5,6",
+            "# columns: x,y,z,qw,qx,qy,qz,sx,sy,sz\n1,2,3,0.9,0.1,0.2,0.3,4,5,6",
+            "## a row is x,y,z,qw,qx,qy,qz,sx,sy,sz of a copy\n1,2,3,0.9,0.1,0.2,0.3,4,5,6",
+            "x,y,z,qw,qx,qy,qz,sx,sy,sz\r1,2,3,0.9,0.1,0.2,0.3,4,5,6\r",
+            "1,2,3,0.1,0.2,0.3,0.9,4,5,6 # the first",
         ] {
             assert_eq!(first(text), wanted, "{text}");
         }
@@ -220,6 +252,12 @@ mod tests {
             (",x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"\""),
             ("x,x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"x\""),
             ("id,pos_x\n1,2", "a column \"id\""),
+            (
+                "#x,y,z,w,qx,qy,qz,sx,sy,sz",
+                "line 1: the heading has a column \"w\"",
+            ),
+            ("#x,y,z,qw,qx,qy,qz", "line 1: the heading lacks sx, sy, sz"),
+            ("# qw,qx", "line 1: the heading lacks x, y, z"),
             ("x;y;z;qx\n", "line 1: holds no values with commas"),
             ("0,5;1;0;0;0;0;1;1;1;1", "write points in numbers"),
             ("1 2 3 0 0 0 1 1 1 1", "line 1: holds no values with commas"),

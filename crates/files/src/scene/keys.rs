@@ -171,7 +171,11 @@ impl<'a> Keys<'a> {
                 key,
                 "the file name is empty; name a file or leave the key out",
             )),
-            name => Ok(name.map(|name| folder.join(name))),
+            Some(name) => match path_hint(name).filter(|_| !folder.join(name).exists()) {
+                Some(hint) => Err(self.fail(key, format!("{name:?} {hint}"))),
+                None => Ok(Some(folder.join(name))),
+            },
+            None => Ok(None),
         }
     }
 
@@ -203,13 +207,14 @@ impl<'a> Keys<'a> {
         make: impl Fn(f64) -> T,
         slot: &mut T,
     ) -> Result<()> {
-        match self.table.get(key).and_then(number) {
-            Some(value) => {
-                *slot = make(value);
-                Ok(())
-            }
-            None => self.choose(key, names, slot),
+        if let Some(value) = self.table.get(key).and_then(number) {
+            *slot = make(value);
+            return Ok(());
         }
+        self.choose(key, names, slot).map_err(|mut e| {
+            e.message += ", or a number without quotes";
+            e
+        })
     }
 
     /// A list of pairs of numbers, of any length.
@@ -243,6 +248,22 @@ impl<'a> Keys<'a> {
     }
 }
 
+/// What is meant by a file name that is no path, and what to write for it.
+pub(super) fn path_hint(name: &str) -> Option<&'static str> {
+    if name == "-" {
+        return Some("is no file; write /dev/stdin for standard input");
+    }
+    if name.starts_with('~') {
+        return Some("is not there, and ~ stands for no folder here; write the whole path");
+    }
+    if name.contains("://") {
+        return Some("is an address; download the file and name it");
+    }
+    let escaped = name.contains(char::is_control);
+    escaped
+        .then_some("holds what TOML makes of a \\; write / in paths, or single quotes about them")
+}
+
 /// A value as messages show it: its type, and the value itself if it is short.
 fn describe(value: &Value) -> String {
     match value {
@@ -267,6 +288,7 @@ fn describe(value: &Value) -> String {
 /// use revmap_files::scene::decimal_comma;
 /// assert_eq!(decimal_comma("0,05").as_deref(), Some("0.05"));
 /// assert_eq!(decimal_comma("1,2,3"), None);
+/// assert_eq!(decimal_comma("1,000").as_deref(), Some("1.0 or 1000"));
 /// ```
 #[must_use]
 pub fn decimal_comma(text: &str) -> Option<String> {
@@ -275,7 +297,14 @@ pub fn decimal_comma(text: &str) -> Option<String> {
     let unsigned = whole.strip_prefix(['+', '-']).unwrap_or(whole);
     let is_number = digits(part) && (unsigned.is_empty() || digits(unsigned));
     let point = format!("{whole}.{part}").parse::<f64>().ok();
-    point.filter(|_| is_number).map(|x| format!("{x}"))
+    let point = point.filter(|_| is_number)?;
+    // A comma may stand between thousands, too.
+    let thousands =
+        part.len() == 3 && (1..=3).contains(&unsigned.len()) && !unsigned.starts_with('0');
+    Some(match thousands {
+        true => format!("{point:?} or {whole}{part}"),
+        false => format!("{point}"),
+    })
 }
 
 /// The message for an unknown key.

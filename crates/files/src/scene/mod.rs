@@ -12,7 +12,7 @@ mod reader;
 mod warnings;
 
 pub use keys::decimal_comma;
-pub use warnings::warnings;
+pub use warnings::{blank, warnings};
 
 use crate::pixels::foreign;
 use crate::profile::is_profile;
@@ -20,7 +20,7 @@ use crate::{file_fault, read_bytes, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::scene::{Camera, Clip, Scene};
+use revmap::scene::{Camera, Clip, MOST_GROWTH, Scene};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -55,7 +55,11 @@ impl SceneFile {
         let folder = file.parent().unwrap_or(Path::new(""));
         let bytes = read_bytes(file).map_err(|e| {
             file_fault(format!(
-                "cannot be read ({e}); give a scene in TOML, or a profile"
+                "cannot be read ({e}); {}",
+                keys::path_hint(&file.to_string_lossy()).map_or(
+                    "give a scene in TOML, or a profile".to_owned(),
+                    |hint| format!("it {hint}")
+                )
             ))
             .in_file(file)
         })?;
@@ -117,13 +121,14 @@ impl SceneFile {
         let of_object = |set: &&String| set.trim_start().starts_with("object.");
         let sets: Vec<String> = sets.iter().filter(of_object).cloned().collect();
         let scene = self.reader.scene(&overrides::applied(&self.root, &sets)?)?;
+        scene.check()?;
         let Some(object) = scene.objects.first() else {
             return Ok(());
         };
         let offset = &object.offset;
         let wider = offset.extend + offset.bevel * offset.chamfer.min(1.0);
         let wider = if object.clip == Clip::None {
-            wider.max(0.0)
+            wider.clamp(0.0, MOST_GROWTH)
         } else {
             0.0
         };
@@ -220,7 +225,45 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let before = text.get(..start).unwrap_or("");
     let line = before.matches('\n').count() + 1;
     let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-    file_fault(format!("is not TOML: {message}")).at_key(format!("line {line}, column {column}"))
+    let spanned = error.span().and_then(|span| text.get(span)).unwrap_or("");
+    let duplicate = (message == "duplicate key").then(|| format!(" `{}`", spanned.trim()));
+    let whole = text.lines().nth(line - 1).unwrap_or("");
+    let remedy = spelling(whole).map_or(String::new(), |spelled| format!("; {spelled}"));
+    let message = match foreign(text) {
+        Some(what) => what.to_owned(),
+        None => format!(
+            "is not TOML: {message}{}{remedy}",
+            duplicate.unwrap_or_default()
+        ),
+    };
+    file_fault(message).at_key(format!("line {line}, column {column}"))
+}
+
+/// How to write the value of a line that TOML does not take.
+fn spelling(line: &str) -> Option<String> {
+    let value = line.split_once('=')?.1;
+    if value.contains('"') && value.contains('\\') {
+        return Some("write / in paths, or single quotes about them".to_owned());
+    }
+    let value = value.split('#').next().unwrap_or(value).trim();
+    let plain = decimal_comma(value).or_else(|| overrides::with_plain_numbers(value))?;
+    (plain != value).then(|| format!("write {plain}"))
+}
+
+/// What a text is that cannot be meant as TOML.
+fn foreign(text: &str) -> Option<&'static str> {
+    let bare_cr = |text: &str| text.replace("\r\n", "").contains('\r');
+    if text.contains('\0') {
+        Some(
+            "holds zero bytes, as no scene in TOML does; save it in UTF-8, or give a PNG, JPEG or SVG",
+        )
+    } else if bare_cr(text) {
+        Some("has line ends of CR alone, which TOML does not know; save it with LF or CR LF")
+    } else if !text.contains('=') && !text.contains('[') {
+        Some("is neither a scene in TOML, of lines `key = value`, nor a PNG, JPEG or SVG")
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]

@@ -37,6 +37,17 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
     let [step, below @ ..] = steps else {
         return Ok(());
     };
+    let numbered = below.first().is_some_and(|b| b.parse::<usize>().is_ok());
+    if numbered && !table.contains_key(*step) {
+        return Err(match below {
+            [_] => format!(
+                "the scene has no `{step}` to change; set the whole list first, as in {step}=[0, 0, 0]"
+            ),
+            _ => format!(
+                "the scene has no [[{step}]] to change; add one to the file, or set {step}=[{{}}] first"
+            ),
+        });
+    }
     if below.is_empty() {
         table.insert((*step).to_owned(), value);
         return Ok(());
@@ -45,13 +56,18 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
     match (entry.or_insert_with(|| Table::new().into()), below) {
         (Value::Table(inner), _) => put(inner, below, value),
         (Value::Array(items), [last]) => {
-            let which = match items.iter().any(Value::is_table) {
-                true => format!("{step}.0.{last}"),
-                false => format!("{step}.0"),
+            let (count, tables) = (items.len(), items.iter().any(Value::is_table));
+            let index = last.parse::<usize>().ok();
+            let message = match (index, tables) {
+                (Some(i), true) if i < count => {
+                    format!("is a table; name a key of it, as in {step}.{i}.KEY")
+                }
+                (Some(_), _) => format!("is not there: `{step}` has {count}, counted from 0"),
+                (None, true) => format!("`{step}` is a list; say which: {step}.0.{last}"),
+                (None, false) => format!("`{step}` is a list; say which: {step}.0"),
             };
-            let item = last.parse().ok().and_then(|i: usize| items.get_mut(i));
-            let item = item.filter(|item| !item.is_table());
-            *item.ok_or_else(|| format!("`{step}` is a list; say which: {which}"))? = value;
+            let item = index.and_then(|i| items.get_mut(i));
+            *item.filter(|item| !item.is_table()).ok_or(message)? = value;
             Ok(())
         }
         (Value::Array(items), [index, below @ ..]) => {
@@ -79,9 +95,9 @@ fn parse(text: &str) -> Value {
         .unwrap_or_else(|| Value::String(text.to_owned()))
 }
 
-/// The text with every number spelled as TOML has it: `.5`, `5.`, `007` become `0.5`, `5.0`, `7`.
-/// `None` for text with quotes, in which no number is meant.
-fn with_plain_numbers(text: &str) -> Option<String> {
+/// The text with every number spelled as TOML has it: `.5`, `5.`, `007` become `0.5`, `5.0`, `7`, and
+/// `True` becomes `true`. `None` for text with quotes, in which no number is meant.
+pub(super) fn with_plain_numbers(text: &str) -> Option<String> {
     let separates = |c: char| "[],".contains(c) || c.is_whitespace();
     let word = |part: &str| {
         let (word, end) = match part.strip_suffix(separates) {
@@ -94,8 +110,11 @@ fn with_plain_numbers(text: &str) -> Option<String> {
     parts.map(|parts| parts.map(word).collect())
 }
 
-/// A decimal number as TOML spells it.
+/// A decimal number, true or false as TOML spells it.
 fn plain_number(word: &str) -> Option<String> {
+    if ["true", "false"].contains(&word.to_ascii_lowercase().as_str()) {
+        return Some(word.to_ascii_lowercase());
+    }
     let unsigned = word.strip_prefix(['+', '-']).unwrap_or(word);
     if !unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
         return None; // a word, such as inf
@@ -143,6 +162,7 @@ mod tests {
                     Value::Array(vec![Value::Float(1.0), Value::Integer(1)]),
                 ]),
             ),
+            ("True", Value::Boolean(true)),
             ("07.png", Value::String("07.png".into())),
             ("./.5", Value::String("./.5".into())),
             ("1 .5", Value::String("1 .5".into())),
@@ -174,6 +194,11 @@ mod tests {
         ] {
             apply(&mut root, assignment).unwrap();
         }
+        let refused = apply(&mut root, "camera.eye.3=1").unwrap_err().to_string();
+        assert!(
+            refused.ends_with("`eye` has 3, counted from 0"),
+            "{refused}"
+        );
         assert_eq!(root["object"][0]["bevel"], Value::Integer(0));
         assert_eq!(root["object"][1]["bevel"], Value::Float(0.5));
         assert_eq!(root["camera"]["eye"].as_array().unwrap().len(), 3);
@@ -194,6 +219,12 @@ mod tests {
                 "object.bevel=1",
                 "object.bevel: `object` is a list; say which: object.0.bevel",
             ),
+            ("object.0=1", "object.0: is a table; name a key of it"),
+            (
+                "camera.up.2=1",
+                "no `up` to change; set the whole list first",
+            ),
+            ("light.0.radius=1", "no [[light]] to change; add one"),
             ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),
             ("camera..x=1", "a part of the key is empty"),
             ("=1", "a part of the key is empty"),

@@ -307,8 +307,74 @@ fn faults_of_the_grammar_name_the_line() {
     fault(parse("[camera]\neye = [1, 2\nfov_y = 1", "", &[]), "line 3");
     fault(
         parse("[camera]\nup = 1\nup = 2", "", &[]),
-        "line 3, column 1: is not TOML",
+        "line 3, column 1: is not TOML: duplicate key `up`",
     );
+}
+
+#[test]
+fn values_that_people_write_otherwise_are_spelled() {
+    for (line, wanted) in [
+        ("extend = .1", "line 6, column 10: is not TOML: "),
+        ("extend = .1", "; write 0.1"),
+        ("extend = 5. # wide", "; write 5.0"),
+        ("map_rows = 07", "; write 7"),
+        ("extend = 0,5", "; write 0.5"),
+        ("bevel = 1,000", "; write 1.0 or 1000"),
+        ("color = [.5, 1., 0]", "; write [0.5, 1.0, 0]"),
+        ("profile_invert = True", "; write true"),
+        (
+            "color_map = \"C:\\maps\\a.png\"",
+            "; write / in paths, or single quotes",
+        ),
+        (
+            "color_map = \"C:\\new.png\"",
+            "write / in paths, or single quotes",
+        ),
+        (
+            "color_map = \"~/a.png\"",
+            "object.0.color_map: \"~/a.png\" is not there, and ~",
+        ),
+        (
+            "color_map = \"https://a.b/c.png\"",
+            "is an address; download",
+        ),
+        ("color_map = \"-\"", "/dev/stdin"),
+        (
+            "profile_axis = \"0.5\"",
+            "\"center\", or a number without quotes",
+        ),
+    ] {
+        let object = match line.starts_with("profile_axis") {
+            true => "[[object]]\nprofile = \"none.svg\"\n",
+            false => CONE,
+        };
+        let text = format!("{CAMERA_LINES}{object}{line}");
+        fault(parse(&text, "", &[]), wanted);
+    }
+    let scene = format!("{CAMERA_LINES}{CONE}");
+    fault(
+        parse(&scene.replace('\n', "\r"), "", &[]),
+        "line ends of CR alone",
+    );
+    let wide: String = scene.chars().flat_map(|c| [c, '\0']).collect();
+    fault(parse(&wide, "", &[]), "holds zero bytes");
+    fault(
+        parse("1,2,3\n4,5,6\n", "", &[]),
+        "is neither a scene in TOML",
+    );
+}
+
+#[test]
+fn a_value_that_moves_the_chosen_camera_is_named_by_its_own_key() {
+    let folder = folder();
+    let file = folder.path().join("half.spherical.png");
+    let set = |value: &str| {
+        let set = format!("object.0.extend={value}");
+        SceneFile::open(&file).unwrap().scene(&[set])
+    };
+    fault(set("inf"), "object.0.extend: is inf");
+    fault(set("1e400"), "object.0.extend: is inf");
+    assert!(set("1e8").is_ok());
 }
 
 #[test]

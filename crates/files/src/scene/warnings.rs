@@ -1,7 +1,8 @@
 //! Warnings about a scene that is allowed but looks unintended.
 
 use glam::DVec3;
-use revmap::scene::{Camera, CameraFrame, Object, Scene, Shadow};
+use revmap::frame::Frame;
+use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene, Shadow};
 use revmap::surface::ContourSource;
 
 /// A field of view below this many degrees looks like one in radians.
@@ -10,6 +11,8 @@ const NARROW: f64 = 2.0;
 const BRIGHT: f32 = 16.0;
 /// More solids than this cast shadows slowly: 10,000 on 80 x 60 pixels took a minute and a half.
 const CROWD: usize = 1000;
+/// A background is stored with an error below this.
+const ROUNDING: f32 = 1.0 / 256.0;
 
 /// Warnings for a picture of `width x height` pixels, one sentence each, with the key. The
 /// causes are a field of view that looks like radians, colours above 1,
@@ -55,6 +58,13 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
             "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
         ));
     }
+    found.extend(unseen(scene, width, height));
+    found
+}
+
+/// Insets that leave nothing, and an empty view.
+fn unseen(scene: &Scene, width: u32, height: u32) -> Vec<String> {
+    let mut found = Vec::new();
     let left = |object: &&Object| object.offset.extend >= 0.0 || !is_empty(object);
     for (i, object) in scene.objects.iter().enumerate().filter(|(_, o)| !left(o)) {
         let inset = -object.offset.extend;
@@ -69,6 +79,70 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
         );
     }
     found
+}
+
+/// A warning about a picture of the scene that shows nothing but the background, with the best reason
+/// that is known. `None` where [`warnings`] gives one.
+#[must_use]
+pub fn blank(scene: &Scene, frame: &Frame) -> Option<String> {
+    let same = |(a, b): (&f32, &f32)| (a - b).abs() < ROUNDING;
+    let empty = |c: &[f32; 4]| c.iter().zip(&scene.background).all(same);
+    let hit = frame.distance.iter().any(|d| d.is_finite());
+    if hit || !frame.color.iter().all(empty) {
+        return None;
+    }
+    let (width, height) = (frame.width, frame.height);
+    let known = unseen(scene, width, height);
+    known.is_empty().then(|| {
+        let why = reason(scene, width, height);
+        format!("the picture shows nothing but the background: {why}")
+    })
+}
+
+/// Why no pixel of a view with objects in it shows one.
+fn reason(scene: &Scene, width: u32, height: u32) -> String {
+    let objects = || scene.objects.iter().enumerate();
+    let sizes = objects().map(|(i, object)| (i, pixels(&scene.camera, object, width, height)));
+    let largest = sizes.max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((i, size)) = largest.filter(|(_, size)| *size < 1.0) {
+        return format!(
+            "object.{i} is {size:.2} pixels large; move camera.eye nearer, or give a larger scale"
+        );
+    }
+    let offset = objects().find_map(|(i, object)| {
+        let Offset { extend, bevel, .. } = object.offset;
+        let keys = [
+            ("extend", extend < 0.0),
+            ("bevel", bevel > 0.0),
+            ("extend", extend > 0.0),
+        ];
+        let key = keys.iter().find(|(_, given)| *given)?.0;
+        Some(format!(
+            "object.{i}.{key} leaves no surface in view; give a smaller one"
+        ))
+    });
+    offset.unwrap_or("change camera.eye, camera.target, or the objects' position and scale".into())
+}
+
+/// Pixels across or down of an object's largest copy; infinite beside or behind the eye.
+fn pixels(camera: &Camera, object: &Object, width: u32, height: u32) -> f64 {
+    let bounds = object.profile.outline.bounds();
+    let (Ok(camera), Some(bounds)) = (CameraFrame::new(camera, width, height), bounds) else {
+        return f64::INFINITY;
+    };
+    let grown = (object.offset.extend + object.offset.bevel).max(0.0);
+    let (wide, high) = (bounds.r_max + grown, bounds.z_max - bounds.z_min + grown);
+    let of_copy = |p: &Placement| {
+        let depth = (p.position - camera.eye).dot(camera.forward);
+        let size = (p.scale * DVec3::new(2.0 * wide, 2.0 * wide, high))
+            .abs()
+            .max_element();
+        match depth > size {
+            true => size / (depth * camera.right.length()),
+            false => f64::INFINITY,
+        }
+    };
+    object.placements().iter().map(of_copy).fold(0.0, f64::max)
 }
 
 /// Returns true if the offset leaves no surface within the box.
@@ -160,6 +234,28 @@ mod tests {
         );
         two.objects[1].offset.extend = -0.02;
         assert_eq!(warnings(&two, 80, 60), [""; 0]);
+    }
+
+    #[test]
+    fn a_blank_picture_has_a_reason() {
+        let mut frame = Frame::new(80, 60, [0.0; 4]).unwrap();
+        let mut tiny = scene();
+        tiny.objects[0].placement.scale = DVec3::splat(1e-6);
+        let mut inset = scene();
+        inset.objects[0].offset.extend = -0.05;
+        for (scene, words) in [
+            (&tiny, "object.0 is 0.00 pixels large"),
+            (&inset, "object.0.extend leaves no surface in view"),
+            (&scene(), "change camera.eye"),
+        ] {
+            let found = blank(scene, &frame).unwrap();
+            assert!(found.contains(words), "{found}");
+        }
+        // The scene's own warnings name the reason.
+        inset.objects[0].offset.extend = -0.9;
+        assert_eq!(blank(&inset, &frame), None);
+        frame.color[7] = [0.0, 0.0, 0.0, 0.2];
+        assert_eq!(blank(&tiny, &frame), None);
     }
 
     #[test]

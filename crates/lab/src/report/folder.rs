@@ -109,6 +109,22 @@ fn clear(folder: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
+/// Removes what a run without a result wrote: all of `folder` if the run has `made` it, else the run's
+/// own files.
+///
+/// # Errors
+/// [`ErrorKind::File`].
+pub fn discard(folder: &Path, made: bool) -> Result<()> {
+    let removed = match made {
+        true => std::fs::remove_dir_all(folder),
+        false => clear(folder),
+    };
+    removed.map_err(|e| {
+        let message = format!("the files of the run cannot be removed ({e})");
+        Error::new(ErrorKind::File, message).in_file(folder)
+    })
+}
+
 /// Makes a folder and those above it.
 pub fn make(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|e| {
@@ -273,7 +289,13 @@ mod tests {
         assert!(out.join("results.csv").exists() && out.join("pictures/a.png").exists());
         claimed(true).unwrap();
         assert!(!out.join("results.csv").exists() && !out.join("pictures/a.png").exists());
-        assert!(out.join("notes.txt").exists() && out.join("pictures/own.txt").exists());
+        let own = || out.join("notes.txt").exists() && out.join("pictures/own.txt").exists();
+        assert!(own());
+        write_text(&out.join("results.csv"), "empty").unwrap();
+        discard(&out, false).unwrap();
+        assert!(own() && !out.join("results.csv").exists());
+        discard(&out, true).unwrap();
+        assert!(!out.exists());
     }
 
     #[test]

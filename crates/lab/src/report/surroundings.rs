@@ -13,7 +13,7 @@ const PREFIXES: [&str; 24] = [
     "GALLIUM_",
     "GALLIVM_",
     "INTEL_DEBUG",
-    "LD_PRELOAD",
+    "LD_",
     "LIBGL",
     "LP_",
     "MALLOC_",
@@ -38,7 +38,9 @@ const VARIABLE: &str = "variable";
 const NONE: &str = "none";
 
 /// The other words, in the order of the note.
-const WORDS: [&str; 4] = ["processors", "niceness", "governor", "boost"];
+const WORDS: [&str; 5] = ["processors", "niceness", "scheduling", "governor", "boost"];
+/// Names of the scheduling policies of Linux, by number.
+const POLICIES: [&str; 7] = ["other", "fifo", "rr", "batch", "", "idle", "deadline"];
 
 /// The surroundings of this process as lines of the note.
 pub(super) fn here() -> Vec<(&'static str, String)> {
@@ -52,6 +54,11 @@ pub(super) fn here() -> Vec<(&'static str, String)> {
     let stat = read("/proc/self/stat");
     let fields = stat.rsplit(')').next().unwrap_or_default();
     let niceness = fields.split_whitespace().nth(16).unwrap_or_default();
+    let policy = fields
+        .split_whitespace()
+        .nth(38)
+        .and_then(|n| n.parse::<usize>().ok());
+    let policy = policy.and_then(|n| POLICIES.get(n)).copied();
     let boost = match cpu("intel_pstate/no_turbo").as_str() {
         "1" => "0".to_owned(),
         "0" => "1".to_owned(),
@@ -60,6 +67,7 @@ pub(super) fn here() -> Vec<(&'static str, String)> {
     let values = [
         allowed.unwrap_or_default(),
         niceness.to_owned(),
+        policy.unwrap_or_default().to_owned(),
         cpu("cpu0/cpufreq/scaling_governor"),
         boost,
     ];
@@ -117,6 +125,9 @@ pub(super) fn differences(
     names.dedup();
     // This entry only says that there is no variable.
     names.retain(|name| *name != VARIABLE);
+    // Notes of earlier versions lack this word.
+    let both = |name: &str| old.contains_key(name) && new.contains_key(name);
+    names.retain(|name| *name != "scheduling" || both(name));
     let value = |run: &BTreeMap<String, String>, name: &String| {
         run.get(name)
             .map_or("not set".to_owned(), |v| format!("{v:?}"))
@@ -140,12 +151,20 @@ mod tests {
     fn variables_that_drivers_read_are_noted() {
         let all = [
             ("PATH", "/bin"),
+            ("LD_LIBRARY_PATH", "/opt/mesa"),
             ("LP_NUM_THREADS", "1"),
             ("GALLIVM_PERF", "a\nb"),
         ];
         let all = all.map(|(name, value)| (name.into(), value.into()));
         let found = variables(all.into_iter());
-        assert_eq!(found, ["GALLIVM_PERF=a b", "LP_NUM_THREADS=1"]);
+        assert_eq!(
+            found,
+            [
+                "GALLIVM_PERF=a b",
+                "LD_LIBRARY_PATH=/opt/mesa",
+                "LP_NUM_THREADS=1"
+            ]
+        );
         assert_eq!(variables([].into_iter()), [NONE]);
     }
 
@@ -164,6 +183,10 @@ mod tests {
             niceness.is_some_and(|n| (-20..20).contains(&n)),
             "{lines:?}"
         );
+        assert!(
+            value("scheduling").is_some_and(|p| POLICIES.contains(&p.as_str())),
+            "{lines:?}"
+        );
         assert!(value("processors").is_some_and(|p| !p.is_empty()));
         assert!(value(VARIABLE).is_some());
     }
@@ -177,6 +200,8 @@ mod tests {
         let found = differences(&plain, &other);
         assert_eq!(found.len(), 1);
         assert!(found[0].starts_with("the runs differ in LP_NUM_THREADS: old not set, new \"1\""));
+        let found = differences(&note("scheduling: other\n"), &note("scheduling: batch\n"));
+        assert!(found[0].contains("differ in scheduling"), "{found:?}");
         // A run of an earlier version says nothing.
         assert_eq!(differences(&of_note("device: card\n"), &other), [""; 0]);
     }
