@@ -229,7 +229,7 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let duplicate = (message == "duplicate key").then(|| format!(" `{}`", spanned.trim()));
     let whole = text.lines().nth(line - 1).unwrap_or("");
     let remedy = spelling(whole).map_or(String::new(), |spelled| format!("; {spelled}"));
-    let message = match foreign(text) {
+    let message = match not_toml(text) {
         Some(what) => what.to_owned(),
         None => format!(
             "is not TOML: {message}{}{remedy}",
@@ -251,7 +251,7 @@ fn spelling(line: &str) -> Option<String> {
 }
 
 /// What a text is that cannot be meant as TOML.
-fn foreign(text: &str) -> Option<&'static str> {
+fn not_toml(text: &str) -> Option<&'static str> {
     let bare_cr = |text: &str| text.replace("\r\n", "").contains('\r');
     if text.contains('\0') {
         Some(
