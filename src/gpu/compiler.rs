@@ -145,7 +145,8 @@ impl PipelineCompiler {
         };
         let may_cut = object.clip == Clip::Box || object.axis_offset() != [0.0; 2];
         let mut all = Vec::new();
-        for kind in conditions.kinds(&technique) {
+        let kinds = conditions.kinds(&technique).into_iter();
+        for kind in kinds.filter(|kind| may_cut || *kind != Kind::CutCells) {
             let general = Variant::general(technique);
             let mut add = |variant: Variant| {
                 let choice = PipelineChoice(variant.of_kind(kind), kind);

@@ -51,8 +51,8 @@ pub(crate) struct FramePlan {
     pub copies: Vec<Option<Vec<u32>>>,
     /// For each object, whether each [`Part`] of its surfaces is read.
     pub parts: Vec<[bool; 3]>,
-    /// For each object, true if its box cuts nothing, and rays from the eye begin outside of the
-    /// solid.
+    /// For each object drawn by boxes or tiles, true if its box cuts nothing, and rays from the eye
+    /// begin outside of the solid.
     pub outside: Vec<bool>,
 }
 
@@ -102,6 +102,10 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), with);
+    debug_assert!(plan.steps.iter().all(|step| {
+        let technique = objects[step.object as usize].technique;
+        with.kinds(&technique).contains(&step.kind)
+    }));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
@@ -213,7 +217,8 @@ impl FramePlan {
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;
-                    self.outside[n] = of.surface().is_some_and(|s| apart(s));
+                    let surface = of.surface().filter(|s| s.is_of_patches());
+                    self.outside[n] = surface.is_some_and(|s| apart(s));
                     add(Kind::Boxes, self.outside[n], vec![draw(BOX_INDICES, 0)]);
                 }
                 Path::Cells([cut, whole]) => {

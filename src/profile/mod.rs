@@ -87,8 +87,8 @@ impl Profile {
         polygon::profile(points, radius)
     }
 
-    /// A profile with a known outline. The loops are used unchanged, except that points within
-    /// 1e-4 of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
+    /// A profile with a known outline. The loops are used unchanged, except that points within 1e-4
+    /// of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
     #[must_use]
     pub fn new(mut outline: Outline, radius: f64) -> Self {
         let points = || outline.loops.iter().flatten();
@@ -100,7 +100,9 @@ impl Profile {
             }
         }
         let has_area = |points: &Vec<DVec2>| points.iter().any(|point| point.x > 0.0);
-        outline.loops.retain(has_area);
+        if outline.loops.iter().any(has_area) {
+            outline.loops.retain(has_area);
+        }
         Self {
             outline,
             radius,

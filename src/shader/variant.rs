@@ -9,7 +9,7 @@ use super::generated as g;
 use super::technique::Technique;
 use std::ffi::CStr;
 
-/// The geometry that a pipeline draws: a proxy (the first two), or tiles.
+/// The geometry that a pipeline draws: a proxy (the first three), or tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Cells with their patches, rasterised.
@@ -113,6 +113,9 @@ pub struct Speciality {
 #[cfg(feature = "other-shaders")]
 pub(crate) const SPECIALITIES: [&str; 4] = ["lights", "one-object", "outside", "depths"];
 
+/// The value of [`Speciality::outside`] for draws without an object that is seen from outside.
+const NOT_OUTSIDE: u32 = 2;
+
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
 
@@ -161,12 +164,12 @@ impl Variant {
     /// this.
     #[must_use]
     pub const fn seen_from_outside(mut self, outside: bool) -> Self {
-        self.speciality.outside = if outside { 1 } else { 2 };
+        self.speciality.outside = if outside { 1 } else { NOT_OUTSIDE };
         self
     }
 
-    /// The form of this variant for pipelines of `kind`. Constants that the kind does not read have
-    /// the values of the general variant, so that equal pipelines have equal keys.
+    /// The form of this variant for pipelines of `kind`. Constants that the kind does not read, or
+    /// that do not make it faster, have fixed values, so that equal pipelines have equal keys.
     #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
         let Self {
@@ -179,15 +182,17 @@ impl Variant {
         let in_cells = kind == Kind::Cells;
         // Lavapipe 22 crashes in shadows if it treats the solid as constants.
         let one_object = !in_cells && (lists || technique.shadow == g::SHADOW_OFF);
-        let single = technique.search == Search::Quadric && technique.replicas == 0;
-        let tested = lists || (single && !in_cells);
+        // Other techniques test where every ray begins. Cells need no test, and cut cells always.
+        let cells = matches!(kind, Kind::Cells | Kind::CutCells);
+        let patches = technique.search == Search::Quadric && technique.replicas == 0;
+        let reads_outside = lists || (patches && !cells);
         let of = |reads: bool, value: u32, general: u32| if reads { value } else { general };
         Self {
             technique: if lists { Technique::LISTS } else { technique },
             speciality: Speciality {
                 lights: of(lit, own.lights, general.lights),
                 one_object: of(one_object, own.one_object, general.one_object),
-                outside: of(tested, own.outside, general.outside),
+                outside: of(reads_outside, own.outside, NOT_OUTSIDE),
                 depths: of(kind.is_compute(), own.depths, general.depths),
             },
         }

@@ -301,6 +301,8 @@ fn general_and_special_forms_draw_the_same_bits() {
                 drawn.renderer.prewarm().unwrap().compile().unwrap();
                 drawn.renderer.set_lighting(&scene.lighting()).unwrap();
                 let general = drawn.picture(0);
+                drawn.renderer.prewarm().unwrap().compile().unwrap();
+                worst = worst.max(differ(&general, &drawn.picture(0)));
                 let special = drawn.renderer.special_forms();
                 taken += special.len();
                 special.compile().unwrap();

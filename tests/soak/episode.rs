@@ -39,6 +39,8 @@ pub struct Episode<'a> {
     pub log: &'a mut Log,
     pub layer: &'a Layer,
     fault: Fault,
+    /// False if frames are only drawn.
+    pub compares: bool,
     pub host: &'a Host,
 }
 
@@ -78,6 +80,7 @@ impl<'a> Episode<'a> {
             log,
             layer,
             fault,
+            compares: true,
             host,
         })
     }
@@ -161,7 +164,8 @@ impl<'a> Episode<'a> {
         .unwrap();
         for (player, slot, mut drawn) in std::mem::take(&mut flight.drawn) {
             drawn.planes = self.players[player].surfaces[slot].read(&drawn.kind);
-            self.pending.push(drawn);
+            self.log.tally.count("drawn", 1);
+            self.pending.extend(self.compares.then_some(drawn));
         }
         Ok(())
     }

@@ -5,6 +5,7 @@
 //! cargo test --test soak                          # 20 seconds, another seed each time
 //! REVMAP_SOAK_SEED=7 cargo test --test soak       # begins with the episode of this seed
 //! REVMAP_SOAK_SECONDS=3600 cargo test --test soak --release
+//! REVMAP_SOAK_COMPARES=0 cargo test --test soak   # compares no pictures: only what is compiled, hidden or refused
 //! ```
 //!
 //! A run is a sequence of **episodes**. An episode has a device of its own and a seed, which

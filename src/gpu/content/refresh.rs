@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex};
 /// The search for objects without a surface of their own; it reads only the map.
 pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 
-/// All objects at one time. Nothing in it changes: frames of one snapshot and one view are equal.
+/// All objects at one time. Nothing in it changes but the surfaces that its objects keep alive.
 #[derive(Default)]
 pub(in crate::gpu) struct Snapshot {
     /// In the order in which they were added.

@@ -154,6 +154,9 @@ impl Renderer {
     /// number of copies has no motion of its own in that frame. Without this call no object moves.
     /// Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
     pub fn end_frame(&mut self) {
+        if !self.content.output.planes().has_motion() {
+            return;
+        }
         let objects = &mut self.content.objects;
         let mut ended = false;
         for entry in objects.entries_mut() {

@@ -106,9 +106,12 @@ impl Renderer {
         };
         if to.named.is_none() || to.bound.as_ref().is_none_or(stale) {
             // The tables of the slot's last frame make room for those of this one.
-            to.bound = None;
+            let before = to.bound.take();
+            let is_written = before.is_some_and(|bound| Arc::ptr_eq(&bound.plan, &plan));
             let bound = self.bind(&plan)?;
-            self.write(slot, &plan)?;
+            if !is_written {
+                self.write(slot, &plan)?;
+            }
             let to = &mut self.slots[slot];
             to.name(&bound.buffers.tables, self.content.target.as_ref());
             to.bound = Some(bound);

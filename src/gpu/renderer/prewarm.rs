@@ -7,7 +7,7 @@ use crate::gpu::content::Content;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::shader::{Kind, Pushed, Variant};
+use crate::shader::{Kind, Pushed, Speciality, Variant};
 use ash::vk;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -48,17 +48,17 @@ impl Prewarm {
 }
 
 impl Renderer {
-    /// Returns the general form of every pipeline that the objects may need. Once these are compiled,
-    /// [`Renderer::prepare`] compiles nothing and hides nothing while parameters, lights, masks,
-    /// placements, the view, and the numbers of objects and copies change. A change of technique
-    /// makes others necessary: a search, textures where there were none, a projection, replicas,
-    /// shadows.
+    /// Returns the general form of every pipeline that the objects may need, and the form for the
+    /// number of lights that is set: 1, 2 or more. Once these are compiled, [`Renderer::prepare`]
+    /// compiles nothing and hides nothing while parameters, lights, masks, placements, the view, and
+    /// the numbers of objects and copies change. A change of technique makes others necessary: a
+    /// search, textures where there were none, a projection, replicas, shadows.
     ///
     /// # Errors
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         self.content.refresh()?;
-        Ok(self.forms(self.content.general_forms()))
+        Ok(self.forms(self.content.prewarmed_forms()))
     }
 
     /// Returns the pipelines that would draw the frames of all slots faster: special forms for one
@@ -119,7 +119,7 @@ impl Renderer {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for (variant, kind) in self.content.general_forms() {
+        for (variant, kind) in self.content.prewarmed_forms() {
             let pipeline = pipelines.get(variant, kind, &self.owner)?;
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
@@ -139,22 +139,28 @@ impl Renderer {
 }
 
 impl Content {
-    /// The general form of every pipeline that an object's technique may need, and that its
-    /// replacement may need if its contour does not close. Nothing else has an influence: no view,
-    /// mask, parameter, light, and no number of objects or copies.
-    fn general_forms(&self) -> Vec<(Variant, Kind)> {
+    /// The general form of every pipeline that an object's technique may need, with the form for the
+    /// lights as set, and the general forms of the technique that replaces it if its contour does
+    /// not close. No view, mask or parameter has an influence, and no number of objects or copies.
+    fn prewarmed_forms(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(), self.settings.solver);
         let mut known = HashSet::new();
         let mut all = Vec::new();
+        let any_lights = Speciality::GENERAL.lights;
         let (demands, common) = (self.demands(), &self.snapshot.common);
         for object in &self.snapshot.objects {
             let (drawn, images) = (object.drawn(), &object.images);
             let drawn_by = |solver| demands.technique(solver, drawn, images, common);
-            let mut techniques = drawn_by(solver).forms();
-            techniques.extend(solver.follows_tolerance().then(|| drawn_by(FALLBACK)));
-            for technique in techniques {
+            let wanted = drawn_by(solver)
+                .forms()
+                .into_iter()
+                .map(|of| (of, with.lights));
+            let replaced = solver
+                .follows_tolerance()
+                .then(|| (drawn_by(FALLBACK), any_lights));
+            for (technique, lights) in wanted.chain(replaced) {
                 let mut variant = Variant::general(technique);
-                variant.speciality.lights = with.lights;
+                variant.speciality.lights = lights;
                 for kind in with.kinds(&technique) {
                     let [_, as_lit, general] = variant.forms(kind, u32::MAX);
                     let new = |variant: &Variant| known.insert((*variant, kind));

@@ -279,8 +279,9 @@ impl FrameSlot {
         }
         let nodes = hierarchy.nodes.as_slice();
         self.fit(SlotBuffer::Casters, size_of_val(nodes) as u64)?;
+        write_slice(self.buffer_mut(SlotBuffer::Casters), nodes)?;
         self.hierarchy = Some(hierarchy.clone());
-        write_slice(self.buffer_mut(SlotBuffer::Casters), nodes)
+        Ok(())
     }
 
     /// Writes a plan's tiles and draws, and makes room for its bins.

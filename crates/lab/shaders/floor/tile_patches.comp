@@ -7,6 +7,7 @@ void main()
 {
     take_frame();
     take_record();
+    tile_instance = instances[instance_number()];
     take_object(tile_instance);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
