@@ -102,10 +102,6 @@ pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> Fr
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), with);
-    debug_assert!(plan.steps.iter().all(|step| {
-        let technique = objects[step.object as usize].technique;
-        with.kinds(&technique).contains(&step.kind)
-    }));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
