@@ -84,6 +84,17 @@ impl Animate {
         if self.turn.is_some_and(|turn| !turn.is_finite()) {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
+        let moving = ["gif", "webp", "apng", "png", "mp4", "webm", "avi"];
+        let ending = self.output.as_ref().and_then(|path| path.extension());
+        if moving
+            .iter()
+            .any(|name| ending.is_some_and(|e| e.eq_ignore_ascii_case(name)))
+        {
+            return Err(usage(
+                "--output",
+                "is no folder; give one for frame-0000.png and so on, and join these with another program",
+            ));
+        }
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
@@ -241,8 +252,12 @@ impl Animate {
             words.1 = format!(", {late} of them after the tenth");
         }
         let (after, of_them) = words;
+        let kept = match self.output {
+            Some(_) => "",
+            None => "; no pictures are kept (--output DIR keeps them)",
+        };
         output::result(&format!(
-            "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
+            "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}{kept}",
             rows.len(),
             most / median,
         ));

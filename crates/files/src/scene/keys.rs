@@ -1,6 +1,7 @@
 //! A table of a scene file: only known keys, each read as its required type. Every message has the
 //! key's full path.
 
+use super::reader::OBJECT;
 use crate::content_fault;
 use glam::DVec3;
 use revmap::error::{Error, Result};
@@ -105,6 +106,10 @@ impl<'a> Keys<'a> {
         let known: Vec<&str> = known.split_whitespace().collect();
         match table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(keys),
+            Some(stranger) if keys.path.is_empty() && is_of_object(stranger) => {
+                let message = format!("unknown key; did you mean `object.0.{stranger}`?");
+                Err(keys.fail(stranger, message))
+            }
             Some(stranger) => Err(keys.fail(stranger, unknown(stranger, &known))),
         }
     }
@@ -305,6 +310,10 @@ pub fn decimal_comma(text: &str) -> Option<String> {
         true => format!("{point:?} or {whole}{part}"),
         false => format!("{point}"),
     })
+}
+
+fn is_of_object(key: &str) -> bool {
+    OBJECT.split_whitespace().any(|known| known == key)
 }
 
 /// The message for an unknown key.

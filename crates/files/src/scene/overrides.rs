@@ -29,19 +29,25 @@ fn apply(root: &mut Table, assignment: &str) -> Result<()> {
             "a part of the key is empty; write it as in object.0.bevel".to_owned(),
         ));
     }
-    put(root, &steps, parse(value.trim())).map_err(fail)
+    put(root, (&[], &steps), parse(value.trim())).map_err(fail)
 }
 
-/// Writes a value at the end of the path `steps`.
-fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(), String> {
+/// Writes a value at the end of the path `steps`, which begins in `table`; `above`: the steps to it.
+fn put<'s>(
+    table: &mut Table,
+    (above, steps): (&[&'s str], &[&'s str]),
+    value: Value,
+) -> std::result::Result<(), String> {
     let [step, below @ ..] = steps else {
         return Ok(());
     };
+    let path = |steps: &[&'s str]| [above, steps].concat();
     let numbered = below.first().is_some_and(|b| b.parse::<usize>().is_ok());
     if numbered && !table.contains_key(*step) {
         return Err(match below {
             [_] => format!(
-                "the scene has no `{step}` to change; set the whole list first, as in {step}=[0, 0, 0]"
+                "the scene has no `{step}` to change; set the whole list first, as in {}=[0, 0, 0]",
+                path(&[*step]).join(".")
             ),
             _ => format!(
                 "the scene has no [[{step}]] to change; add one to the file, or set {step}=[{{}}] first"
@@ -54,7 +60,7 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
     }
     let entry = table.entry(*step);
     match (entry.or_insert_with(|| Table::new().into()), below) {
-        (Value::Table(inner), _) => put(inner, below, value),
+        (Value::Table(inner), _) => put(inner, (&path(&[*step]), below), value),
         (Value::Array(items), [last]) => {
             let (count, tables) = (items.len(), items.iter().any(Value::is_table));
             let index = last.parse::<usize>().ok();
@@ -76,7 +82,7 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
             let inner = item.and_then(Value::as_table_mut).ok_or_else(|| {
                 format!("there is no {step}.{index}: the scene has {count}, counted from 0")
             })?;
-            put(inner, below, value)
+            put(inner, (&path(&[*step, *index]), below), value)
         }
         _ => Err(format!("`{step}` is a value, which has no keys below it")),
     }
@@ -222,7 +228,7 @@ mod tests {
             ("object.0=1", "object.0: is a table; name a key of it"),
             (
                 "camera.up.2=1",
-                "no `up` to change; set the whole list first",
+                "no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]",
             ),
             ("light.0.radius=1", "no [[light]] to change; add one"),
             ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),

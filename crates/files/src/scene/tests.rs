@@ -387,6 +387,8 @@ fn the_file_is_named() {
         scene(&file),
         "s.toml: bakground: unknown key; did you mean `background`?",
     );
+    std::fs::write(&file, "extend = 1").unwrap();
+    fault(scene(&file), "did you mean `object.0.extend`?");
     std::fs::write(
         &file,
         format!("{CAMERA_LINES}[[object]]\nprofile = \"none.png\""),
