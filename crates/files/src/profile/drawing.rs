@@ -8,17 +8,22 @@
 //! are refused by name.
 
 use super::form::{DRAWING, Silhouette};
-use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened};
+use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened, over_white, overlap};
 use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
-use super::{ProfileAxis, empty_fault, full_fault, svg};
+use super::{ProfileAxis, empty_fault, full_fault, half_empty_fault, svg};
 use crate::content_fault;
-use glam::DVec2;
+use crate::pixels::luminance;
+use glam::{DVec2, Vec2Swizzles as _};
 use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region, loop_area};
+use std::cell::Cell;
 
 /// Largest distance between a curve and its chords, object units.
 const FLATNESS: f64 = 1e-5;
+
+/// Paint is cut by an edge of the page if it reaches this far to both sides, object units.
+const CUT: f64 = 5e-3;
 
 /// Places of less than this area are small, square object units.
 const SMALL: f64 = 2e-3;
@@ -41,7 +46,9 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
         high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
         two_tone: !has_translucency(&drawing.content),
+        tinted: false,
         page,
+        cuts: Cell::new(false),
     };
     let paints = canvas.paints(&drawing.content, page)?;
     if paints.is_empty() {
@@ -49,11 +56,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
             "the drawing has no shape; draw the solid dark on white",
         ));
     }
-    let tile = Tile {
-        grid: canvas.grid,
-        low: canvas.grid.rounded(canvas.low),
-        high: canvas.grid.rounded(canvas.high),
-    };
+    let tile = canvas.tile();
     let whole = tile.dark(&paints)?;
     let mut warnings = drawing.warnings;
     warnings.extend(check_gradients(&paints, &whole, tile)?);
@@ -62,7 +65,17 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     };
     let place = |x: f64| format!("x = {:.4}", user(x));
     let page_at = [left / height, width / height];
-    let form = Silhouette::of_outline(&whole.outline(canvas.grid), page_at, &place);
+    let mut seen = whole.outline(canvas.grid);
+    let mut cuts = Vec::new();
+    if canvas.cuts.get()
+        && let Ok(all) = canvas.beyond().dark(&drawing.content)
+    {
+        seen = all;
+        seen.loops.retain(|l| canvas.shows(l));
+        cuts = canvas.cut_edges(&seen);
+    }
+    let pale = || canvas.pale(&drawing.content, seen.area());
+    let form = Silhouette::of_outline(&seen, page_at, &place);
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
@@ -74,7 +87,11 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     without_slivers(&mut profile.outline);
     let outline = &profile.outline;
     if outline.area() <= 0.0 {
-        return Err(empty_fault("drawing"));
+        let aside = form.aside(axis).map(|aside| half_empty_fault(&aside));
+        let pale = || pale().map(|pale| content_fault(format!("the drawing is empty: {pale}")));
+        return Err(aside
+            .or_else(pale)
+            .unwrap_or_else(|| empty_fault("drawing")));
     }
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
@@ -84,7 +101,13 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
             "the drawing looks like a light solid on dark ground; draw the solid dark on white if light is solid"
                 .to_owned(),
         ],
-        false => form.hints(outline, axis),
+        false => {
+            let mut hints = form.hints(outline, axis, pale);
+            hints.extend(cuts.iter().map(|edge| {
+                format!("the drawing is cut by the {edge} edge of the page; move it into the page, or enlarge the page")
+            }));
+            hints
+        }
     });
     profile.warnings = warnings;
     Ok(profile)
@@ -151,11 +174,88 @@ struct Canvas {
     grid: Grid,
     /// All paint is opaque, so dark and light are the only two colours needed.
     two_tone: bool,
+    /// All paint that is not white counts as dark.
+    tinted: bool,
     /// Maps the page to `(r, z)`.
     page: Affine,
+    /// Some geometry was beyond the drawing area.
+    cuts: Cell<bool>,
 }
 
 impl Canvas {
+    fn tile(&self) -> Tile {
+        Tile {
+            grid: self.grid,
+            low: self.grid.rounded(self.low),
+            high: self.grid.rounded(self.high),
+        }
+    }
+
+    /// The dark outline of nodes.
+    fn dark(&self, nodes: &[Node]) -> Result<Outline> {
+        let dark = self.tile().dark(&self.paints(nodes, self.page)?)?;
+        Ok(dark.outline(self.grid))
+    }
+
+    /// The drawing area with its surroundings.
+    fn beyond(&self) -> Self {
+        let margin = (self.high - self.low).max_element();
+        let (low, high) = (self.low - margin, self.high + margin);
+        Self {
+            low,
+            high,
+            grid: Grid::for_extent(high.max(-low).max_element()),
+            cuts: Cell::new(false),
+            ..*self
+        }
+    }
+
+    /// Returns true if the box of some points has a part in the drawing area.
+    fn shows(&self, points: &[DVec2]) -> bool {
+        let low = points.iter().copied().reduce(DVec2::min);
+        let high = points.iter().copied().reduce(DVec2::max);
+        overlap(low.zip(high).map(Into::into), Some([self.low, self.high]))
+    }
+
+    /// The edges that dark paint of an outline crosses.
+    fn cut_edges(&self, outline: &Outline) -> Vec<&'static str> {
+        let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
+        let turned = Outline {
+            loops: outline.loops.iter().map(turned).collect(),
+        };
+        let (low, high) = (self.low, self.high);
+        let edges = [
+            ("top", outline, high.y, CUT, [low.x, high.x]),
+            ("bottom", outline, low.y, -CUT, [low.x, high.x]),
+            ("right", &turned, high.x, CUT, [low.y, high.y]),
+        ];
+        let cut = edges
+            .into_iter()
+            .filter(|&(_, outline, edge, way, [from, to])| {
+                let lines = outline.crossings([edge - way, edge + way].into_iter());
+                let [within, beyond] = [0, 1].map(|k| lines[k].chunks_exact(2));
+                let mut pairs = within.flat_map(|a| beyond.clone().map(move |b| (a, b)));
+                pairs.any(|(a, b)| a[0].max(b[0]).max(from) < a[1].min(b[1]).min(to))
+            });
+        cut.map(|(edge, ..)| edge).collect()
+    }
+
+    /// Names the darkest of the light paint, if it covers much more than `dark`.
+    fn pale(&self, nodes: &[Node], dark: f64) -> Option<String> {
+        let (color, kind) = darkest_pale(nodes)?;
+        let tinted = Self {
+            tinted: true,
+            two_tone: true,
+            cuts: Cell::new(false),
+            ..*self
+        };
+        let all = tinted.dark(nodes).ok()?.area();
+        let [r, g, b, _] = over_white(color).map(|v| (255.0 * v).round() as u8);
+        (all > 2.0 * dark).then(|| {
+            format!("the darkest {kind} is #{r:02x}{g:02x}{b:02x}, lighter than one half; paint it dark if it is solid")
+        })
+    }
+
     /// What nodes paint. `to_profile` maps their coordinates to `(r, z)`.
     fn paints(&self, nodes: &[Node], to_profile: Affine) -> Result<Vec<Paint>> {
         let mut paints = Vec::new();
@@ -267,7 +367,11 @@ impl Canvas {
 
     /// The colour, or black or white if only its darkness counts.
     fn tone(&self, color: Rgba) -> Rgba {
-        match (self.two_tone, is_dark(color)) {
+        let is_dark = match self.tinted {
+            true => color[3] > 0.0 && is_tinted(color),
+            false => is_dark(color),
+        };
+        match (self.two_tone, is_dark) {
             (false, _) => color,
             (true, true) => [0.0, 0.0, 0.0, 1.0],
             (true, false) => [1.0; 4],
@@ -287,6 +391,7 @@ impl Canvas {
             if points.iter().all(|&p| depth(p) >= 0.0) {
                 continue;
             }
+            self.cuts.set(true);
             let mut kept = Vec::with_capacity(points.len() + 4);
             let Some(&last) = points.last() else {
                 return points;
@@ -306,6 +411,34 @@ impl Canvas {
         }
         points
     }
+}
+
+/// Returns true for a colour that is not white over white.
+fn is_tinted(color: Rgba) -> bool {
+    let [r, g, b, _] = over_white(color);
+    r.min(g).min(b) < 0.97
+}
+
+/// The darkest colour that is light and not white, and what it paints.
+fn darkest_pale(nodes: &[Node]) -> Option<(Rgba, &'static str)> {
+    let of = |node: &Node| match node {
+        Node::Group(group) => darkest_pale(&group.children),
+        Node::Path(path) => {
+            let kind = if path.band.is_some() {
+                "stroke"
+            } else {
+                "fill"
+            };
+            let is_pale = !is_dark(path.color) && is_tinted(path.color);
+            is_pale.then_some((path.color, kind))
+        }
+    };
+    let grey = |(color, _): &(Rgba, _)| {
+        let [r, g, b, _] = over_white(*color);
+        luminance([r, g, b])
+    };
+    let found = nodes.iter().filter_map(of);
+    found.min_by(|a, b| grey(a).total_cmp(&grey(b)))
 }
 
 /// Dots are lines of this part of the stroke's width.

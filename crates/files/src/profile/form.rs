@@ -33,6 +33,8 @@ const LOW: f64 = 0.5;
 const THIN: f64 = 0.08;
 /// A shape is an outline drawing if its walls are thin along this part of its border.
 const EVERYWHERE: f64 = 0.9;
+/// Closed hollows of less than this part of the solid's area are decoration.
+const HOLLOW: f64 = 0.2;
 /// Places of the border at which the wall is measured.
 const SAMPLES: usize = 256;
 /// This many thin pieces are the dashes of a line.
@@ -101,13 +103,22 @@ impl<'a> Silhouette<'a> {
         count(&reaches(self.width - 1.0)) >= 0.95 && top >= 0.6 && count(&reaches(self.axis)) <= 0.7
     }
 
-    /// Warnings about the form. `half` is the outline right of the axis, heights.
-    pub(super) fn hints(&self, half: &Outline, axis: ProfileAxis) -> Vec<String> {
+    /// Warnings about the form. `half` is the outline right of the axis, heights. `pale` names paint
+    /// that makes an outline of the drawing.
+    pub(super) fn hints(
+        &self,
+        half: &Outline,
+        axis: ProfileAxis,
+        pale: impl FnOnce() -> Option<String>,
+    ) -> Vec<String> {
+        if let Some(aside) = self.aside(axis) {
+            return vec![aside];
+        }
         if is_shell(half) {
-            return vec![format!(
+            return vec![pale().unwrap_or_else(|| format!(
                 "the {} is an outline: the solid is a thin shell about a hollow; fill the shape if it is meant to be solid",
                 self.what
-            )];
+            ))];
         }
         let ends = Ends::of(self);
         if ends.rows.len() < LEAST_ROWS {
@@ -121,7 +132,22 @@ impl<'a> Silhouette<'a> {
                 .half_as_whole(&ends)
                 .or_else(|| self.beside_the_axis(&ends)),
         };
+        let found = found.or_else(|| hollow(half));
         found.into_iter().chain(gaps::hints(half)).collect()
+    }
+
+    /// A solid that is even about a line well beside the axis. Its half has no meaning.
+    pub(super) fn aside(&self, axis: ProfileAxis) -> Option<String> {
+        let ends = Ends::of(self);
+        if axis == ProfileAxis::Left || ends.rows.len() < LEAST_ROWS {
+            return None;
+        }
+        let line = ends.middle_line();
+        let is_half = ends.is_straight(Ends::left) || ends.is_straight(Ends::right);
+        let is_even = line.residual <= ends.slack() && ends.one_sided(|row| line.at(row)) <= ALIKE;
+        (is_even && !is_half)
+            .then(|| self.beside_the_axis(&ends))
+            .flatten()
     }
 
     /// A straight end on one side and a form on the other are half a profile.
@@ -360,15 +386,7 @@ pub(super) fn is_shell(half: &Outline) -> bool {
     if half.loops.len() >= DASHES && half.loops.iter().all(|l| is_thin(l)) {
         return true;
     }
-    let closed = |p: &DVec2| DVec2::new(if p.x < gaps::BORE { 0.0 } else { p.x }, p.y);
-    let mirror = |p: DVec2| DVec2::new(-p.x, p.y);
-    let right = || half.loops.iter().map(|l| l.iter().map(closed));
-    let left = right().map(|l| l.rev().map(mirror).collect());
-    let loops: Vec<Vec<DVec2>> = right().map(Iterator::collect).chain(left).collect();
-    let reach = |m: f64, p: &DVec2| m.max(p.abs().max_element());
-    let grid = Grid::for_extent(loops.iter().flatten().fold(1.0, reach));
-    let whole = Region::enclosed(grid, &loops, FillRule::NonZero).outline(grid);
-    let hollow: f64 = whole.loops.iter().map(|l| (-loop_area(l)).max(0.0)).sum();
+    let (whole, hollow) = whole(half);
     if hollow < whole.area() {
         return false;
     }
@@ -386,6 +404,28 @@ pub(super) fn is_shell(half: &Outline) -> bool {
         next -= own;
     }
     f64::from(thin as u32) >= EVERYWHERE * f64::from(all as u32)
+}
+
+/// A warning about a closed hollow, which nobody sees. More hollow than solid is a line drawing.
+fn hollow(half: &Outline) -> Option<String> {
+    let (whole, hollow) = whole(half);
+    (HOLLOW * whole.area()..whole.area()).contains(&hollow).then(|| {
+        "a closed hollow inside the solid does not show, and an inset opens it; remove the light shape (a label, a highlight) if none is meant".to_owned()
+    })
+}
+
+/// Both halves, and the area of the hollows that they enclose.
+fn whole(half: &Outline) -> (Outline, f64) {
+    let closed = |p: &DVec2| DVec2::new(if p.x < gaps::BORE { 0.0 } else { p.x }, p.y);
+    let mirror = |p: DVec2| DVec2::new(-p.x, p.y);
+    let right = || half.loops.iter().map(|l| l.iter().map(closed));
+    let left = right().map(|l| l.rev().map(mirror).collect());
+    let loops: Vec<Vec<DVec2>> = right().map(Iterator::collect).chain(left).collect();
+    let reach = |m: f64, p: &DVec2| m.max(p.abs().max_element());
+    let grid = Grid::for_extent(loops.iter().flatten().fold(1.0, reach));
+    let whole = Region::enclosed(grid, &loops, FillRule::NonZero).outline(grid);
+    let hollow: f64 = whole.loops.iter().map(|l| (-loop_area(l)).max(0.0)).sum();
+    (whole, hollow)
 }
 
 /// Returns true for a piece of a thin line: its area is small for its length.

@@ -1,7 +1,7 @@
 //! Profiles from pictures: dark is solid.
 
-use super::form::Silhouette;
-use super::{ProfileOptions, full_fault, options, transparency};
+use super::form::{Silhouette, is_shell};
+use super::{ProfileOptions, full_fault, half_empty_fault, options, transparency};
 use crate::content_fault;
 use crate::maps::header::Header;
 use crate::pixels::{decode, luminance};
@@ -68,15 +68,21 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     }
     let coverage = host_memory::collected(raster.coverage.iter().copied(), PICTURE)?;
     let traced = Raster { coverage, ..raster };
+    let form = Silhouette::of_pixels(&solid, width as usize, 0.5 * f64::from(halves));
+    let is_empty = traced.coverage.par_iter().all(|&c| c <= 0.5);
+    if let Some(aside) = form.aside(options.axis).filter(|_| is_empty) {
+        return Err(half_empty_fault(&aside));
+    }
     let mut profile = trace_split(traced, split)?;
-    if contrast.is_some() {
-        profile.warnings.extend(contrast);
+    let cut_out = transparency::hint(&solid, &opaque, options.invert);
+    let alone = cut_out.clone().filter(|_| !is_shell(&profile.outline));
+    if let Some(hint) = alone.or(contrast) {
+        profile.warnings.push(hint);
         return Ok(profile);
     }
-    let form = Silhouette::of_pixels(&solid, width as usize, 0.5 * f64::from(halves));
     let of_form = |half: &_| {
-        let mut hints = form.hints(half, options.axis);
-        hints.extend(transparency::hint(&solid, &opaque, options.invert));
+        let mut hints = form.hints(half, options.axis, || None);
+        hints.extend(cut_out);
         hints
     };
     let reversed = !options.invert && form.is_light_on_dark();

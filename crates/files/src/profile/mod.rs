@@ -94,6 +94,11 @@ pub(crate) fn empty_fault(what: &str) -> Error {
     ))
 }
 
+/// The failure of a solid that is left of the axis, with its place.
+fn half_empty_fault(aside: &str) -> Error {
+    content_fault(format!("the half right of the axis is empty: {aside}"))
+}
+
 /// Keys that may help, with those of tones, which drawings do not have.
 fn tonal_keys(what: &str, or: &str) -> String {
     match what {

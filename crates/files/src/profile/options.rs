@@ -24,6 +24,8 @@ pub enum ProfileAxis {
 impl ProfileAxis {
     /// The values with a name in options and scene files; a number is [`ProfileAxis::At`].
     pub const NAMES: [(&'static str, Self); 2] = [("left", Self::Left), ("center", Self::Center)];
+    /// A name that is read and not listed.
+    pub(crate) const BRITISH: (&'static str, Self) = ("centre", Self::Center);
 
     /// The axis as a fraction of the width.
     #[must_use]
@@ -41,7 +43,8 @@ impl std::str::FromStr for ProfileAxis {
 
     /// A name or a number, as in scene files.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let named = Self::NAMES.iter().find(|(name, _)| *name == text);
+        let mut names = Self::NAMES.iter().chain([&Self::BRITISH]);
+        let named = names.find(|(name, _)| *name == text);
         match (named, text.parse()) {
             (Some((_, axis)), _) => Ok(*axis),
             (None, Ok(fraction)) => Ok(Self::At(fraction)),

@@ -16,8 +16,12 @@ pub(super) type Rgba = [f32; 4];
 
 /// Returns true for a colour darker than one half over white.
 pub(super) fn is_dark(color: Rgba) -> bool {
-    let [r, g, b, _] = over(color, [1.0; 4]);
+    let [r, g, b, _] = over_white(color);
     luminance([r, g, b]) < 0.5
+}
+
+pub(super) fn over_white(color: Rgba) -> Rgba {
+    over(color, [1.0; 4])
 }
 
 /// `top` over `below`, both premultiplied (Porter & Duff 1984).
@@ -370,7 +374,7 @@ impl Tile {
 }
 
 /// Returns true if two extents have area in common.
-fn overlap(a: Option<[DVec2; 2]>, b: Option<[DVec2; 2]>) -> bool {
+pub(super) fn overlap(a: Option<[DVec2; 2]>, b: Option<[DVec2; 2]>) -> bool {
     a.zip(b)
         .is_some_and(|(a, b)| a[0].cmplt(b[1]).all() && b[0].cmplt(a[1]).all())
 }

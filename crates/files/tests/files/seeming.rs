@@ -109,7 +109,8 @@ fn outlines_in_place_of_shapes() {
     let thick = "fill='none' stroke='#000' stroke-width='6'";
     both_warned(&path("M20 12H80V88H20z", thick), Center, "fill the shape");
     let light = "fill='#ddd' stroke='#000' stroke-width='1'";
-    both_warned(&path(VASE, light), Center, "fill the shape");
+    let lined = pictured(&path(VASE, light), 300);
+    warned(&lined, Center, "fill the shape");
     let dashed = "fill='none' stroke='#000' stroke-width='1' stroke-dasharray='4 3'";
     both_warned(&path(VASE, dashed), Center, "fill the shape");
     let centre_line = "<path d='M50 2V98' stroke='#000' stroke-dasharray='6 2 1 2'/>";
@@ -251,4 +252,116 @@ fn low_contrast() {
     for (solid, ground) in [(0, 255), (90, 160), (118, 255), (0, 140), (60, 190)] {
         assert_eq!(read(&ball(solid, ground, 0), Center).warnings, [""; 0]);
     }
+}
+
+#[test]
+fn a_solid_well_off_the_axis_is_given_its_axis() {
+    let moved = |by: i32, attributes: &str| {
+        path(VASE, &format!("transform='translate({by})' {attributes}"))
+    };
+    let line = "fill='none' stroke='#000' stroke-width='1'";
+    for (by, axis) in [(25, "0.75"), (-18, "0.32")] {
+        let words = format!("profile_axis = {axis},");
+        both_warned(&moved(by, ""), Center, &words);
+        both_warned(&moved(by, line), Center, &words);
+    }
+    let drawing = moved(-30, "");
+    for bytes in [&drawing, &pictured(&drawing, 300)] {
+        let refusal = profile_from_bytes(bytes, Center).unwrap_err().to_string();
+        assert!(refusal.contains("profile_axis = 0.2"), "{refusal}");
+    }
+    // A part of it is left of the page.
+    let refusal = profile_from_bytes(&moved(-36, ""), Center).unwrap_err();
+    assert!(refusal.to_string().contains("profile_axis = 0.14,"));
+}
+
+#[test]
+fn a_drawing_that_the_page_cuts() {
+    let moved = |x: i32, y: i32| path(VASE, &format!("transform='translate({x} {y})'"));
+    warned(&moved(0, -20), Center, "cut by the top edge of the page");
+    warned(&moved(0, 20), Center, "cut by the bottom edge of the page");
+    let found = read(&moved(36, 0), Center).warnings.join("\n");
+    for words in ["profile_axis = 0.86,", "cut by the right edge of the page"] {
+        assert!(found.contains(words), "{found}");
+    }
+    // A line along the edge, a solid up to the edge, and what lies beside the page are not cut.
+    let edge = "<path d='M20 40H80V100H20z' stroke='#000' stroke-width='.8'/>";
+    let beside =
+        "<path d='M120 20h20v60h-20zM30-40h30v30h-30z'/><path d='M-9-9H200V200H-9z' fill='none'/>";
+    let usual = svg(&format!("{edge}{beside}"));
+    assert_eq!(read(&usual, Center).warnings, [""; 0]);
+    let page = "<path d='M-50-50H150V150H-50z' fill='#fff'/>";
+    assert_eq!(
+        read(&svg(&format!("{page}{edge}")), Center).warnings,
+        [""; 0]
+    );
+}
+
+#[test]
+fn a_light_label_is_a_closed_hollow() {
+    let label = "<path d='M36 56H64V72H36z' fill='#f5f0e0'/>";
+    both_warned(
+        &svg(&format!("<path d='{VASE}'/>{label}")),
+        Center,
+        "a closed hollow",
+    );
+    let line = "<path d='M38 54H62' stroke='#fff' stroke-width='.4'/>";
+    assert_eq!(
+        read(&svg(&format!("<path d='{VASE}'/>{line}")), Center).warnings,
+        [""; 0]
+    );
+}
+
+#[test]
+fn pale_paint_is_named() {
+    let lined = "fill='#8fd0a0' stroke='#000' stroke-width='.5'";
+    warned(
+        &path(VASE, lined),
+        Center,
+        "darkest fill is #8fd0a0, lighter than one half",
+    );
+    for (attributes, words) in [
+        ("fill='#8fd0a0'", "darkest fill is #8fd0a0, lighter"),
+        (
+            "fill='none' stroke='#888'",
+            "darkest stroke is #888888, lighter",
+        ),
+    ] {
+        let refusal = profile_from_bytes(&path(VASE, attributes), Center)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refusal.contains(words) && !refusal.contains("profile_axis"),
+            "{refusal}"
+        );
+    }
+    let white = profile_from_bytes(&path(VASE, "fill='#fff'"), Center).unwrap_err();
+    assert!(white.to_string().contains("is empty"), "{white}");
+}
+
+#[test]
+fn a_shaded_cut_out_is_named_alone() {
+    let picture = RgbaImage::from_fn(200, 200, |x, y| {
+        let shade = if x > 140 { 60 } else { 220 };
+        match (x.abs_diff(100) < 30 + y / 8, y) {
+            (true, 20..180) => Rgba([shade, shade, shade, 255]),
+            _ => Rgba([0; 4]),
+        }
+    });
+    warned(&png(picture), Center, "transparency has another form");
+}
+
+#[test]
+fn centre_is_center() {
+    assert_eq!("centre".parse(), Ok(Center));
+    let scene = |axis: &str| {
+        let text = format!(
+            "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n[[object]]\nprofile = \"king.svg\"\nprofile_axis = \"{axis}\""
+        );
+        let mut file = revmap_files::SceneFile::parse(&text, crate::asset("profiles")).unwrap();
+        file.scene(&[]).map(|scene| scene.objects[0].profile.radius)
+    };
+    assert_eq!(scene("centre").unwrap(), scene("center").unwrap());
+    let refusal = scene("middle").unwrap_err().to_string();
+    assert!(!refusal.contains("centre"), "{refusal}");
 }
