@@ -6,11 +6,12 @@ use crate::common::host::{Checked, Host, add, borrow, never, open, view_of};
 use crate::common::ways::STAGES;
 use crate::common::{placement, shapes};
 use crate::embedding::{hundred, options, three};
+use crate::random::Random;
 use crate::unsubmitted::{Drawn, differ};
 use glam::DVec3;
 use revmap::gpu::{Device, FrameStatistics, View};
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Light, Object, Scene, Shadow};
+use revmap::scene::{Clip, Light, Lighting, Object, Offset, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use revmap_searches::CIRCLE;
 use std::sync::Arc;
@@ -352,4 +353,80 @@ fn special_forms_are_taken_when_they_are_compiled() {
     assert!(drawn.renderer.special_forms().is_empty());
     drawn.renderer.prewarm().unwrap().compile().unwrap();
     assert_eq!(prepared(&mut drawn).hidden, 0);
+}
+
+/// A random change of the objects, lights or view, but of no technique.
+fn change(warm: &mut Warm, solid: &Object, random: &mut Random) {
+    let mut one_of = |count: usize| (random.next() * count as f64) as usize;
+    let (ids, renderer) = (&mut warm.drawn.ids, &mut warm.drawn.renderer);
+    let id = ids[one_of(ids.len())];
+    let place = |n: usize| placement([-0.9 * n as f64, 0.3, 0.0], [0.0; 3], [1.0; 3]);
+    match one_of(8) {
+        0 if ids.len() < 5 => ids.push(renderer.add(solid.clone()).unwrap()),
+        1 if ids.len() > 1 => {
+            ids.retain(|other| *other != id);
+            renderer.remove(id).unwrap();
+        }
+        2 => renderer
+            .set_mask(id, [0, 1, 3, u32::MAX][one_of(4)])
+            .unwrap(),
+        3 => {
+            let [extend, bevel] = [[0.0, 0.0], [0.3, 0.0], [-0.02, 0.1], [0.05, 0.2]][one_of(4)];
+            let offset = Offset {
+                extend,
+                bevel,
+                ..Offset::default()
+            };
+            renderer.set_offset(id, offset).unwrap();
+        }
+        4 => {
+            let count = [0, 2, 9, 70][one_of(4)];
+            renderer
+                .set_instances(id, (0..count).map(place).collect::<Vec<_>>())
+                .unwrap();
+        }
+        5 => {
+            let lights = vec![Light::pair()[0]; one_of(5)];
+            renderer
+                .set_lighting(&Lighting {
+                    lights,
+                    ..Lighting::default()
+                })
+                .unwrap();
+        }
+        6 => {
+            let clip = [Clip::None, Clip::Box][one_of(2)];
+            let object = renderer.object(id).unwrap().clone();
+            renderer.set(id, Object { clip, ..object }).unwrap();
+        }
+        _ => {
+            let eye = [1.0, 0.02, 0.4, 6.0, 300.0][one_of(5)];
+            let mut scene = three();
+            scene.camera.eye *= eye;
+            warm.drawn.view = view_of(&scene, &options()).with_mask([1, 2, u32::MAX][one_of(3)]);
+        }
+    }
+}
+
+/// `REVMAP_FRAMES=50000` prepares as many frames of each stage.
+#[test]
+fn random_changes_compile_nothing_and_hide_nothing() {
+    let frames = std::env::var("REVMAP_FRAMES").map_or(300, |n| n.parse().unwrap());
+    let (host, device) = opened();
+    let mut random = Random(7);
+    for stage in STAGES {
+        let solid = vase().objects.remove(0);
+        let mut warm = Warm::new(&host, &device, (stage, &exact()), &vase());
+        let mut shown = 0;
+        for frame in 0..frames {
+            for _ in 0..=(random.next() * 3.0) as usize {
+                change(&mut warm, &solid, &mut random);
+            }
+            shown += warm.frame(&format!("frame {frame}")).objects;
+        }
+        assert!(
+            shown as usize > frames,
+            "{shown} objects in {frames} frames"
+        );
+    }
 }
