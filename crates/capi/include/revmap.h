@@ -632,8 +632,9 @@ typedef struct RevmapSearch {
     uint32_t map_source;
     /// A RevmapMapFormat.
     uint32_t map_format;
-    /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
-    /// is drawn; below it the box is. UINT32_MAX: boxes only.
+    /// Least pixels of an object's box for each visible frustum of its cells at which cells are
+    /// drawn; below it tiles or the box are. It also limits lists of patches in compute. UINT32_MAX:
+    /// neither cells nor lists.
     uint32_t proxy_min_pixels;
     /// Not read.
     uint32_t padding;

@@ -131,8 +131,9 @@ pub struct RevmapSearch {
     pub map_source: u32,
     /// A RevmapMapFormat.
     pub map_format: u32,
-    /// Smallest projected area, in pixels per visible band of an object's hull, at which the hull
-    /// is drawn; below it the box is. UINT32_MAX: boxes only.
+    /// Least pixels of an object's box for each visible frustum of its cells at which cells are
+    /// drawn; below it tiles or the box are. It also limits lists of patches in compute. UINT32_MAX:
+    /// neither cells nor lists.
     pub proxy_min_pixels: u32,
     /// Not read.
     pub padding: u32,

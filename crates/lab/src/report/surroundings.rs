@@ -5,7 +5,7 @@ use super::machine::field;
 use std::collections::BTreeMap;
 
 /// Starts of the names of variables that Vulkan's loader and layers, Mesa's and other drivers read.
-const PREFIXES: [&str; 24] = [
+const PREFIXES: [&str; 25] = [
     "ANV_",
     "DRAW_",
     "DRI_",
@@ -24,6 +24,7 @@ const PREFIXES: [&str; 24] = [
     "RADEON_",
     "RADV_",
     "RAYON_NUM_THREADS",
+    "REVMAP_SPECIALITIES",
     "ST_",
     "TU_",
     "VK_",
