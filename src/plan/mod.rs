@@ -63,7 +63,8 @@ pub(crate) struct Step {
     pub phase: u32,
     pub variant: Variant,
     pub kind: Kind,
-    /// Index of the object whose textures are bound, and whose block and tables if it is the only one.
+    /// Index of the object whose textures are bound, and whose block and tables if it is the only
+    /// one.
     pub object: u32,
     pub call: Call,
 }
@@ -134,7 +135,7 @@ fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
         *looks.entry((of.technique, of.textures)).or_insert(0u32) += 1;
     }
     let of_look = |of: &PlanObject| {
-        let alone = looks.get(&(of.technique, of.textures)) == Some(&1) && with.holds_tables(of);
+        let alone = looks.get(&(of.technique, of.textures)) == Some(&1);
         Variant {
             technique: of.technique,
             speciality: Speciality {

@@ -73,8 +73,6 @@ pub(crate) struct Conditions {
     pub subgroup_size: u32,
     /// Most bytes in a storage buffer.
     pub most_storage: u32,
-    /// Most vectors of one solid's tables that a uniform buffer holds.
-    pub own_vectors: usize,
     /// Same value as
     /// [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
     pub least_pixels: u32,
@@ -212,12 +210,6 @@ impl Conditions {
     /// Most words that lists of tiles may take.
     pub fn room(&self) -> u64 {
         u64::from(self.most_storage) / 16
-    }
-
-    /// True if a uniform buffer holds the tables of an object's finest level.
-    pub fn holds_tables(&self, of: &PlanObject) -> bool {
-        of.surface()
-            .is_none_or(|surface| surface.tables().vectors.len() <= self.own_vectors)
     }
 
     /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the

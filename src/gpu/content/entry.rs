@@ -158,7 +158,8 @@ impl Entry {
         }
     }
 
-    /// The object that will be drawn, with earlier placements; the object as set before its boundary is made.
+    /// The object that will be drawn, with earlier placements; before its boundary is made, the
+    /// object as set.
     pub fn shape(&self) -> &Object {
         let grown = self.boundary.as_ref().and_then(|b| b.grown.as_ref());
         grown.map_or(&self.set.object, |grown| &grown.object)
@@ -219,7 +220,8 @@ impl PreparedObject {
         Ok(known.first().map(|(level, _)| *level))
     }
 
-    /// The surface of a level; none for a search on the map. A new surface is added to `new`; it is not made yet.
+    /// The surface of a level; none for a search on the map. A new surface is added to `new`; it is
+    /// not made yet.
     pub fn surface(
         &self,
         level: u8,
@@ -270,7 +272,8 @@ impl PreparedObject {
         ]
     }
 
-    /// The block that shaders read. `outside`: as in [`FramePlan::outside`](crate::plan::FramePlan::outside).
+    /// The block that shaders read. `outside`: as in
+    /// [`FramePlan::outside`](crate::plan::FramePlan::outside).
     #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
     pub fn block(&self, planned: &PlannedObject, outside: bool) -> ObjectBlock {
         let derived = &self.derived;

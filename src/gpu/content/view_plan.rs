@@ -135,7 +135,6 @@ impl Content {
             software: chosen.report.kind == "cpu",
             subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
-            own_vectors: chosen.constants().own_vectors as usize,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
