@@ -7,16 +7,32 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError, TryLockError};
+use std::time::Duration;
 
 /// Files that are being written.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the files that [`write_atomically`] has begun: for a program that ends within a call.
+/// Removes the files that [`write_atomically`] has begun, for a program that ends at once after this
+/// call: a thread that begins or ends a file from now on waits for that end.
 pub fn remove_unfinished() {
-    // Without the lock a file is being begun or ended at this moment.
-    for part in UNFINISHED.try_lock().iter().flat_map(|parts| parts.iter()) {
-        let _ = fs::remove_file(part);
+    /// The longest wait, in milliseconds. The thread that calls this may hold the lock itself, when
+    /// memory ends while it begins a file.
+    const LONGEST_WAIT: u32 = 500;
+    for _ in 0..LONGEST_WAIT {
+        let parts = match UNFINISHED.try_lock() {
+            Ok(parts) => parts,
+            Err(TryLockError::Poisoned(parts)) => parts.into_inner(),
+            Err(TryLockError::WouldBlock) => {
+                std::thread::sleep(Duration::from_millis(1));
+                continue;
+            }
+        };
+        for part in parts.iter() {
+            let _ = fs::remove_file(part);
+        }
+        // Otherwise the next file would be begun between this loop and the end of the program.
+        return std::mem::forget(parts);
     }
 }
 

@@ -53,7 +53,13 @@ fn limits_and_signals_leave_no_parts() {
     let mut command = limited(&format!("{RENDER} -o out.exr"));
     bench.refused_by(&mut command, 1, &["out.exr: cannot be written"]);
 
-    for signal in ["-TERM", "-HUP", "-INT"] {
+    // A signal comes at any place of a file's writing.
+    for (round, signal) in ["-TERM", "-HUP", "-INT"]
+        .iter()
+        .cycle()
+        .take(12)
+        .enumerate()
+    {
         let arguments =
             "animate scene.toml --frames 100000 --turn 360 --size 64x48 -o t --overwrite";
         let mut command = bench.command(arguments);
@@ -63,10 +69,11 @@ fn limits_and_signals_leave_no_parts() {
             assert!(begin.elapsed() < Duration::from_secs(120));
             std::thread::sleep(Duration::from_millis(2));
         }
+        std::thread::sleep(Duration::from_millis(3 * round as u64));
         let id = child.id().to_string();
         assert!(
             Command::new("kill")
-                .args([signal, &id])
+                .args([*signal, &id])
                 .status()
                 .unwrap()
                 .success()
