@@ -201,7 +201,7 @@ fn wrong_usage_is_told_in_one_line() {
 /// Ends a run by a signal once a file of its folder is there. Returns what it said, and its exit
 /// code.
 fn ended(bench: &Bench, command: &str, signal: &str, file: &str) -> (String, Option<i32>) {
-    let mut command = bench.command(&format!("{command} --out kept"));
+    let mut command = bench.heeding_signals(&format!("{command} --out kept"));
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let results = bench.path("kept").join(file);

@@ -61,6 +61,20 @@ impl Bench {
         command
     }
 
+    /// The same command behind a launcher, which passes its own environment and folder on.
+    pub fn launched(&self, launcher: &[&str], arguments: &str) -> Command {
+        let program = self.command(arguments);
+        let mut command = Command::new(launcher[0]);
+        command.args(&launcher[1..]).arg(program.get_program());
+        command.args(program.get_args()).current_dir(self.path(""));
+        command
+    }
+
+    /// The same command with HUP as the system has it, also where `nohup` runs the tests.
+    pub fn heeding_signals(&self, arguments: &str) -> Command {
+        self.launched(&["env", "--default-signal=HUP"], arguments)
+    }
+
     /// Names of all that lies in the folder.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();

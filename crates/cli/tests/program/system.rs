@@ -43,14 +43,8 @@ fn results_must_reach_standard_output() {
 #[test]
 fn limits_and_signals_leave_no_parts() {
     let bench = Bench::new();
-    let limited = |arguments: &str| {
-        let program = bench.command(arguments);
-        let mut command = Command::new("prlimit");
-        command.arg("--fsize=500").arg(program.get_program());
-        command.args(program.get_args()).current_dir(bench.path(""));
-        command
-    };
-    let mut command = limited(&format!("{RENDER} -o out.exr"));
+    let arguments = format!("{RENDER} -o out.exr");
+    let mut command = bench.launched(&["prlimit", "--fsize=500"], &arguments);
     bench.refused_by(&mut command, 1, &["out.exr: cannot be written"]);
 
     // A signal comes at any place of a file's writing.
@@ -62,7 +56,7 @@ fn limits_and_signals_leave_no_parts() {
     {
         let arguments =
             "animate scene.toml --frames 100000 --turn 360 --size 64x48 -o t --overwrite";
-        let mut command = bench.command(arguments);
+        let mut command = bench.heeding_signals(arguments);
         let mut child = command.stderr(Stdio::null()).spawn().unwrap();
         let begin = Instant::now();
         while !bench.path("t/frame-00005.png").exists() {
