@@ -9,13 +9,13 @@
 void main()
 {
     Instance i = begin(uint(gl_InstanceIndex));
-    uint at = object.parts.x + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * RING_CORNERS));
+    uint at = shape.first_frustum + FRUSTUM_VECTORS * (uint(gl_VertexIndex) / (2u * RING_CORNERS));
     uint vertex = uint(gl_VertexIndex) % (2u * RING_CORNERS);
     vec4 rings = uintBitsToFloat(patch_tables[at]);
     vec2 rz = vertex < RING_CORNERS ? rings.xy : rings.zw;
     float angle = float(vertex % RING_CORNERS) * (6.28318530717958648 / float(RING_CORNERS));
-    gl_Position = clip_of(i, vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(object.axis.xy, 0.0));
-    hand_over(i, frame.forward.w);
+    gl_Position = clip_of(i, vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(shape.axis, 0.0));
+    hand_over(i, frame.depth_sense);
     cell_record = at;
     if (FETCHED_CELLS == 0u) {
         [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {

@@ -4,36 +4,34 @@
 #include "stage/stores.glsl"
 #include "stage/queue.glsl"
 
-// Returns the pixel of this invocation, the first word of its queue and the number of copies in it.
-uvec2 this_pixel(out uint first, out uint count)
+// Returns the tile of this invocation, and its pixel.
+QueueTile this_tile(out uvec2 pixel)
 {
-    uint at = 4u * (pushed.first + gl_WorkGroupID.x);
-    first = tile_words[at + 1u];
-    count = tile_words[at + 2u];
-    if (count != TILE_SPLIT) {
-        return tile_corner_of(tile_words[at]) + gl_LocalInvocationID.xy;
+    if (pushed.gathered == 0u) {
+        QueueTile tile = queue_tiles[pushed.first + gl_WorkGroupID.x];
+        pixel = corner_of(tile) + gl_LocalInvocationID.xy;
+        return tile;
     }
-    uint word = first + 3u * gl_LocalInvocationIndex;
-    first += tile_words[word + 1u];
-    count = tile_words[word + 2u];
-    return uvec2(tile_words[word] & 0xffffu, tile_words[word] >> 16);
+    const uint PIXELS = GROUP_PIXELS * GROUP_PIXELS;
+    GatheredPixel one = gathered_pixels[pushed.first + PIXELS * gl_WorkGroupID.x + gl_LocalInvocationIndex];
+    pixel = uvec2(one.position & 0xffffu, one.position >> 16);
+    return queue_tiles[one.tile];
 }
 
 void main()
 {
-    take_frame();
-    take_only_object(pushed.object);
-    uint first, count;
-    uvec2 pixel = this_pixel(first, count);
-    if (all(lessThan(pixel, frame.size.xy))) {
+    load_frame(pushed.object);
+    uvec2 pixel;
+    QueueTile tile = this_tile(pixel);
+    if (all(lessThan(pixel, frame.size))) {
         float depth = drawn_depth(pixel);
         uint index;
         Hit hit;
-        bool found = nearest_copy(first, count, bit_of(pixel), vec2(pixel), depth, index, hit);
+        bool found = nearest_copy(tile, bit_of(pixel), vec2(pixel), depth, index, hit);
         count_steps(pixel, hit);
         if (found) {
             Instance i = instances[index];
-            take_one_of_objects(i);
+            load(i);
             store(pixel, depth, shade(look_of(i, index), pixel_rays(i), pixel, hit));
         }
     }

@@ -1,31 +1,28 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Lists the patches that the rays of each single-copy tile may hit. A work group processes 64 records. If all records
-// have the same instance, the invocations first test all patches against a beam around the whole group. Each invocation
-// then tests only the remaining patches against its own tile.
+// Lists the patches that the rays of each single-copy tile may hit. A work group processes 64 tiles. If all of them have
+// the same instance, the invocations first test all patches against a beam around the whole group. Each invocation then
+// tests only the remaining patches against its own tile.
 #include "stage/patch_runs.glsl"
 #include "stage/beam.glsl"
 #include "core/meridian.glsl"
 
 const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
-const uint RECORDS = GROUP_PIXELS * GROUP_PIXELS;
+const uint TILES = GROUP_PIXELS * GROUP_PIXELS;
 shared uint met[MET_WORDS]; // one bit per patch
 shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles, pixels
 shared uint mixed; // 1 if the group has several instances, else 0
 
 void main()
 {
-    take_frame();
+    load_frame(pushed.object);
     uint self = gl_LocalInvocationIndex;
-    uint group_first = pushed.first + gl_WorkGroupID.x * RECORDS;
-    bool present = gl_WorkGroupID.x * RECORDS + self < pushed.count;
-    uint record = present ? group_first + self : group_first;
-    uint corner_word = tile_words[4u * record];
-    uvec2 corner = uvec2(corner_word & 0xffffu, corner_word >> 16);
-    uint number = tile_words[4u * record + 1u];
-    Instance instance = instances[ONE_OBJECT == 2u ? pushed.instance : number];
-    take_only_object(pushed.object);
-    take_one_of_objects(instance);
+    uint group_first = pushed.first + gl_WorkGroupID.x * TILES;
+    bool present = gl_WorkGroupID.x * TILES + self < pushed.count;
+    CopyTile tile = copy_tiles[present ? group_first + self : group_first];
+    uvec2 corner = square_corner(tile.square);
+    Instance instance = instances[ONE_OBJECT == 2u ? pushed.instance : tile.instance];
+    load(instance);
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
     uvec2 header = listed_table(0u).xy;
@@ -40,7 +37,7 @@ void main()
     atomicMin(low_y, corner.y);
     atomicMax(high_x, corner.x);
     atomicMax(high_y, corner.y);
-    if (ONE_OBJECT != 2u && number != tile_words[4u * group_first + 1u]) {
+    if (ONE_OBJECT != 2u && tile.instance != copy_tiles[group_first].instance) {
         atomicOr(mixed, 1u);
     }
     barrier();
@@ -53,7 +50,7 @@ void main()
         uint side = max(high_x - low_x, high_y - low_y) + GROUP_PIXELS;
         Beam wide = beam_of(rays, uvec2(low_x, low_y), side, farthest, unit);
         vec2 unused;
-        for (uint k = self; k < header.x; k += RECORDS) {
+        for (uint k = self; k < header.x; k += TILES) {
             if (may_meet(wide, k, unused)) {
                 atomicOr(met[k >> 5], 1u << (k & 31u));
             }
@@ -88,7 +85,7 @@ void main()
         }
     }
     bool shows = present && runs.any && outer.x <= outer.y;
-    if (shows && (cut || !append_runs(uvec2(corner_word, number), runs))) {
-        append(TREE_BIN, uvec4(corner_word, number, floatBitsToUint(all)));
+    if (shows && (cut || !append_runs(tile, runs))) {
+        append(TREE_BIN, BinTile(tile.square, tile.instance, floatBitsToUint(all)));
     }
 }

@@ -6,12 +6,11 @@
 
 void main()
 {
-    take_frame();
-    take_record();
-    take_only_object(pushed.object); // before any barrier: see take_frame()
+    load_frame(pushed.object);
+    load_tile();
     share_tile();
     barrier();
-    take_shared();
+    load_shared();
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     Hit hit;

@@ -10,8 +10,8 @@ layout(depth_greater) out float gl_FragDepth;
 void main()
 {
     vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
-    take_over();
-    take_over_tree();
+    load_varyings();
+    load_tree_varyings();
     PixelRays rays = varying_rays();
     Hit hit = NO_HIT;
     vec2 span = span_of_rays();

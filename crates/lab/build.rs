@@ -52,7 +52,6 @@ fn module(
         macros,
         hook: None,
         optimized,
-        for_tests: false,
     }
 }
 

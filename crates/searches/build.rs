@@ -64,7 +64,6 @@ fn generate() -> Fallible<()> {
         macros: listed.module.macros(),
         hook: Some(("search/hook.glsl", listed.hook)),
         optimized: true,
-        for_tests: false,
     });
     let modules = Modules {
         entries: &[LIBRARY],

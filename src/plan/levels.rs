@@ -65,9 +65,8 @@ impl CopyLevels {
 
     /// The same, from a copy's block.
     pub fn of_block(&self, copy: &InstanceBlock) -> usize {
-        let [_, _, _, across] = copy.position_sx;
-        let [y, z, depth, _] = copy.scale_depth;
-        self.of(depth, across.max(y).max(z))
+        let [x, y, z] = copy.scale;
+        self.of(copy.depth, x.max(y).max(z))
     }
 }
 

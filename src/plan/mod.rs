@@ -39,12 +39,12 @@ pub(crate) struct FramePlan {
     /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
-    /// Records of tiles, and the copies of tiles that have several.
-    pub words: Vec<u32>,
-    /// Words of the bins, to which the device sorts tiles by the length of their lists of patches.
-    pub bin_words: u32,
-    /// Words of the bins' heads, which come first and are zeroed before that.
-    pub bin_head_words: u32,
+    /// The buffer of tiles: see `tiles.glsl`.
+    pub tile_words: Vec<u32>,
+    /// Vectors of the bins, to which the device sorts tiles by the length of their lists of patches.
+    pub bin_vectors: u32,
+    /// Heads of the bins, a vector each, which come first and are zeroed before that.
+    pub bin_heads: u32,
     /// One path per object.
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
@@ -74,9 +74,9 @@ pub(crate) struct Step {
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
     Draws(Range<u32>),
-    /// Records of quads or tiles, for fragments.
+    /// Quads or tiles, for fragments.
     Tiles(Range<u32>),
-    /// Work groups; the head at this word of the bins holds their number.
+    /// Work groups; this head of the bins holds their number.
     Indirect(u32, Pushed),
     /// This many work groups.
     Groups(u32, Pushed),

@@ -207,9 +207,9 @@ impl Conditions {
         pixels(tiles) >= least.saturating_mul(patches)
     }
 
-    /// Most words that lists of tiles may take.
+    /// Most bytes that bins of tiles may take.
     pub fn room(&self) -> u64 {
-        u64::from(self.most_storage) / 16
+        u64::from(self.most_storage) / 4
     }
 
     /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the

@@ -1,11 +1,11 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::LIST_LENGTHS;
-use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, Visible};
+use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, TILE_PIXELS, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
 };
-use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS, TILE_BINS, TREE_BIN};
+use crate::shader::generated::{MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
 use std::ops::Range;
@@ -51,29 +51,29 @@ impl FramePlan {
             layer_of.push(layer as u32);
         }
         let layers = layers.all;
-        let queues = |layer: &Layer| {
+        let has_queues = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].object.placements().len();
             let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
             enough && Conditions::searches_queues(&layer.variant.technique)
         };
-        let queues: Vec<bool> = layers.iter().map(queues).collect();
-        let mut dealt = visible.deal(with.compute, &layer_of, &queues);
-        leave_out_lists(view, objects, &layers, &mut dealt.layers, with);
+        let queues: Vec<bool> = layers.iter().map(has_queues).collect();
+        let mut tiles = visible.write(with.compute, &layer_of, &queues);
+        leave_out_lists(view, objects, &layers, &mut tiles.layers, with);
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {
                 self.paths[n] = DrawPath::Nothing;
             }
             let shows = !copies.is_empty();
-            let lists = || !dealt.layers[layer_of[batch] as usize].listed.is_empty();
+            let lists = || !tiles.layers[layer_of[batch] as usize].listed.is_empty();
             self.parts[n][Part::Tables as usize] = shows;
             self.parts[n][Part::Patches as usize] =
                 shows && visible.lists_patches(batch) && lists();
             self.copies[n] = (!with.casts).then_some(copies);
         }
         if with.compute {
-            self.dispatch(&layers, &dealt.layers, objects);
+            self.dispatch(&layers, &tiles.layers, objects);
         } else {
-            for ((layer, tiles), queues) in layers.iter().zip(&dealt.layers).zip(queues) {
+            for ((layer, of_layer), queues) in layers.iter().zip(&tiles.layers).zip(queues) {
                 let step = |kind, call| Step {
                     phase: 0,
                     variant: layer.variant.of_kind(kind),
@@ -82,26 +82,26 @@ impl FramePlan {
                     call,
                 };
                 // Both are recorded, even if one is empty: the number of commands follows the content.
-                let quads = step(kind, Call::Tiles(tiles.quads.clone()));
+                let quads = step(kind, Call::Tiles(of_layer.quads.clone()));
                 self.steps.push(quads);
                 if queues {
-                    let tiles = step(Kind::Tiles, Call::Tiles(tiles.queued.clone()));
+                    let tiles = step(Kind::Tiles, Call::Tiles(of_layer.queued.clone()));
                     self.steps.push(tiles);
                 }
             }
         }
-        self.words = dealt.words;
+        self.tile_words = tiles.words;
     }
 
     /// Adds the dispatches of tiles. Lists of patches come first, then tiles of one copy, which
     /// share no pixels. Tiles of several copies follow, layer by layer.
     fn dispatch(&mut self, layers: &[Layer], tiles: &[LayerTiles], objects: &[PlanObject]) {
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.bin_head_words = 4 * TILE_BINS * tiles.iter().map(heads).sum::<u32>();
+        self.bin_heads = TILE_BINS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
         let mut later = Vec::new();
         let mut head = 0;
-        self.bin_words = self.bin_head_words;
+        self.bin_vectors = self.bin_heads;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = layer.variant;
             let step = |phase, kind, call| Step {
@@ -113,42 +113,48 @@ impl FramePlan {
             };
             let first = &objects[layer.objects[0] as usize];
             let (object, instance) = (first.number, first.first_instance);
-            for records in chunks(&tiles.listed) {
-                let count = records.end - records.start;
-                let (first, begin) = (records.start, self.bin_words);
+            for range in chunks(&tiles.listed, 1) {
+                let count = range.end - range.start;
+                let begin = self.bin_vectors;
                 let pushed = |bin| Pushed {
-                    first,
+                    first: range.start,
                     count,
                     heads: head,
-                    records: begin,
+                    tiles: begin,
                     bin,
-                    object,
-                    instance,
-                };
-                let groups = count.div_ceil(GROUP_PIXELS * GROUP_PIXELS);
-                let call = Call::Groups(groups, pushed(0));
-                self.steps.push(step(0, Kind::TileLists, call));
-                let call = |bin| Call::Indirect(head + 4 * bin, pushed(bin));
-                for (bin, length) in (0..).zip(LIST_LENGTHS) {
-                    later.push(step(1, Kind::TilePatches(length), call(bin)));
-                }
-                later.push(step(1, Kind::TileTree, call(TREE_BIN)));
-                head += 4 * TILE_BINS;
-                self.bin_words += 4 * TILE_BINS * count;
-            }
-            let alone = chunks(&tiles.single).map(|records| (1, Kind::TileTree, records));
-            let shared = chunks(&tiles.queued).map(|records| (phase, Kind::TileCopies, records));
-            for (phase, kind, records) in alone.chain(shared) {
-                let pushed = Pushed {
-                    first: records.start,
                     object,
                     instance,
                     ..Pushed::default()
                 };
-                let call = Call::Groups(records.len() as u32, pushed);
-                later.push(step(phase, kind, call));
+                let call = Call::Groups(count.div_ceil(TILE_PIXELS), pushed(0));
+                self.steps.push(step(0, Kind::TileLists, call));
+                let call = |bin| Call::Indirect(head + bin, pushed(bin));
+                for (bin, length) in (0..).zip(LIST_LENGTHS) {
+                    later.push(step(1, Kind::TilePatches(length), call(bin)));
+                }
+                later.push(step(1, Kind::TileTree, call(TREE_BIN)));
+                head += TILE_BINS;
+                self.bin_vectors += TILE_BINS * count;
             }
-            phase += u32::from(!tiles.queued.is_empty());
+            let ranges = [
+                (1, Kind::TileTree, &tiles.single, 1),
+                (phase, Kind::TileCopies, &tiles.queued, 1),
+                (phase, Kind::TileCopies, &tiles.gathered, TILE_PIXELS),
+            ];
+            for (phase, kind, range, per_group) in ranges {
+                for range in chunks(range, per_group) {
+                    let pushed = Pushed {
+                        first: range.start,
+                        gathered: u32::from(per_group > 1),
+                        object,
+                        instance,
+                        ..Pushed::default()
+                    };
+                    let call = Call::Groups(range.len() as u32 / per_group, pushed);
+                    later.push(step(phase, kind, call));
+                }
+            }
+            phase += u32::from(!tiles.queued.is_empty() || !tiles.gathered.is_empty());
         }
         later.sort_by_key(|step| step.phase);
         self.steps.extend(later);
@@ -172,8 +178,8 @@ fn leave_out_lists(
             tiles.unlist();
         }
     }
-    let words = |l: &LayerTiles| u64::from(bin_words(l.listed.len() as u32));
-    if tiles.iter().map(words).sum::<u64>() > with.room() {
+    let bytes = |l: &LayerTiles| 16 * u64::from(bin_vectors(l.listed.len() as u32));
+    if tiles.iter().map(bytes).sum::<u64>() > with.room() {
         tiles.iter_mut().for_each(LayerTiles::unlist);
     }
 }
@@ -202,15 +208,15 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
     }
 }
 
-/// Words of the bins of this many tiles: see `compute.glsl`.
-fn bin_words(tiles: u32) -> u32 {
-    4 * TILE_BINS * (tiles.div_ceil(MOST_GROUPS) + tiles)
+/// Vectors of the bins of this many tiles: see `compute.glsl`.
+fn bin_vectors(tiles: u32) -> u32 {
+    TILE_BINS * (tiles.div_ceil(MOST_GROUPS) + tiles)
 }
 
-/// Runs of records, each short enough for one dispatch.
-fn chunks(records: &Range<u32>) -> impl Iterator<Item = Range<u32>> {
-    let Range { start, end } = *records;
+/// Parts of a range, each short enough for one dispatch of groups of so many.
+fn chunks(range: &Range<u32>, per_group: u32) -> impl Iterator<Item = Range<u32>> {
+    let (Range { start, end }, most) = (range.clone(), per_group * MOST_GROUPS);
     (start..end)
-        .step_by(MOST_GROUPS as usize)
-        .map(move |first| first..end.min(first + MOST_GROUPS))
+        .step_by(most as usize)
+        .map(move |first| first..end.min(first + most))
 }

@@ -110,7 +110,7 @@ fn check(view: &View) {
             _ => None,
         });
         for record in quads.flatten() {
-            let word = plan.words[4 * record as usize];
+            let word = plan.tile_words[4 * record as usize];
             let at = |shift: u32| f64::from(word >> shift & ((1 << QUAD_BITS) - 1));
             let side = f64::from(1u32 << (word >> (2 * QUAD_BITS)));
             let ([x, y], half) = ([at(0), at(QUAD_BITS)], 0.5);
@@ -118,7 +118,7 @@ fn check(view: &View) {
             assert!(y + half >= top && y + side - half <= bottom, "{view:?}");
         }
         if left == right || top == bottom {
-            assert!(plan.words.is_empty(), "{view:?}");
+            assert!(plan.tile_words.is_empty(), "{view:?}");
         }
     }
 }

@@ -90,11 +90,11 @@ pub enum Search {
 /// The stored values of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Output {
-    /// Only colour.
+    /// Only colour, in compute and by searches of other crates.
     Color,
     /// Every plane of a frame.
     Planes,
-    /// The planes of a host's list.
+    /// The planes of a list. In fragments also colour alone.
     List,
     /// Only depth.
     Depth,
@@ -196,12 +196,12 @@ pub fn modules() -> Vec<Module> {
     let both: &[Search] = &[Search::Live, Search::Quadric];
     let patches: &[Search] = &[Search::Quadric];
     let rows: [(Entry, &[Search], &[Output]); 6] = [
-        (Entry::Tree, both, &[Color, Planes, List, Depth]),
+        (Entry::Tree, both, &[Planes, List, Depth]),
         (Entry::TileTree, both, &[Color, Planes]),
         (Entry::TileCopies, both, &[Color, Planes]),
         (Entry::TilePatches, patches, &[Color, Planes]),
-        (Entry::Cells, patches, &[Color, Planes, List, Depth]),
-        (Entry::Tiles, patches, &[Color, Planes, List]),
+        (Entry::Cells, patches, &[Planes, List, Depth]),
+        (Entry::Tiles, patches, &[Planes, List]),
     ];
     for (entry, searches, outputs) in rows {
         for (&search, &output) in searches

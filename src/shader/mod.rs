@@ -14,7 +14,9 @@ mod variant;
 mod view_index;
 
 pub use blocks::{
-    CasterNode, FrameBlock, InstanceBlock, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
+    AppearanceBlock, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView, GatheredPixel,
+    InstanceBlock, LastCopy, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, QueueBlock, QueueTile,
+    QueuedCopy, ShapeBlock,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

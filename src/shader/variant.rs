@@ -3,7 +3,7 @@
 //! variant of a technique is right for everything that the technique draws, so a frame may take it
 //! whenever a special one is not compiled.
 
-use super::catalogue::{Entry, Module, Search};
+use super::catalogue::{Entry, Module, Output, Search};
 use super::external::External;
 use super::generated as g;
 use super::technique::Technique;
@@ -229,10 +229,17 @@ impl Variant {
         if entry.makes_lists() {
             return Module::plain(entry);
         }
+        let (search, output) = (self.technique.search, self.technique.output);
+        // Fragments write their colour as the only plane of a list.
+        let listed = matches!(output, Output::Color) && !matches!(search, Search::External);
         Module {
             entry,
-            search: self.technique.search,
-            output: self.technique.output,
+            search,
+            output: if listed && !kind.is_compute() {
+                Output::List
+            } else {
+                output
+            },
         }
     }
 

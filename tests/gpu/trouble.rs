@@ -257,7 +257,7 @@ fn a_device_of_least_limits_is_refused_by_name() {
         ),
         (
             |l| l.max_push_constants_size = 16,
-            "maxPushConstantsSize of 28 (it has 16)",
+            "maxPushConstantsSize of 32 (it has 16)",
         ),
         (
             |l| l.max_compute_work_group_invocations = 32,

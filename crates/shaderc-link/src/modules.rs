@@ -25,8 +25,6 @@ pub struct Module {
     pub hook: Option<(&'static str, &'static str)>,
     /// Whether its words are optimised, which leaves out names.
     pub optimized: bool,
-    /// Whether it is kept for tests alone.
-    pub for_tests: bool,
 }
 
 /// Modules, and where their GLSL is. Of two folders that hold a file the first is read.
@@ -66,8 +64,7 @@ impl Modules<'_> {
         }
         let out = PathBuf::from(std::env::var("OUT_DIR")?);
         let mut list = String::new();
-        let packed = self.all.iter().zip(self.packed()?);
-        for (module, bytes) in packed.filter(|(module, _)| !module.for_tests) {
+        for (module, bytes) in self.all.iter().zip(self.packed()?) {
             let file = format!("{}.{ENDING}", module.name);
             fs::write(out.join(&file), bytes)?;
             write!(list, "include_bytes!({file:?}), ")?;

@@ -29,7 +29,7 @@ Surface surface_of(Look look, PixelRays rays, vec2 pixel, Hit hit, Shaded s, Coo
 {
     vec3 v = ray_direction(rays, pixel);
     vec3 way = rotate(look.rotation, v * look.scale_shininess.xyz); // of the ray per unit of depth
-    vec2 material = unpackUnorm2x16(object.parts.y);
+    vec2 material = unpackUnorm2x16(appearance.material);
     vec3 right, down;
     footprints(rays, v, hit, right, down);
     Surface surface;
@@ -44,8 +44,8 @@ Surface surface_of(Look look, PixelRays rays, vec2 pixel, Hit hit, Shaded s, Coo
     surface.uv = map_position(c);
     surface.uv_right = map_change(c, right);
     surface.uv_down = map_change(c, down);
-    surface.object = instances[look.instance].object.x;
-    surface.copy = look.instance - object.instances.x;
+    surface.object = instances[look.instance].object;
+    surface.copy = look.instance - appearance.first_instance;
     surface.pixel = pixel + 0.5;
     return surface;
 }

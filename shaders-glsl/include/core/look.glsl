@@ -17,7 +17,7 @@ struct Look {
 
 Light turned_to(vec4 rotation, Light light)
 {
-    light.towards.xyz = rotate(conjugate(rotation), light.towards.xyz);
+    light.towards = rotate(conjugate(rotation), light.towards);
     return light;
 }
 
@@ -26,12 +26,12 @@ Look look_of(Instance i, uint number)
 {
     Look look;
     look.rotation = i.rotation;
-    look.scale_shininess = vec4(scale_of(i), object.specular.y);
-    look.albedo_strength = vec4(object.albedo.rgb, object.specular.x);
-    look.ambient = frame.ambient.rgb;
+    look.scale_shininess = vec4(i.scale, appearance.shininess);
+    look.albedo_strength = vec4(appearance.color, appearance.specular);
+    look.ambient = frame.ambient;
     look.light_0 = turned_to(i.rotation, first_light);
     look.light_1 = turned_to(i.rotation, second_light);
-    look.position = i.position_sx.xyz;
+    look.position = i.position;
     look.instance = number;
     return look;
 }

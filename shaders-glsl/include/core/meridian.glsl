@@ -33,9 +33,9 @@ vec2 point_rz(Meridian m, float s)
 // adds a lane mask to all that follows.
 bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
 {
-    float R = object.bounds.x;
-    vec3 low = vec3(-R - object.axis.xy, object.bounds.z);
-    vec3 high = vec3(R - object.axis.xy, object.bounds.w);
+    float R = shape.half_side;
+    vec3 low = vec3(-R - shape.axis, shape.clip_low);
+    vec3 high = vec3(R - shape.axis, shape.clip_high);
     // A zero component gives infinities of the right sign. The exception is a point on a face, where 0 * inf is NaN.
     vec3 inverse = 1.0 / v;
     vec3 t_low = (low - eye) * inverse;
@@ -61,7 +61,7 @@ bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
     vec3 o = eye + t_in * v;
     float b = dot(o.xy, v.xy);
     float c = dot(o.xy, o.xy);
-    float radius2 = object.bounds.y * object.bounds.y;
+    float radius2 = shape.clip_radius * shape.clip_radius;
     float inside = b * b - m.a * (c - radius2);
     float root = sqrt(max(inside, 0.0));
     bool along_axis = !(m.a > 0.0);
@@ -96,7 +96,7 @@ vec2 between_sides(vec3 o, vec3 v, vec4 sides)
 // Returns the sides of the solid's box, relative to its axis.
 vec4 sides_of_box()
 {
-    return vec4(-object.bounds.xx, object.bounds.xx) - object.axis.xyxy;
+    return vec4(-vec2(shape.half_side), vec2(shape.half_side)) - shape.axis.xyxy;
 }
 
 vec3 face_normal(uint face, vec3 v, float sense)

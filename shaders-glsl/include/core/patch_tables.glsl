@@ -1,7 +1,7 @@
 // Tables of quadric patches. The tables of a level, in this order:
 // - ranges of z in front of the start, two records per vector, the first ones last;
 // - words, four per vector: first PATCH_NODES nodes of the tree, level by level. A node holds the least r^2 (rounded
-//   down, low half) and the largest (rounded up, high half) in units of object.patches.w. The runs of the rows follow,
+//   down, low half) and the largest (rounded up, high half) in units of shape.table_fact_2. The runs of the rows follow,
 //   first << RUN_BITS | count;
 // - records from FIRST_RECORD on, two vectors each: a patch's quadric, its guard.
 // Frusta of cells are stored separately (proxy_cells.vert).
@@ -24,34 +24,34 @@ const uint FIRST_RECORD = (PATCH_NODES + PATCH_ROWS) / 4u;
 
 uint patch_word(uint at)
 {
-    uint vector = object.patches.x + (at >> 2);
+    uint vector = shape.table + (at >> 2);
     return OWN_TABLES ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
-    uint vector = object.patches.x + at;
+    uint vector = shape.table + at;
     return uintBitsToFloat(OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector]);
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
-    uint vector = object.parts.z + at;
+    uint vector = shape.listed + at;
     return OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector];
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
-    uint vector = object.parts.z + at;
+    uint vector = shape.listed + at;
     return OWN_TABLES ? own_patch_tables[vector][k] : patch_tables[vector][k];
 }
 
 // Returns the least and largest r^2 of a node.
 vec2 node_extent(uint word)
 {
-    return vec2(word & 0xffffu, word >> 16) * uintBitsToFloat(object.patches.w);
+    return vec2(word & 0xffffu, word >> 16) * uintBitsToFloat(shape.table_fact_2);
 }
 
 #endif

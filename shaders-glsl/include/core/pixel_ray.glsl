@@ -22,11 +22,11 @@ struct PixelRays {
 PixelRays pixel_rays(Instance i)
 {
     PixelRays rays;
-    rays.origin = i.origin.xyz;
-    rays.base = max(i.scale_depth.z, 0.0);
-    rays.dir_00 = direction_to_object(i, frame.dir_00.xyz);
-    rays.dir_x = direction_to_object(i, frame.dir_x.xyz);
-    rays.dir_y = direction_to_object(i, frame.dir_y.xyz);
+    rays.origin = i.origin;
+    rays.base = max(i.depth, 0.0);
+    rays.dir_00 = direction_to_object(i, frame.dir_00);
+    rays.dir_x = direction_to_object(i, frame.dir_x);
+    rays.dir_y = direction_to_object(i, frame.dir_y);
     return rays;
 }
 
@@ -48,21 +48,21 @@ vec3 ray_direction(PixelRays rays, vec2 pixel)
 // Returns the width of a pixel at depth `t`, in units of depth.
 float pixel_width(float t)
 {
-    return ORTHO != 0u ? frame.dir_00.w : frame.dir_00.w * t;
+    return ORTHO != 0u ? frame.pixel_size : frame.pixel_size * t;
 }
 
 // Returns the depth of `t` in clip space, 0 to 1.
 float clip_depth_of(float t)
 {
-    return clamp(frame.dir_x.w + (ORTHO != 0u ? frame.dir_y.w * t : frame.dir_y.w / t), 0.0, 1.0);
+    return clamp(frame.depth_constant + (ORTHO != 0u ? frame.depth_factor * t : frame.depth_factor / t), 0.0, 1.0);
 }
 
 // Returns the depth buffer value of a depth in clip space: in the depth range of the viewport. At the far plane and
 // beyond, where nothing is drawn, it is the buffer's end that is far.
 float buffer_depth_of(float clip)
 {
-    vec4 view = frame_block.view;
-    return mix(view.y + view.z * clip, clip, clip == view.w);
+    float far = frame_block.far_depth;
+    return mix(frame_block.first_depth + frame_block.depth_range * clip, clip, clip == far);
 }
 
 // Returns the depth buffer value of `t`.

@@ -15,20 +15,15 @@ vec4 conjugate(vec4 q)
     return vec4(-q.xyz, q.w);
 }
 
-vec3 scale_of(Instance i)
-{
-    return vec3(i.position_sx.w, i.scale_depth.xy);
-}
-
 // Returns the clip coordinates of a point in object space.
 vec4 clip_of(Instance i, vec3 p)
 {
-    vec3 way = rotate(i.rotation, scale_of(i) * (p - vec3(0.0, 0.0, 0.5)));
-    float depth = i.scale_depth.z + dot(frame.forward.xyz, way);
-    vec2 xy = vec2(i.scale_depth.w, i.origin.w) + vec2(dot(frame.clip_x.xyz, way), dot(frame.clip_y.xyz, way));
-    bool parallel = frame.clip_x.w != 0.0;
+    vec3 way = rotate(i.rotation, i.scale * (p - vec3(0.0, 0.0, 0.5)));
+    float depth = i.depth + dot(frame.forward, way);
+    vec2 xy = vec2(i.clip_x, i.clip_y) + vec2(dot(frame.clip_x, way), dot(frame.clip_y, way));
+    bool parallel = frame.parallel != 0.0;
     // This is clip_depth_of of pixel_ray.glsl, times w.
-    float z = parallel ? frame.dir_x.w + frame.dir_y.w * depth : frame.dir_x.w * depth + frame.dir_y.w;
+    float z = parallel ? frame.depth_constant + frame.depth_factor * depth : frame.depth_constant * depth + frame.depth_factor;
     return vec4(xy, z, parallel ? 1.0 : depth);
 }
 
@@ -36,12 +31,12 @@ vec4 clip_of(Instance i, vec3 p)
 // positions is computed first, because it is exactly zero for the instance itself.
 vec3 point_to_axis(Instance i, vec3 origin, vec3 p)
 {
-    return rotate(conjugate(i.rotation), (origin - i.position_sx.xyz) + p) / scale_of(i) - vec3(object.axis.xy, 0.0);
+    return rotate(conjugate(i.rotation), (origin - i.position) + p) / i.scale - vec3(shape.axis, 0.0);
 }
 
 vec3 direction_to_object(Instance i, vec3 d)
 {
-    return rotate(conjugate(i.rotation), d) / scale_of(i);
+    return rotate(conjugate(i.rotation), d) / i.scale;
 }
 
 #endif

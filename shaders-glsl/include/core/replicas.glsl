@@ -9,15 +9,15 @@
 vec3 cell_sense(vec3 cell)
 {
     vec3 odd = cell - 2.0 * floor(cell * 0.5);
-    return 1.0 - 2.0 * vec3(uvec3(object.cells.w) >> uvec3(0u, 1u, 2u) & 1u) * odd;
+    return 1.0 - 2.0 * vec3(uvec3(shape.flags) >> uvec3(0u, 1u, 2u) & 1u) * odd;
 }
 
 // Converts a lattice position to the cell's object space, including its reflection. The cell's middle maps to the
 // box's.
 vec3 in_cell(vec3 position, vec3 cell)
 {
-    vec3 size = vec3(2.0 * object.bounds.xx, 1.0);
-    return ((position - cell - 0.5) * cell_sense(cell) + 0.5) * size - vec3(object.axis.xy + object.bounds.xx, 0.0);
+    vec3 size = vec3(2.0 * vec2(shape.half_side), 1.0);
+    return ((position - cell - 0.5) * cell_sense(cell) + 0.5) * size - vec3(shape.axis + vec2(shape.half_side), 0.0);
 }
 
 // Returns true if the replica of a cell is solid at `p`, relative to its axis.
@@ -37,9 +37,9 @@ bool is_solid(vec3 p, inout uint steps)
 bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
 {
     // Lattice units: a cell has size 1 and the box's lower corner is at 0.
-    vec3 count = vec3(object.cells.xyz);
-    vec3 size = vec3(2.0 * object.bounds.xx, 1.0);
-    vec3 o = (eye + vec3(object.axis.xy + object.bounds.xx, 0.0)) * count / size;
+    vec3 count = vec3(shape.replicas);
+    vec3 size = vec3(2.0 * vec2(shape.half_side), 1.0);
+    vec3 o = (eye + vec3(shape.axis + vec2(shape.half_side), 0.0)) * count / size;
     vec3 d = v * count / size;
     vec3 inverse = 1.0 / mix(d, vec3(1e-30), equal(d, vec3(0.0)));
     vec3 t_low = -o * inverse;
@@ -50,7 +50,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
     float t_out = min(far.x, min(far.y, far.z));
     vec3 stride = vec3(greaterThanEqual(d, vec3(0.0)));
     vec3 cell = clamp(floor(o + t * d), vec3(0.0), count - 1.0);
-    uint most = REPLICAS == 0u ? 1u : object.cells.x + object.cells.y + object.cells.z;
+    uint most = REPLICAS == 0u ? 1u : shape.replicas.x + shape.replicas.y + shape.replicas.z;
     bool inside = false; // the ray comes from a replica that is solid at the border
     for (uint i = 0u; i < most && (REPLICAS == 0u || t <= t_out); ++i) {
         vec3 local = eye;

@@ -31,8 +31,8 @@ void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
     right = footprint(v, rays.dir_x, normal, t) * profile_units();
     down = footprint(v, rays.dir_y, normal, t) * profile_units();
     if (REPLICAS != 0u) {
-        right *= hit.sense * vec3(object.cells.xyz);
-        down *= hit.sense * vec3(object.cells.xyz);
+        right *= hit.sense * vec3(shape.replicas);
+        down *= hit.sense * vec3(shape.replicas);
     }
 }
 
@@ -41,11 +41,11 @@ void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
 // Returns the light reflected from one light, in turned space.
 vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 {
-    vec3 middle = light.towards.xyz + view;
+    vec3 middle = light.towards + view;
     float aligned = dot(n, middle) * inversesqrt(max(dot(middle, middle), 1e-20));
     float highlight = pow(max(aligned, 0.0), look.scale_shininess.w);
-    float facing = dot(n, light.towards.xyz);
-    vec3 reflected = light.color.rgb * (albedo * facing + look.albedo_strength.w * highlight);
+    float facing = dot(n, light.towards);
+    vec3 reflected = light.color * (albedo * facing + look.albedo_strength.w * highlight);
     return facing > 0.0 ? reflected : vec3(0.0);
 }
 
@@ -66,7 +66,7 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     s.uv = vec2(0.0);
     vec3 shaded = turned;
     // Normal in the replica's own space, which is reflected and scaled to its cell.
-    vec3 count = vec3(object.cells.xyz);
+    vec3 count = vec3(shape.replicas);
     vec3 n = unit(REPLICAS == 0u ? hit.normal : hit.normal * hit.sense / count);
     Coordinates c = texture_coordinates(hit.point, n);
     s.uv = c.uv;
@@ -79,7 +79,7 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
         if (BUMP != BUMP_OFF) {
             vec3 tilted = bumped(n, hit.point, c, right, down);
             tilted = normalize((REPLICAS == 0u ? tilted : tilted * hit.sense * count) / scale);
-            shaded = object.texturing.z == 0.0 ? turned : tilted;
+            shaded = appearance.bump == 0.0 ? turned : tilted;
         }
     }
     // The back of a surface, seen from within, is lit like a front. Products with a sign would be rounded differently by
@@ -96,9 +96,9 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     // A shadow ray starts off the surface, so that it cannot hit the surface itself. The offset is a few roundings for
     // exact patches and 1.5 texels for a map. Offsets are object space lengths, which a scale does not change equally
     // along all axes.
-    float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * object.map.z;
+    float off = SEARCH == SEARCH_QUADRIC ? 5e-5 : 1.5 * shape.texel;
     float lift = off * length(hit.normal) * inversesqrt(max(dot(hit.normal / scale, hit.normal / scale), 1e-30));
-    vec3 from_axis = ray_origin(rays, pixel) + vec3(object.axis.xy, 0.0) + hit.t * v;
+    vec3 from_axis = ray_origin(rays, pixel) + vec3(shape.axis, 0.0) + hit.t * v;
     vec3 point = rotate(look.rotation, from_axis * scale + lift * outward); // relative to the instance, world axes
     // The first two lights are unrolled: a loop costs software drivers a sixth of a frame or more, even with no
     // iterations. Shadow code is so long that all lights share one loop.
@@ -109,11 +109,11 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
         }
     }
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
-        for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.size.z; ++n) {
+        for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.light_count; ++n) {
             Light light = turned_to(look.rotation, frame_block.lights[n]);
             vec3 reflected = blinn_phong(look, light, lit, view, s.albedo);
             if (SHADOW != SHADOW_OFF && reflected != vec3(0.0)) {
-                Disc disc = disc_of(rotate(look.rotation, light.towards.xyz), light.towards.w, uvec2(pixel + 0.5));
+                Disc disc = disc_of(rotate(look.rotation, light.towards), light.cap, uvec2(pixel + 0.5));
                 reflected *= light_reaching(look.position, point, rotate(look.rotation, outward), disc);
             }
             color += reflected;

@@ -5,13 +5,6 @@
 #include "core/replicas.glsl"
 
 // The hierarchy of boxes around the copies of all objects, in depth-first order. src/plan/casters.rs builds it.
-struct CasterNode {
-    vec3 middle; // of its box, from the origin of the hierarchy, world axes
-    uint next;   // index of the node after its subtree; of a copy: index of its shape map
-    vec3 half_size;
-    uint instance; // index of the copy, or INNER_NODE
-};
-
 layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
     CasterNode casters[];
 };
@@ -75,11 +68,11 @@ struct Cone {
 Cone cone_to(Disc disc, vec3 origin, vec3 point)
 {
     Cone cone;
-    cone.from = frame_block.caster_eye.xyz + origin + point;
+    cone.from = frame_block.casters.eye + origin + point;
     cone.inverse = 1.0 / mix(disc.middle, vec3(1e-20), lessThan(abs(disc.middle), vec3(1e-20)));
     cone.widens = sqrt(disc.cap * (2.0 - disc.cap)) / max(1.0 - disc.cap, 1e-4);
     // Rays begin in the hierarchy's box.
-    cone.slack = 2e-6 * (length(frame_block.caster_eye.xyz) + length(frame_block.caster_half_size.xyz));
+    cone.slack = 2e-6 * (length(frame_block.casters.eye) + length(frame_block.casters.half_size));
     return cone;
 }
 
@@ -133,14 +126,13 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, uint co
 uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
 {
     // The root is in the block of the frame, which software drivers read much faster than the nodes.
-    vec4 middle = frame_block.caster_middle;
-    vec4 half_size = frame_block.caster_half_size;
-    bool meets = may_meet(cone_to(disc, origin, point), middle.xyz, half_size.xyz);
-    uint count = meets ? floatBitsToUint(middle.w) : 0u;
-    uint root = meets ? floatBitsToUint(half_size.w) : INNER_NODE;
+    CasterRoot all = frame_block.casters;
+    bool meets = may_meet(cone_to(disc, origin, point), all.middle, all.half_size);
+    uint count = meets ? all.node_count : 0u;
+    uint root = meets ? all.only_copy : INNER_NODE;
     // The index of a map must be the same in all invocations, so each map has a walk of its own.
 #if READS_MAP
-    uint maps = floatBitsToUint(frame_block.caster_eye.w);
+    uint maps = frame_block.casters.map_count;
 #else
     uint maps = 1u;
 #endif
@@ -153,11 +145,11 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
                 break;
             }
             Instance i = instances[met];
-            take_shape(i);
+            load_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load
             // gives 0, and a loop's counter an index without a texture.
-            shadow_map = int(objects[i.object.x].object.instances.z);
+            shadow_map = int(objects[i.object].object.shape.shadow_map);
 #endif
             left = unstopped_by(i, origin, point, disc, left);
         }

@@ -33,11 +33,11 @@ struct Cell {
 
 Cell shape_cell(vec2 rz)
 {
-    vec2 size = object.map.xy;
-    vec2 texel = vec2(rz.x, 1.0 - rz.y) * object.map.y - 0.5;
+    vec2 size = shape.map_size;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) * shape.map_size.y - 0.5;
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     Cell cell;
-    cell.d = gather_map((base + 1.0) * (1.0 / size)) * object.map.w;
+    cell.d = gather_map((base + 1.0) * (1.0 / size)) * shape.map_scale;
     // The texel beyond the axis equals the first by symmetry.
     cell.position = vec2(max(texel.x - base.x, 0.0), texel.y - base.y);
     cell.position = clamp(cell.position, vec2(0.0, -0.5), vec2(1.5));
@@ -55,18 +55,18 @@ vec2 cell_gradient(Cell cell)
 {
     float dr = mix(cell.d.z - cell.d.w, cell.d.y - cell.d.x, cell.position.y);
     float dj = mix(cell.d.x - cell.d.w, cell.d.y - cell.d.z, cell.position.x);
-    return vec2(dr, -dj) * object.map.y;
+    return vec2(dr, -dj) * shape.map_size.y;
 }
 
 vec2 papers_coordinates(vec2 rz)
 {
-    return vec2(rz.x, 1.0 - rz.y) / (object.map.xy * object.map.z);
+    return vec2(rz.x, 1.0 - rz.y) / (shape.map_size * shape.texel);
 }
 
 float map_distance(vec2 rz)
 {
     if (RGBA8 != 0u) {
-        return filter_map(papers_coordinates(rz)).b * object.map.w;
+        return filter_map(papers_coordinates(rz)).b * shape.map_scale;
     }
     return cell_distance(shape_cell(rz));
 }
@@ -81,7 +81,7 @@ vec2 creased_gradient(vec2 rz, vec2 along)
     if (len > 0.99) {
         return g;
     }
-    vec2 aside = vec2(-g.y, g.x) * (1.5 * object.map.z / max(len, 1e-3));
+    vec2 aside = vec2(-g.y, g.x) * (1.5 * shape.texel / max(len, 1e-3));
     Cell left = shape_cell(rz + aside);
     Cell right = shape_cell(rz - aside);
     vec2 g_left = cell_gradient(left);

@@ -7,15 +7,15 @@
 float offset_width(float z)
 {
     if (!bool(BEVELED)) {
-        return object.offset.x;
+        return shape.extend;
     }
-    return object.offset.x + object.offset.y * min(1.0 - z, object.offset.z);
+    return shape.extend + shape.bevel * min(1.0 - z, shape.chamfer);
 }
 
 // Returns dw/dz.
 float offset_slope(float z)
 {
-    return bool(BEVELED) && 1.0 - z < object.offset.z ? -object.offset.y : 0.0;
+    return bool(BEVELED) && 1.0 - z < shape.chamfer ? -shape.bevel : 0.0;
 }
 
 float field(vec2 rz)

@@ -21,8 +21,8 @@ struct Coordinates {
 // increase, not normalised.
 float arc_length(vec2 rz, out vec2 rising)
 {
-    vec2 size = object.map.xy;
-    vec2 texel = vec2(rz.x, 1.0 - rz.y) / object.map.z - 0.5;
+    vec2 size = shape.map_size;
+    vec2 texel = vec2(rz.x, 1.0 - rz.y) / shape.texel - 0.5;
     vec2 base = clamp(floor(texel), vec2(0.0), max(size - 2.0, 0.0));
     vec4 eta = textureGather(arc_map, (base + 1.0) / size);
     float most = max(max(eta.x, eta.y), max(eta.z, eta.w));
@@ -37,21 +37,21 @@ float arc_length(vec2 rz, out vec2 rising)
 // Returns profile units per object unit; the box may have grown with the offset.
 float profile_units()
 {
-    return object.specular.z;
+    return appearance.box_height;
 }
 
 // Returns the coordinates at `point`, object units relative to the axis. `n`: normal. Gradients are per profile unit.
 Coordinates texture_coordinates(vec3 point, vec3 n)
 {
     Coordinates c;
-    vec3 p = point * profile_units() - vec3(0.0, 0.0, object.specular.w);
+    vec3 p = point * profile_units() - vec3(0.0, 0.0, appearance.box_low);
     float r2 = dot(p.xy, p.xy);
     float r = sqrt(r2);
     c.grad_xi = vec3(-p.y, p.x, 0.0) / (2.0 * PI * max(r2, 1e-12));
     c.uv.x = r > 0.0 ? (PI + atan(p.y, p.x)) / (2.0 * PI) : 0.5;
     if (PROJECTION == PROJECTION_PLANAR) {
-        float width = object.texturing.w;
-        c.uv = (p.xy + object.axis.xy * profile_units()) / width + 0.5;
+        float width = appearance.profile_width;
+        c.uv = (p.xy + shape.axis * profile_units()) / width + 0.5;
         c.grad_xi = vec3(1.0 / width, 0.0, 0.0);
         c.grad_eta = vec3(0.0, 1.0 / width, 0.0);
     } else if (PROJECTION == PROJECTION_SPHERICAL) {
@@ -68,8 +68,8 @@ Coordinates texture_coordinates(vec3 point, vec3 n)
         // is shorter. The table is invalid between the two sides of a thin wall; the rate of the longest outline is
         // used there.
         vec3 along = cross(n, around);
-        float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / object.map.z;
-        c.grad_eta = along * ((abs(rate) < 16.0 * object.axis.z ? rate : object.axis.z) / profile_units());
+        float rate = dot(rising, vec2(dot(along.xy, p.xy) / max(r, 1e-6), along.z)) / shape.texel;
+        c.grad_eta = along * ((abs(rate) < 16.0 * appearance.arc_rate ? rate : appearance.arc_rate) / profile_units());
     } else {
         c.uv.y = p.z;
         c.grad_eta = vec3(0.0, 0.0, 1.0);
@@ -88,13 +88,13 @@ vec3 footprint(vec3 v, vec3 dv, vec3 n, float t)
 // Returns the position in a map; eta = 1 is the top row.
 vec2 map_position(Coordinates c)
 {
-    return vec2(c.uv.x * object.texturing.x, (1.0 - c.uv.y) * object.texturing.y);
+    return vec2(c.uv.x * appearance.texture_repeat.x, (1.0 - c.uv.y) * appearance.texture_repeat.y);
 }
 
 // Returns the change of that position along `way`, profile units.
 vec2 map_change(Coordinates c, vec3 way)
 {
-    return vec2(dot(c.grad_xi, way), dot(c.grad_eta, way)) * (vec2(1.0, -1.0) * object.texturing.xy);
+    return vec2(dot(c.grad_xi, way), dot(c.grad_eta, way)) * (vec2(1.0, -1.0) * appearance.texture_repeat);
 }
 
 vec4 sample_repeated(sampler2D map, Coordinates c, vec3 right, vec3 down)
@@ -127,7 +127,7 @@ vec2 slopes(Coordinates c, vec3 right, vec3 down)
 // `a`. BUMP_PAPERS is the papers' form, in which a turn around the axis has length 1 at any radius.
 vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
 {
-    vec2 slope = slopes(c, right, down) * object.texturing.xy;
+    vec2 slope = slopes(c, right, down) * appearance.texture_repeat;
     vec3 g;
     if ((BUMP & BUMP_PAPERS) != 0u) {
         float r = length(p.xy);
@@ -136,7 +136,7 @@ vec3 bumped(vec3 n, vec3 p, Coordinates c, vec3 right, vec3 down)
     } else {
         g = slope.x * c.grad_xi + slope.y * c.grad_eta;
     }
-    vec3 tilted = n - object.texturing.z * (g - n * dot(n, g));
+    vec3 tilted = n - appearance.bump * (g - n * dot(n, g));
     float len = length(tilted);
     return len > 0.0 ? tilted / len : n;
 }

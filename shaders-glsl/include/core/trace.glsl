@@ -26,8 +26,8 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
     f = 0.0;
 #if SEARCH == SEARCH_QUADRIC
     // Floor and ceiling are patches. A ray can enter the solid through a side only where the solid extends past it.
-    float side_face = object.bounds.x - max(abs(object.axis.x), abs(object.axis.y));
-    bool open_side = m.face_in < FACE_Z && object.bounds.y >= side_face;
+    float side_face = shape.half_side - max(abs(shape.axis.x), abs(shape.axis.y));
+    bool open_side = m.face_in < FACE_Z && shape.clip_radius >= side_face;
     return inside || (m.from_eye || open_side) && SOLID_AT(m);
 #elif READS_TABLES
     return inside || SOLID_AT(m);

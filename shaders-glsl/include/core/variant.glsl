@@ -117,12 +117,12 @@ const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_MAPS = 12u; // upper limit on shape maps of a scene with shadows, for searches on maps
 const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of the hierarchy of casters that have children
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
-const uint QUAD_BITS = 15u; // bits of each coordinate of a quad's corner
-const uint TILE_BITS = 13u; // bits of a tile's column, and of its row, in a record of a queue
-const uint RECORD_HALVES_SHIFT = 26u; // then a bit for each half with pixels that show copies: left, right, top, bottom
-const uint TILE_SPLIT = 2147483648u; // replaces a record's number of copies: its pixels come from several tiles
-const uint QUEUE_WORDS = 4u; // words of a copy in a queue, with those that mark its pixels
+const uint QUAD_BITS = 15u; // bits of each coordinate of a square's corner
+const uint TILE_BITS = 13u; // bits of the column, and of the row, of a tile with a queue
+const uint TILE_HALVES = 26u; // first of its bits for halves
 const uint QUEUE_BLOCK = 16u; // copies of a block of a queue
+const uint QUEUE_MARKS = 32u; // words with a bit for each copy of a block and each pixel of a tile
+const uint NO_PIXEL = 4294967295u; // position outside of any picture
 const uint MOST_GROUPS = 65535u; // work groups of a dispatch along one axis, on every device
 const uint BOX_INDICES = 36u; // indices of a shape box
 

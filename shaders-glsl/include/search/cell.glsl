@@ -10,7 +10,7 @@
 
 bool trace_cell(vec2 pixel, out Hit hit)
 {
-    take_over();
+    load_varyings();
     PatchRow row = begin_row(varying_rays(), pixel);
     const float SIDE_SLACK = 4e-6; // object units; a hit so close before a side of the box counts
     float eye = row.least;

@@ -19,7 +19,7 @@
 //   the normal.
 // `starts_in_table` returns true if the ray begins within the solid; it reads only m.o and m.c.
 //
-// `patch_vector` (core/patch_tables.glsl) reads the table. object.patches.yzw holds three words about it, defined by
+// `patch_vector` (core/patch_tables.glsl) reads the table. shape.table_fact_0 to table_fact_2 holds three words about it, defined by
 // `SearchTable` in src/search/mod.rs.
 #ifndef SEARCH_EXTERNAL_GLSL
 #define SEARCH_EXTERNAL_GLSL
@@ -33,7 +33,7 @@
 // Upper limit on steps. Loops of constant length are a tenth faster in lavapipe.
 int most_steps()
 {
-    return KNOWN_STEPS != 0u ? int(KNOWN_STEPS) : int(object.offset.w);
+    return KNOWN_STEPS != 0u ? int(KNOWN_STEPS) : int(shape.most_steps);
 }
 #endif
 

@@ -33,7 +33,7 @@ float safe_step(Meridian m, RayConstants ray, float side, float s, vec2 rz, floa
     // Squared speed of the ray in the half-plane.
     float sigma2 = max(ray.speed2 - ray.j2 / (r * r), m.v.z * m.v.z);
     // A ray inside the solid has no bound from the tangent of w, so the steepest slope is used.
-    float slope = side < 0.0 ? object.offset.y * abs(m.v.z) : offset_slope(rz.y) * m.v.z; // dw/ds
+    float slope = side < 0.0 ? shape.bevel * abs(m.v.z) : offset_slope(rz.y) * m.v.z; // dw/ds
     float ball = f / max(ray.speed + slope, 1e-3 * ray.speed);
     float rate = sqrt(sigma2) + slope;
     float root = rate + sqrt(max(rate * rate, 0.0) + 2.0 * kappa * f);
@@ -50,13 +50,13 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     ray.nearest = sqrt(ray.j2 / max(m.a, 1e-20));
     // Minimum step: a quarter of a texel, or if greater, a tenth of a pixel but at most a hundredth of the ray's
     // length.
-    float texel = object.map.z * m.inverse_speed;
+    float texel = shape.texel * m.inverse_speed;
     float least = max(0.25 * texel, 0.1 * min(pixel, 0.1 * m.s_end));
     vec2 rz = point_rz(m, s);
     // Start of the last step, and F at both of its ends. The initial values put the secant's zero at the ray's start.
     float before = s;
     float f_before = f + 1.0;
-    int most = int(object.offset.w);
+    int most = int(shape.most_steps);
     for (int i = 1; i < most && (i == 1 || (f > 0.0 && s < m.s_end)); ++i) {
         float safe = safe_step(m, ray, side, s, rz, f);
         // The step ends slightly beyond the secant's zero, so that the next one does not stop short again. The secant
@@ -75,7 +75,7 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
         s = mix(before, s, f_before / max(f_before - f, 1e-30));
         return FOUND;
     }
-    return s >= m.s_end ? LEFT : (f < object.map.z ? NEARLY : EXHAUSTED);
+    return s >= m.s_end ? LEFT : (f < shape.texel ? NEARLY : EXHAUSTED);
 }
 
 #endif

@@ -21,8 +21,8 @@ struct Beam {
 // Returns the depth of the far side of the box.
 float farthest_of(PixelRays rays, Instance i)
 {
-    vec3 half_size = vec3(object.bounds.x, object.bounds.x, 0.5);
-    vec3 forward = rotate(conjugate(i.rotation), frame.forward.xyz) * scale_of(i);
+    vec3 half_size = vec3(shape.half_side, shape.half_side, 0.5);
+    vec3 forward = rotate(conjugate(i.rotation), frame.forward) * i.scale;
     return rays.base + dot(abs(forward), half_size);
 }
 
@@ -54,7 +54,7 @@ vec2 node_span(Beam beam, uint k)
 {
     // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
     uint at = SPAN_FIRST + k;
-    uint first = object.patches.x + (OWN_TABLES ? object.instances.w : 0u);
+    uint first = shape.table + (OWN_TABLES ? shape.table_window : 0u);
     float most = node_extent(patch_tables[first + (at >> 2)][at & 3u]).y;
     float radius = sqrt(max(most, 0.0)) + beam.width;
     float low = (float(k) / float(SPAN_NODES) - beam.width - beam.o.z) * beam.per_z;

@@ -26,7 +26,7 @@ void count_steps(vec2 pixel, uint steps, bool exhausted)
 {
 #if OUTPUT == OUTPUT_PLANES
     uvec2 at = uvec2(pixel + 0.5);
-    if (any(greaterThanEqual(at, frame.size.xy))) {
+    if (any(greaterThanEqual(at, frame.size))) {
         return; // the viewport ends beyond the target
     }
     atomicAdd(pixel_words[second_word(at)], steps);
@@ -49,15 +49,15 @@ vec2 octahedral(vec3 n)
 // of the extension; last_block() of src/gpu/resources/block.rs makes the rows.
 vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 {
-    Instance before = instances[frame.size.w + instance];
+    LastCopy before = last_copies[frame.last_copies + instance];
     vec3 p = ray_origin(rays, pixel) + hit.t * ray_direction(rays, pixel);
     // A replica is a solid of this extension, divided by the number of replicas along each axis.
-    vec3 count = vec3(object.cells.xyz);
+    vec3 count = vec3(shape.replicas);
     vec3 way = REPLICAS == 0u ? unit(hit.normal) : unit(hit.normal / count) / count;
-    vec4 at = vec4(p + before.origin.z * way, 1.0);
-    vec3 projected = vec3(dot(before.position_sx, at), dot(before.rotation, at), dot(before.scale_depth, at));
+    vec4 at = vec4(p + before.farther * way, 1.0);
+    vec3 projected = vec3(dot(before.row_x, at), dot(before.row_y, at), dot(before.row_w, at));
     // A point that was behind the eye has no position in the last frame.
-    return mix(vec2(0.0), projected.xy / projected.z - pixel - before.origin.xy, bvec2(projected.z > 0.0));
+    return mix(vec2(0.0), projected.xy / projected.z - pixel - before.jitter, bvec2(projected.z > 0.0));
 }
 #endif
 
@@ -73,10 +73,10 @@ float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
     // The plane normal . (origin + t direction) = constant, differentiated by the pixel's position.
     vec2 across = abs(vec2(dot(hit.normal, rays.dir_x), dot(hit.normal, rays.dir_y)));
     float along = abs(dot(hit.normal, ray_direction(rays, pixel)));
-    float change = abs(ORTHO != 0u ? frame.dir_y.w : frame.dir_y.w / t) * frame_block.view.z;
+    float change = abs(ORTHO != 0u ? frame.depth_factor : frame.depth_factor / t) * frame_block.depth_range;
     float slope = change * max(across.x, across.y) / max(along, 1e-30);
     float bias = min(uintBitsToFloat(SLOPE_BIAS) * slope, uintBitsToFloat(SLOPE_BIAS_LIMIT));
-    return clamp(depth + frame.forward.w * bias, 0.0, 1.0);
+    return clamp(depth + frame.depth_sense * bias, 0.0, 1.0);
 }
 #else
 // Shades and writes a hit, and returns its depth value.
@@ -97,8 +97,8 @@ float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
     base_color = vec4(s.albedo, 1.0);
     world_normal = vec4(s.shading_normal, 1.0);
     octahedral_normal = vec4(octahedral(s.shading_normal), 0.0, 1.0);
-    material = vec4(unpackUnorm2x16(object.parts.y), 0.0, 1.0);
-    identity = uvec4(instances[look.instance].object.x, look.instance - object.instances.x, 0u, 1u);
+    material = vec4(unpackUnorm2x16(appearance.material), 0.0, 1.0);
+    identity = uvec4(instances[look.instance].object, look.instance - appearance.first_instance, 0u, 1u);
 #endif
     return depth_of(rays.base + hit.t);
 }

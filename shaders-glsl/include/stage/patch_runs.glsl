@@ -1,10 +1,10 @@
-// Runs of patches that a tile's rays may hit, and the record made from them.
+// Runs of patches that a tile's rays may hit, and the tile of a bin made from them.
 //
 // Layout of the table, in vectors: first a header with the number of patches and the unit of radii (float bits). Then
 // three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
-#define BIN_WORDS
+#define BIN_ACCESS
 #include "stage/compute.glsl"
 
 // The first and the last patch, and the widest gap between two successive ones.
@@ -34,23 +34,19 @@ uvec2 lengths_of(PatchRuns runs)
                  : uvec2(runs.last + 1u - runs.first, 0u);
 }
 
-// Adds a record to bin `n`. Heads are zero at first; the first record completes the indirect dispatch.
-void append(uint n, uvec4 record)
+// Adds a tile to bin `n`. Heads are zero at first; the first tile completes the indirect dispatch.
+void append(uint n, BinTile tile)
 {
-    uint head = pushed.heads + 4u * n;
-    uint index = atomicAdd(bin_words[head], 1u);
+    uint head = pushed.heads + n;
+    uint index = atomicAdd(bin_heads[head].x, 1u);
     if (index == 0u) {
-        bin_words[head + 1u] = 1u;
-        bin_words[head + 2u] = 1u;
+        bin_heads[head].yz = uvec2(1u);
     }
-    uint at = bin_records(n) + 4u * index;
-    for (uint k = 0u; k < 4u; ++k) {
-        bin_words[at + k] = record[k];
-    }
+    bin_tiles[bin_start(n) + index] = tile;
 }
 
-// Adds the record if its runs are short enough for a list. Returns false if not; then the tile must use the tree.
-bool append_runs(uvec2 record, PatchRuns runs)
+// Adds a tile if its runs are short enough for a list. Returns false if not; then the tile must use the tree.
+bool append_runs(CopyTile tile, PatchRuns runs)
 {
     uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;
@@ -58,7 +54,8 @@ bool append_runs(uvec2 record, PatchRuns runs)
         return false;
     }
     uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
-    append(n, uvec4(record, runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24, 0u));
+    uint found = runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24;
+    append(n, BinTile(tile.square, tile.instance, uvec2(found, 0u)));
     return true;
 }
 

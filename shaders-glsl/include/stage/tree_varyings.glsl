@@ -7,32 +7,43 @@ layout(location = 11) flat VARYING vec4 tree_bounds;
 layout(location = 12) flat VARYING vec2 tree_axis;
 layout(location = 13) flat VARYING vec4 tree_map;
 layout(location = 14) flat VARYING vec4 tree_offset;
-layout(location = 15) flat VARYING uvec4 tree_patches;
+layout(location = 15) flat VARYING uvec4 tree_table;
 layout(location = 16) flat VARYING vec2 tree_span; // range of t outside which no ray has a hit
 
 #ifdef VERTEX_GLSL
 void hand_over_tree(vec2 span)
 {
-    tree_bounds = object.bounds;
-    tree_axis = object.axis.xy;
-    tree_map = object.map;
-    tree_offset = object.offset;
-    tree_patches = object.patches;
+    tree_bounds = vec4(shape.half_side, shape.clip_radius, shape.clip_low, shape.clip_high);
+    tree_axis = shape.axis;
+    tree_map = vec4(shape.map_size, shape.texel, shape.map_scale);
+    tree_offset = vec4(shape.extend, shape.bevel, shape.chamfer, shape.most_steps);
+    tree_table = uvec4(shape.table, shape.table_fact_0, shape.table_fact_1, shape.table_fact_2);
     tree_span = span;
 }
 #else
-void take_over_tree()
+void load_tree_varyings()
 {
-    object.bounds = tree_bounds;
-    object.axis.xy = tree_axis;
+    shape.half_side = tree_bounds.x;
+    shape.clip_radius = tree_bounds.y;
+    shape.clip_low = tree_bounds.z;
+    shape.clip_high = tree_bounds.w;
+    shape.axis = tree_axis;
 #if READS_MAP
-    object.map = tree_map;
+    shape.map_size = tree_map.xy;
+    shape.texel = tree_map.z;
+    shape.map_scale = tree_map.w;
 #endif
 #if TAKES_STEPS
-    object.offset = tree_offset;
+    shape.extend = tree_offset.x;
+    shape.bevel = tree_offset.y;
+    shape.chamfer = tree_offset.z;
+    shape.most_steps = tree_offset.w;
 #endif
 #if READS_TABLES
-    object.patches = tree_patches;
+    shape.table = tree_table.x;
+    shape.table_fact_0 = tree_table.y;
+    shape.table_fact_1 = tree_table.z;
+    shape.table_fact_2 = tree_table.w;
 #endif
 }
 

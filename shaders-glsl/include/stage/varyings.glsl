@@ -10,9 +10,9 @@
 #endif
 
 layout(location = 1) flat VARYING vec4 ray_origin_base;
-layout(location = 2) flat VARYING vec4 ray_dir_00; // w: as in the frame's block; for cells the sense of depth
-layout(location = 3) flat VARYING vec4 ray_dir_x;  // w of this and the next: as in the frame's block
-layout(location = 4) flat VARYING vec4 ray_dir_y;
+layout(location = 2) flat VARYING vec4 ray_dir_00; // w: pixel_size of the frame; for cells depth_sense
+layout(location = 3) flat VARYING vec4 ray_dir_x;  // w: depth_constant
+layout(location = 4) flat VARYING vec4 ray_dir_y; // w: depth_factor
 layout(location = 0) flat VARYING vec4 look_rotation;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;
@@ -30,13 +30,14 @@ uint varying_instance()
 }
 
 // Loads the frame and the object. Fragments call this first.
-void take_over()
+void load_varyings()
 {
-    take_frame();
-    take_object(instances[varying_instance()]);
-    frame.dir_00.w = ray_dir_00.w;
-    frame.dir_x.w = ray_dir_x.w;
-    frame.dir_y.w = ray_dir_y.w;
+    Instance i = instances[varying_instance()];
+    load_frame(i.object);
+    load(i);
+    frame.pixel_size = ray_dir_00.w;
+    frame.depth_constant = ray_dir_x.w;
+    frame.depth_factor = ray_dir_y.w;
 }
 
 PixelRays varying_rays()
@@ -51,12 +52,12 @@ Look varying_look()
     look.scale_shininess = look_scale_shininess;
     look.albedo_strength = look_albedo_strength;
     look.ambient = look_ambient.rgb;
-    look.light_0.towards.xyz = look_light_0.xyz;
-    look.light_0.color.rgb = vec3(look_light_0.w, look_colors.xy);
-    look.light_1.towards.xyz = look_light_1.xyz;
-    look.light_1.color.rgb = vec3(look_light_1.w, look_colors.zw);
+    look.light_0.towards = look_light_0.xyz;
+    look.light_0.color = vec3(look_light_0.w, look_colors.xy);
+    look.light_1.towards = look_light_1.xyz;
+    look.light_1.color = vec3(look_light_1.w, look_colors.zw);
     look.instance = varying_instance();
-    look.position = instances[look.instance].position_sx.xyz;
+    look.position = instances[look.instance].position;
     return look;
 }
 #endif

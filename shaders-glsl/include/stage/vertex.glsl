@@ -10,10 +10,10 @@ uint instance_number;
 // Loads frame and object and returns instance `number`. Vertex shaders call this first.
 Instance begin(uint number)
 {
-    take_frame();
     instance_number = number;
     Instance i = instances[number];
-    take_object(i);
+    load_frame(i.object);
+    load(i);
     return i;
 }
 
@@ -21,21 +21,21 @@ Instance begin(uint number)
 // draws each frame in all of them, and the frame's own view keeps it.
 void hand_over(Instance i, float scale)
 {
-    if (VIEWS > 1u && VIEW_INDEX != floatBitsToUint(frame_block.view.x)) {
+    if (VIEWS > 1u && VIEW_INDEX != frame_block.layer) {
         gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
     }
     PixelRays rays = pixel_rays(i);
     ray_origin_base = vec4(rays.origin, rays.base);
     ray_dir_00 = vec4(rays.dir_00, scale);
-    ray_dir_x = vec4(rays.dir_x, frame.dir_x.w);
-    ray_dir_y = vec4(rays.dir_y, frame.dir_y.w);
+    ray_dir_x = vec4(rays.dir_x, frame.depth_constant);
+    ray_dir_y = vec4(rays.dir_y, frame.depth_factor);
     Look look = look_of(i, instance_number);
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;
     look_albedo_strength = look.albedo_strength;
     look_ambient = vec4(look.ambient, uintBitsToFloat(instance_number | INDEX_BITS));
-    look_light_0 = vec4(look.light_0.towards.xyz, look.light_0.color.r);
-    look_light_1 = vec4(look.light_1.towards.xyz, look.light_1.color.r);
+    look_light_0 = vec4(look.light_0.towards, look.light_0.color.r);
+    look_light_1 = vec4(look.light_1.towards, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);
 }
 

@@ -4,11 +4,11 @@ use crate::error::{Result, lock};
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
-use crate::plan::levels::{self, COPY_LEVELS};
+use crate::plan::levels;
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
 use crate::shader::generated::OUTSIDE_BIT;
-use crate::shader::{ObjectBlock, Technique, is_beveled};
+use crate::shader::{AppearanceBlock, ObjectBlock, ShapeBlock, Technique, is_beveled};
 use crate::solid::cache::{OffsetContour, Solid};
 use crate::solid::farthest_corner;
 use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
@@ -280,68 +280,58 @@ impl PreparedObject {
         let (object, map) = (self.drawn(), &derived.facts);
         let f = |v: f64| v as f32;
         let (look, offset) = (&object.texturing, &object.offset);
-        let length = derived.arc.as_ref().map_or(1.0, |arc| arc.length);
-        let [x, y] = object.axis_offset();
-        let [red, green, blue] = object.color;
+        let [half_side, clip_radius, clip_low, clip_high] = self.bounds(&planned.surfaces);
         // Textures find the profile's box in a box that has grown.
         let growth = self.growth();
         let profile_radius = object.profile.radius * growth.height() - growth.side;
-        let [across, up, high] = object.repeat;
         let mirrored: u32 = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
-        let outside = if outside { OUTSIDE_BIT } else { 0 };
-        let bevel = if is_beveled(object) {
-            offset.bevel
-        } else {
-            0.0
-        };
-        let (strength, shininess) = (object.specular.strength, object.specular.shininess);
-        let first = self.instances.start;
         let finest = planned.surfaces.first();
         let start = |part| finest.map_or(0, |s| s.start(part));
         let stored = finest.filter(|s| s.slot(Part::Tables).is_some());
-        let [a, b, c] = stored.map_or([0; 3], |s| s.tables().facts);
-        let mut levels = [0; COPY_LEVELS.len() - 1];
-        for (to, surface) in levels.iter_mut().zip(planned.surfaces.iter().skip(1)) {
-            *to = surface.start(Part::Tables);
-        }
-        ObjectBlock {
-            map: [
-                map.columns as f32,
-                map.rows as f32,
-                f(1.0 / f64::from(map.rows)),
-                map.scale,
-            ],
-            bounds: self.bounds(&planned.surfaces),
-            offset: [
-                f(offset.extend),
-                f(bevel),
-                f(offset.chamfer),
-                derived.steps as f32,
-            ],
-            axis: [f(x), f(y), f(1.0 / length), 0.0],
-            albedo: [red, green, blue, 1.0],
-            specular: [strength, shininess, f(growth.height()), f(growth.low)],
-            texturing: [
-                f(look.repeat[0]),
-                f(look.repeat[1]),
-                f(look.bump),
-                f(2.0 * profile_radius),
-            ],
-            cells: [across, up, high, mirrored | outside],
-            instances: [
-                first,
-                self.instances.end - first,
-                derived.shadow_map,
-                planned.window(Part::Tables).start,
-            ],
-            patches: [start(Part::Tables), a, b, c],
-            parts: [
-                start(Part::Frusta),
-                object.material().bits(),
-                start(Part::Patches),
-                planned.window(Part::Patches).start,
-            ],
-            levels,
-        }
+        let [table_fact_0, table_fact_1, table_fact_2] =
+            stored.map_or([0; 3], |s| s.tables().facts);
+        let shape = ShapeBlock {
+            map_size: [map.columns, map.rows].map(|n| n as f32),
+            texel: f(1.0 / f64::from(map.rows)),
+            map_scale: map.scale,
+            half_side,
+            clip_radius,
+            clip_low,
+            clip_high,
+            extend: f(offset.extend),
+            bevel: if is_beveled(object) {
+                f(offset.bevel)
+            } else {
+                0.0
+            },
+            chamfer: f(offset.chamfer),
+            most_steps: derived.steps as f32,
+            axis: object.axis_offset().map(f),
+            shadow_map: derived.shadow_map,
+            first_frustum: start(Part::Frusta),
+            replicas: object.repeat,
+            flags: mirrored | if outside { OUTSIDE_BIT } else { 0 },
+            table_fact_0,
+            table_fact_1,
+            table_fact_2,
+            listed_window: planned.window(Part::Patches).start,
+            table_window: planned.window(Part::Tables).start,
+            ..ShapeBlock::default()
+        };
+        let appearance = AppearanceBlock {
+            color: object.color,
+            material: object.material().bits(),
+            specular: object.specular.strength,
+            shininess: object.specular.shininess,
+            box_height: f(growth.height()),
+            box_low: f(growth.low),
+            texture_repeat: look.repeat.map(f),
+            bump: f(look.bump),
+            profile_width: f(2.0 * profile_radius),
+            arc_rate: f(1.0 / derived.arc.as_ref().map_or(1.0, |arc| arc.length)),
+            first_instance: self.instances.start,
+            ..AppearanceBlock::default()
+        };
+        ObjectBlock { shape, appearance }
     }
 }

@@ -7,7 +7,7 @@ use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::gpu::resources::block::{add_casters, frame_block, instance_block, last_block};
+use crate::gpu::resources::block::{caster_root, frame_block, instance_block, last_copy};
 use crate::plan::View;
 use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
 use crate::solid::offset_surface::{OffsetSurface, Part};
@@ -121,7 +121,7 @@ impl Renderer {
         let mut block = frame_block(view, &self.content.lighting, snapshot.instances);
         if let Some(hierarchy) = &plan.hierarchy {
             let maps = snapshot.common.shadow_maps.maps.len();
-            add_casters(&mut block, hierarchy, view.eye, maps);
+            block.casters = caster_root(hierarchy, view.eye, maps);
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
@@ -246,11 +246,11 @@ impl Renderer {
                 let placement = &placements[copy as usize];
                 let mut block = instance_block(drawn, placement, number, view);
                 let starts = starts.get(planned.surface_of(&block));
-                block.object[2..].copy_from_slice(starts.unwrap_or(&[0; 2]));
+                [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
                 block
             })?;
             if motion {
-                let last = |copy| last_block(object, copy as usize, view);
+                let last = |copy| last_copy(object, copy as usize, view);
                 to.write_instances(snapshot.instances + first, &shown, last)?;
             }
         }

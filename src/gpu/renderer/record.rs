@@ -68,8 +68,8 @@ impl Renderer {
         let (slot, bound) = self.frame(frame)?;
         let plan = &bound.plan.frame;
         let bins = slot.buffer(SlotBuffer::Bins);
-        if plan.bin_head_words > 0 {
-            let bytes = 4 * u64::from(plan.bin_head_words);
+        if plan.bin_heads > 0 {
+            let bytes = 16 * u64::from(plan.bin_heads);
             // The frame may have been recorded before.
             bins.barrier(cmd, Usage::TileRead, Usage::TransferWrite);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
@@ -146,7 +146,7 @@ impl Renderer {
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);
-                    raw.cmd_dispatch_indirect(cmd, bins, 4 * u64::from(*head));
+                    raw.cmd_dispatch_indirect(cmd, bins, 16 * u64::from(*head));
                 }
                 Call::Groups(groups, pushed) => {
                     self.push(cmd, pushed);

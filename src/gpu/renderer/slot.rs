@@ -259,12 +259,13 @@ impl FrameSlot {
 
     /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of the
     /// instance of copy 0.
-    pub fn write_instances(
+    pub fn write_instances<Block: bytemuck::Pod>(
         &mut self,
         first: u32,
         copies: &[u32],
-        block: impl Fn(u32) -> InstanceBlock + Sync,
+        block: impl Fn(u32) -> Block + Sync,
     ) -> Result<()> {
+        const { assert!(size_of::<Block>() == size_of::<InstanceBlock>()) };
         let from = first as usize * size_of::<InstanceBlock>();
         let instances = self.buffer_mut(SlotBuffer::Instances).mapped()?;
         fill(instances[from..].as_chunks_mut().0, 0, copies, &block);
@@ -286,10 +287,11 @@ impl FrameSlot {
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
-        self.fit(SlotBuffer::Tiles, size_of_val(plan.words.as_slice()) as u64)?;
-        self.fit(SlotBuffer::Bins, 4 * u64::from(plan.bin_words))?;
+        let words = plan.tile_words.as_slice();
+        self.fit(SlotBuffer::Tiles, size_of_val(words) as u64)?;
+        self.fit(SlotBuffer::Bins, 16 * u64::from(plan.bin_vectors))?;
         self.fit(SlotBuffer::Draws, size_of_val(plan.draws.as_slice()) as u64)?;
-        write_slice(self.buffer_mut(SlotBuffer::Tiles), &plan.words)?;
+        write_slice(self.buffer_mut(SlotBuffer::Tiles), words)?;
         write_slice(self.buffer_mut(SlotBuffer::Draws), &plan.draws)
     }
 
@@ -331,11 +333,11 @@ impl FrameSlot {
 }
 
 /// Fills `blocks`, of which the first belongs to copy `first`.
-fn fill(
+fn fill<Block: bytemuck::Pod>(
     blocks: &mut [[u8; size_of::<InstanceBlock>()]],
     first: u32,
     copies: &[u32],
-    block: &(impl Fn(u32) -> InstanceBlock + Sync),
+    block: &(impl Fn(u32) -> Block + Sync),
 ) {
     const FEW: usize = 4096;
     if copies.len() <= FEW {

@@ -8,8 +8,8 @@ use crate::plan::{DepthOrder, View};
 use crate::scene::{Lighting, Object, Placement};
 use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_LIGHTS;
-use crate::shader::{FrameBlock, InstanceBlock, LightBlock};
-use glam::{DVec3, DVec4};
+use crate::shader::{CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy, LightBlock};
+use glam::{DVec2, DVec3, DVec4};
 
 /// Returns an error if a map's format cannot show the object's offset.
 pub(crate) fn check_format(
@@ -40,23 +40,26 @@ pub(crate) fn instance_block(
     let clip = view.clip_of(middle);
     let to_plane = view.dir_00 * depth.max(0.0);
     let origin = rotation.conjugate() * (to_plane - p) / placement.scale - DVec3::new(x, y, 0.0);
-    let [p, s, o] = [p, placement.scale, origin].map(|v| v.as_vec3());
+    let [position, scale, origin] = [p, placement.scale, origin].map(|v| v.as_vec3().to_array());
     InstanceBlock {
-        position_sx: [p.x, p.y, p.z, s.x],
+        position,
+        depth: depth as f32,
+        scale,
+        clip_x: clip.x as f32,
         rotation: rotation.as_quat().to_array(),
-        scale_depth: [s.y, s.z, depth as f32, clip.x as f32],
-        origin: [o.x, o.y, o.z, clip.y as f32],
-        object: [number, 0, 0, 0],
+        origin,
+        clip_y: clip.y as f32,
+        object: number,
+        ..InstanceBlock::default()
     }
 }
 
-/// The record from which `motion_of` of `stage/outputs.glsl` projects a point of a copy into the
-/// last frame: three rows of the map from object space to `(x w, y w, w)`, then this frame's jitter
-/// and the distance along the normal by which the surface was farther out.
+/// The structure from which `motion_of` of `stage/outputs.glsl` projects a point of a copy into the
+/// last frame.
 ///
 /// The map is exact. A point moves along its normal if the extension changes, which is exact where
 /// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
-pub(crate) fn last_block(of: &PreparedObject, copy: usize, view: &View) -> InstanceBlock {
+pub(crate) fn last_copy(of: &PreparedObject, copy: usize, view: &View) -> LastCopy {
     let (object, growth) = (&of.object, of.growth());
     let all = object.placements();
     let last = match &of.last {
@@ -78,73 +81,84 @@ pub(crate) fn last_block(of: &PreparedObject, copy: usize, view: &View) -> Insta
         DVec4::new(a, b, c, at).as_vec4().to_array()
     });
     let farther = (extend - object.offset.extend) / height;
-    // Positions of the shader count from the centre of pixel (0, 0).
-    let [jitter_x, jitter_y] = (0.5 - view.jitter).to_array();
-    InstanceBlock {
-        position_sx: row_x,
-        rotation: row_y,
-        scale_depth: row_w,
-        origin: [jitter_x as f32, jitter_y as f32, farther as f32, 0.0],
-        object: [0; 4],
+    LastCopy {
+        row_x,
+        row_y,
+        row_w,
+        jitter: (0.5 - view.jitter).as_vec2().to_array(),
+        farther: farther as f32,
+        ..LastCopy::default()
     }
 }
 
-/// The frame's block: eye, rays, lights, depths. `last_record`: first of the records of
-/// [`last_block`] among instances.
-pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) -> FrameBlock {
-    let vector = |v: DVec3, w: f64| v.as_vec3().extend(w as f32).to_array();
+/// The frame's block: eye, rays, lights, depths. `last_copies`: index of the first [`last_copy`]
+/// among instances.
+pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) -> FrameBlock {
+    let vector = |v: DVec3| v.as_vec3().to_array();
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
-        let [red, green, blue] = light.color;
-        block.towards = vector(-light.direction.normalize_or_zero(), light.cap());
-        block.color = [red, green, blue, 0.0];
+        *block = LightBlock {
+            towards: vector(-light.direction.normalize_or_zero()),
+            cap: light.cap() as f32,
+            color: light.color,
+            unused: 0.0,
+        };
     }
     let [constant, factor] = view.clip_depth();
     let [least, most] = view.depth_range;
-    let (sense, near_value) = match view.order {
+    let (sense, near_depth) = match view.order {
         DepthOrder::Normal => (1.0, 0.0),
         DepthOrder::Reversed => (-1.0, 1.0),
     };
     let [clip_x, clip_y] = view.clip_rows();
-    let [red, green, blue] = lighting.ambient;
     let v = &view.viewport;
     let [width, height] = [v.width, v.height.abs()].map(|side| side as u32);
-    let lit = u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS);
+    let sides = DVec2::new(v.width, v.height);
+    let frame = FrameView {
+        clip_x: vector(clip_x),
+        parallel: f32::from(u8::from(view.parallel)),
+        clip_y: vector(clip_y),
+        near: view.near as f32,
+        dir_00: vector(view.dir_00),
+        pixel_size: view.pixel_size() as f32,
+        dir_x: vector(view.dir_x),
+        depth_constant: constant as f32,
+        dir_y: vector(view.dir_y),
+        depth_factor: factor as f32,
+        forward: vector(view.forward),
+        depth_sense: sense,
+        ambient: lighting.ambient,
+        near_depth,
+        size: [width, height],
+        light_count: u32::try_from(lighting.lights.len()).unwrap_or(MAX_LIGHTS),
+        last_copies,
+        clip_scale: (2.0 / sides).as_vec2().to_array(),
+        clip_shift: (-2.0 * DVec2::new(v.x, v.y) / sides - 1.0)
+            .as_vec2()
+            .to_array(),
+    };
     FrameBlock {
-        clip_x: vector(clip_x, f64::from(u8::from(view.parallel))),
-        clip_y: vector(clip_y, view.near),
-        dir_00: vector(view.dir_00, view.pixel_size()),
-        dir_x: vector(view.dir_x, constant),
-        dir_y: vector(view.dir_y, factor),
-        forward: vector(view.forward, sense),
-        ambient: [red, green, blue, near_value],
-        size: [width, height, lit, last_record],
-        pixels: [
-            2.0 / v.width,
-            -2.0 * v.x / v.width - 1.0,
-            2.0 / v.height,
-            -2.0 * v.y / v.height - 1.0,
-        ]
-        .map(|side| side as f32),
-        view: [
-            view.layer,
-            (least as f32).to_bits(),
-            ((most - least) as f32).to_bits(),
-            (1.0 - near_value).to_bits(),
-        ],
+        frame,
+        first_depth: least as f32,
+        depth_range: (most - least) as f32,
+        far_depth: 1.0 - near_depth,
+        layer: view.layer,
         lights,
-        ..bytemuck::Zeroable::zeroed()
+        ..FrameBlock::default()
     }
 }
 
-/// Adds the root of the hierarchy of copies that cast shadows. `maps`: number of shape maps.
-pub(crate) fn add_casters(to: &mut FrameBlock, all: &Hierarchy, eye: DVec3, maps: usize) {
-    let with = |[x, y, z]: [f32; 3], bits: u32| [x, y, z, f32::from_bits(bits)];
+/// The root of the hierarchy of copies that cast shadows. `maps`: number of shape maps.
+pub(crate) fn caster_root(all: &Hierarchy, eye: DVec3, maps: usize) -> CasterRoot {
     let root = all.nodes.first().copied().unwrap_or(Hierarchy::EMPTY);
-    let from_origin = (eye - all.origin).as_vec3().to_array();
-    to.caster_eye = with(from_origin, maps as u32);
-    to.caster_middle = with(root.middle, all.nodes.len() as u32);
-    to.caster_half_size = with(root.half_size, root.instance);
+    CasterRoot {
+        eye: (eye - all.origin).as_vec3().to_array(),
+        map_count: maps as u32,
+        middle: root.middle,
+        node_count: all.nodes.len() as u32,
+        half_size: root.half_size,
+        only_copy: root.instance,
+    }
 }
 
 /// Returns an error for more lights than shaders hold.

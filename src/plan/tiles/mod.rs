@@ -9,33 +9,33 @@
 //! 3. In this order, copies are listed in the tiles that may show them ([`strip`], [`outer`]). The
 //!    pixels that a copy is sure to hide are marked there ([`cover`]). Later copies are not listed
 //!    for pixels where they are wholly behind that copy.
-//! 4. The listed copies are distributed to records and queues ([`deal`]).
+//! 4. The listed copies are distributed to tiles and queues ([`tile_writer`]).
 //!
 //! A copy is dropped only where its solid is proven absent, or where solids in front of it are
 //! proven present. Pictures are identical to unculled ones to the last bit, except for roundings
 //! where patches are listed. No data comes from an earlier frame. Strips of the picture, which are
 //! columns of tiles from top to bottom, are filled in parallel. Strips have similar loads on a
-//! field, where rows near the horizon hold most copies. Records are made in parallel, in bands of
+//! field, where rows near the horizon hold most copies. Tiles are written in parallel, in bands of
 //! rows.
 
 mod bounds;
 mod cover;
-mod deal;
 mod outer;
 mod strip;
+mod tile_writer;
 
 pub(crate) use bounds::{Cylinder, MOST_PIXELS, Projector};
-pub(crate) use deal::LEAST_QUEUE;
+pub(crate) use tile_writer::{LEAST_QUEUE, LayerTiles, TILE_PIXELS};
 
 use super::view::View;
 use crate::scene::{Cluster, Object};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::Cylinders;
 use bounds::ScreenBounds;
-use deal::{BandRecords, Dealer};
 use rayon::prelude::*;
 use std::ops::Range;
 use strip::{Item, Opened, Strip};
+use tile_writer::{LayeredTiles, TileWriter, join};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
@@ -63,7 +63,7 @@ struct Candidate {
     ranks: Range<u32>,
 }
 
-/// Rows of tiles in a band, and columns in a block. The records of a block are contiguous.
+/// Rows of tiles in a band, and columns in a block. The tiles of a block are contiguous.
 const BLOCK: u32 = 8;
 
 /// Clusters of the first round; each round has as many as all before it. Few are opened in vain
@@ -79,37 +79,6 @@ pub(crate) struct Visible<'a> {
     /// Number of tiles across and down.
     size: [u32; 2],
     picture: [u32; 4],
-}
-
-/// Records of all tiles and queues of copies, in the layout of the shaders' single buffer of words
-/// (`tile_words.glsl`).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct TileWords {
-    pub words: Vec<u32>,
-    pub layers: Vec<LayerTiles>,
-}
-
-/// The records of objects that share a pipeline and a set of textures. Ranges count records of four
-/// words each.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct LayerTiles {
-    /// Fragments: quads of one copy each.
-    pub quads: Range<u32>,
-    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles that
-    /// have a single copy share pixels. The tiles are drawn before tiles of several copies.
-    pub listed: Range<u32>,
-    /// Compute: tiles of one copy each, without lists of patches.
-    pub single: Range<u32>,
-    /// Tiles with queues of copies, and in compute records of pixels.
-    pub queued: Range<u32>,
-}
-
-impl LayerTiles {
-    /// Turns tiles with lists of patches into tiles without. The two ranges are neighbours.
-    pub fn unlist(&mut self) {
-        self.single.start = self.listed.start;
-        self.listed.end = self.listed.start;
-    }
 }
 
 impl<'a> Visible<'a> {
@@ -227,15 +196,15 @@ impl<'a> Visible<'a> {
         self.batches.iter().map(of).collect()
     }
 
-    /// Distributes the visible copies to records, of work groups (`compute`) or fragments.
+    /// Distributes the visible copies to tiles, of work groups (`compute`) or fragments.
     /// `layer_of`: the layer of each batch. `queues`: for each layer, true if fragments may search
     /// queues.
-    pub fn deal(&self, compute: bool, layer_of: &[u32], queues: &[bool]) -> TileWords {
+    pub fn write(&self, compute: bool, layer_of: &[u32], queues: &[bool]) -> LayeredTiles {
         let lists = |b| compute && self.lists_patches(b);
         let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
         let single = |batch: &Batch| batch.object.placements().len() == 1;
         let single: Vec<bool> = self.batches.iter().map(single).collect();
-        let dealer = Dealer {
+        let writer = TileWriter {
             compute,
             layer_of,
             lists: &lists,
@@ -253,53 +222,10 @@ impl<'a> Visible<'a> {
                 rows.clone().flat_map(row)
             });
             let copies = |[x, y]: [u32; 2]| self.strips[(x / self.wide) as usize].tile(x, y);
-            dealer.deal(tiles.map(|at| (at, copies(at))))
+            writer.write(tiles.map(|at| (at, copies(at))))
         };
         let bands: Vec<u32> = (0..down).step_by(BLOCK as usize).collect();
         let bands: Vec<_> = bands.into_par_iter().map(of_band).collect();
         join(&bands, queues.len())
     }
-}
-
-/// Joins the records and queues of all bands to one buffer.
-fn join(bands: &[Vec<BandRecords>], layers: usize) -> TileWords {
-    let count = |of: &BandRecords| {
-        let lists = [&of.quads, &of.listed, &of.single, &of.queued];
-        lists.map(Vec::len).iter().sum::<usize>()
-    };
-    let records: usize = bands.iter().flatten().map(count).sum();
-    let queues: usize = bands.iter().flatten().map(|of| of.words.len()).sum();
-    // Queues follow all records.
-    let mut queue = 4 * records;
-    let mut words: Vec<u32> = Vec::with_capacity(queue + queues);
-    let mut all = Vec::with_capacity(layers);
-    for layer in 0..layers {
-        let here = || bands.iter().map(|band| &band[layer]);
-        let mut put = |of: for<'b> fn(&'b BandRecords) -> &'b [[u32; 4]]| {
-            let first = (words.len() / 4) as u32;
-            here().for_each(|band| words.extend(of(band).as_flattened()));
-            first..(words.len() / 4) as u32
-        };
-        let tiles = LayerTiles {
-            quads: put(|of| &of.quads),
-            listed: put(|of| &of.listed),
-            single: put(|of| &of.single),
-            queued: put(|of| &of.queued),
-        };
-        let mut at = 4 * tiles.queued.start as usize;
-        for band in here() {
-            for _ in &band.queued {
-                words[at + 1] += queue as u32;
-                at += 4;
-            }
-            queue += band.words.len();
-        }
-        all.push(tiles);
-    }
-    for layer in 0..layers {
-        bands
-            .iter()
-            .for_each(|band| words.extend(&band[layer].words));
-    }
-    TileWords { words, layers: all }
 }

@@ -4,8 +4,8 @@
 use super::Batch;
 use super::bounds::{Projector, ScreenBounds, first_pixel, last_pixel};
 use super::cover::{Cover, within_rows};
-use super::deal::TileCopy;
 use super::outer::rows;
+use super::tile_writer::TileCopy;
 use crate::plan::proxy::{is_apart, is_lopsided};
 use std::ops::Range;
 
@@ -178,7 +178,7 @@ impl<'a> Strip<'a> {
                 let copy = TileCopy {
                     batch: item.batch,
                     copy: item.copy,
-                    near: near.to_bits(),
+                    near,
                     pixels,
                 };
                 self.listed.push((copy, NONE));
@@ -293,7 +293,7 @@ mod tests {
             assert_eq!(found.copies(), plain.copies(), "{eye:?}");
             for compute in [false, true] {
                 let [found, plain] =
-                    [&found, &plain].map(|v| v.deal(compute, &[0, 1, 0], &[true, false]));
+                    [&found, &plain].map(|v| v.write(compute, &[0, 1, 0], &[true, false]));
                 assert!(!plain.words.is_empty());
                 assert!(found == plain, "{eye:?}");
             }

@@ -1,10 +1,10 @@
-//! Distribution of copies to records of tiles, or of single pixels of tiles.
+//! Distribution of copies to tiles: those of one copy, queues, and pixels gathered from several tiles.
 
 use super::bounds::SIDE;
 use super::cover::{block, within};
-use crate::shader::generated::{
-    QUAD_BITS, QUEUE_BLOCK, QUEUE_WORDS, RECORD_HALVES_SHIFT, TILE_BITS, TILE_SPLIT,
-};
+use crate::shader::generated::{NO_PIXEL, QUAD_BITS, QUEUE_BLOCK, TILE_BITS, TILE_HALVES};
+use crate::shader::{CopyTile, GatheredPixel, QueueBlock, QueueTile, QueuedCopy};
+use std::ops::Range;
 
 /// A copy in a tile.
 #[derive(Clone, Copy)]
@@ -12,41 +12,38 @@ pub(super) struct TileCopy {
     pub batch: u32,
     /// Number of the instance.
     pub copy: u32,
-    pub near: u32,
+    pub near: f32,
     /// Pixels of the tile that may show the copy, one bit each.
     pub pixels: u64,
 }
 
-/// Records and queues of one layer in one band, in the layout of `tile_words.glsl`. Queues count from
-/// the band's first word.
+/// The tiles of one layer in one band. Blocks and gathered tiles count from the band's first.
 #[derive(Default)]
-pub(super) struct BandRecords {
-    /// Tiles with queues of copies, and in compute records of pixels.
-    pub queued: Vec<[u32; 4]>,
-    /// Fragments: quads of one copy each.
-    pub quads: Vec<[u32; 4]>,
+pub(super) struct BandTiles {
+    /// Fragments: squares of one copy each.
+    pub quads: Vec<CopyTile>,
     /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
-    /// has two such records.
-    pub listed: Vec<[u32; 4]>,
-    pub single: Vec<[u32; 4]>,
-    pub words: Vec<u32>,
-    /// Pixels that wait until a record is full: their position, the start of their tile's queue and
-    /// its number of copies.
-    waiting: Vec<[u32; 3]>,
+    /// has two such copies.
+    pub listed: Vec<CopyTile>,
+    pub single: Vec<CopyTile>,
+    pub queued: Vec<QueueTile>,
+    /// Compute: tiles of which only these pixels are searched.
+    pub gathered: Vec<QueueTile>,
+    pub pixels: Vec<GatheredPixel>,
+    pub blocks: Vec<QueueBlock>,
 }
 
-/// Words of a block of a queue.
-const BLOCK_WORDS: usize = (QUEUE_WORDS * QUEUE_BLOCK) as usize;
-/// Pixels of a tile.
-const PIXELS: usize = (SIDE * SIDE) as usize;
+/// Pixels of a tile, and invocations of a work group.
+pub(crate) const TILE_PIXELS: u32 = SIDE * SIDE;
 /// Fragments: least copies of a tile for which it has a queue; those of other tiles are drawn as
 /// quads. With queues from 3 copies on, sparse fields take 1.13 of the time on lavapipe 22; from 6
 /// on, 10,000 copies take 0.86 and a million 0.57 of the time of quads alone.
 pub(crate) const LEAST_QUEUE: usize = 6;
-/// Least number of a tile's pixels for which a copy gets a record of its own.
+/// Least number of a tile's pixels for which a copy gets a tile of its own.
 const SINGLE_PIXELS: u32 = 24;
-/// Parameters of the distribution of a band.
-pub(super) struct Dealer<'a> {
+
+/// Distributes the copies of a band.
+pub(super) struct TileWriter<'a> {
     /// True for work groups, false for fragments.
     pub compute: bool,
     /// The layer of each batch.
@@ -61,137 +58,241 @@ pub(super) struct Dealer<'a> {
     pub picture: [u32; 4],
 }
 
-impl Dealer<'_> {
-    /// Distributes the copies of tiles, nearest first, and returns the lists of each layer. A tile is
+impl TileWriter<'_> {
+    /// Distributes the copies of tiles, nearest first, and returns the tiles of each layer. A tile is
     /// given by its position, in tiles.
-    pub fn deal<Copies: Iterator<Item = TileCopy>>(
+    pub fn write<Copies: Iterator<Item = TileCopy>>(
         &self,
         tiles: impl Iterator<Item = ([u32; 2], Copies)>,
-    ) -> Vec<BandRecords> {
-        let mut lists: Vec<BandRecords> = Vec::new();
-        lists.resize_with(self.queues.len(), BandRecords::default);
-        let mut rest = Vec::new();
-        for (place, here) in tiles {
-            rest.clear();
-            rest.extend(here);
+    ) -> Vec<BandTiles> {
+        let mut layers: Vec<BandTiles> = Vec::new();
+        layers.resize_with(self.queues.len(), BandTiles::default);
+        let mut left = Vec::new();
+        for (place, copies) in tiles {
+            left.clear();
+            left.extend(copies);
             if self.compute
-                && let Some(n) = self.single_of(&rest)
+                && let Some(n) = self.single_of(&left)
             {
-                let one = rest.remove(n);
-                let to = &mut lists[self.layer_of[one.batch as usize] as usize];
-                to.add_single(&one, place, self.lists[one.batch as usize]);
+                let copy = left.remove(n);
+                let layer = &mut layers[self.layer_of[copy.batch as usize] as usize];
+                layer.add_single(&copy, place, self.lists[copy.batch as usize]);
             }
-            while let Some(first) = rest.first() {
-                let layer = self.layer_of[first.batch as usize];
-                let of = |one: &TileCopy| self.layer_of[one.batch as usize] == layer;
-                let copies = rest.iter().filter(|one| of(one));
-                let to = &mut lists[layer as usize];
+            while let Some(first) = left.first() {
+                let number = self.layer_of[first.batch as usize];
+                let is_of = |copy: &TileCopy| self.layer_of[copy.batch as usize] == number;
+                let copies = left.iter().filter(|copy| is_of(copy));
+                let layer = &mut layers[number as usize];
                 let few = copies.clone().nth(LEAST_QUEUE - 1).is_none();
-                if !self.compute && (few || !self.queues[layer as usize]) {
+                if !self.compute && (few || !self.queues[number as usize]) {
                     let inside = within(place, self.picture);
-                    copies.for_each(|one| to.add_quads(one, place, inside));
+                    copies.for_each(|copy| layer.add_quads(copy, place, inside));
                 } else {
-                    to.add(copies, place, self.compute);
+                    layer.add_queue(copies, place, self.compute);
                 }
-                rest.retain(|one| !of(one));
+                left.retain(|copy| !is_of(copy));
             }
         }
-        lists.iter_mut().for_each(BandRecords::gather);
-        lists
+        layers
     }
 
-    /// Index of the tile's copy that gets a record of its own.
-    fn single_of(&self, here: &[TileCopy]) -> Option<usize> {
-        let is_large = |one: &TileCopy| one.pixels.count_ones() >= SINGLE_PIXELS;
-        match here {
-            [one] if is_large(one) || self.single[one.batch as usize] => Some(0),
-            _ => (0..here.len()).find(|&n| {
+    /// Index of the tile's copy that gets a tile of its own.
+    fn single_of(&self, copies: &[TileCopy]) -> Option<usize> {
+        let is_large = |copy: &TileCopy| copy.pixels.count_ones() >= SINGLE_PIXELS;
+        match copies {
+            [copy] if is_large(copy) || self.single[copy.batch as usize] => Some(0),
+            _ => (0..copies.len()).find(|&n| {
                 // Copies that coincide need the same search: the first of equal depths stays.
-                let alike = |other: &TileCopy| other.near == here[n].near;
-                let unique = here.iter().filter(|one| alike(one)).count() == 1;
-                self.lists[here[n].batch as usize] && is_large(&here[n]) && unique
+                let alike = |other: &TileCopy| other.near == copies[n].near;
+                let unique = copies.iter().filter(|copy| alike(copy)).count() == 1;
+                self.lists[copies[n].batch as usize] && is_large(&copies[n]) && unique
             }),
         }
     }
 }
 
-impl BandRecords {
-    /// Adds a tile's only copy, or a copy with a record of its own.
-    fn add_single(&mut self, one: &TileCopy, [x, y]: [u32; 2], lists: bool) {
-        let corner = (x * SIDE) | ((y * SIDE) << 16);
-        let to = if lists {
+/// A square of pixels of a copy. `corner` and `side`: pixels.
+fn copy_tile(copy: &TileCopy, [x, y]: [u32; 2], side: u32) -> CopyTile {
+    CopyTile {
+        square: x | y << QUAD_BITS | side.ilog2() << (2 * QUAD_BITS),
+        instance: copy.copy,
+        near: copy.near,
+        unused: 0,
+    }
+}
+
+impl BandTiles {
+    /// Adds a tile's only copy, or a copy with a tile of its own.
+    fn add_single(&mut self, copy: &TileCopy, place: [u32; 2], lists: bool) {
+        let tiles = if lists {
             &mut self.listed
         } else {
             &mut self.single
         };
-        to.push([corner, one.copy, 0, one.near]);
+        tiles.push(copy_tile(copy, place.map(|at| at * SIDE), SIDE));
     }
 
-    /// Adds the queue of a tile, and its record. If `gathers`, and some pixels of the tile show no copy,
-    /// its pixels share records with those of other tiles.
-    fn add<'a>(
+    /// Adds a tile with a queue. If `gathers`, and some pixels of the tile show no copy, its other
+    /// pixels share work groups with those of other tiles.
+    fn add_queue<'a>(
         &mut self,
-        here: impl Iterator<Item = &'a TileCopy> + Clone,
+        copies: impl Iterator<Item = &'a TileCopy>,
         [x, y]: [u32; 2],
         gathers: bool,
     ) {
-        let at = |x: u32, y: u32| x | (y << 16);
-        let corner = at(x * SIDE, y * SIDE);
-        let near = here.clone().next().map_or(0, |one| one.near);
-        let first = self.words.len() as u32;
-        let (mut count, mut pixels) = (0, 0);
-        for one in here {
-            let (block, slot) = (count / QUEUE_BLOCK, count % QUEUE_BLOCK);
-            let begin = (first + QUEUE_WORDS * QUEUE_BLOCK * block) as usize;
-            self.words.resize(begin + BLOCK_WORDS, 0);
-            let (copies, marks) = self.words[begin..].split_at_mut(2 * QUEUE_BLOCK as usize);
-            copies[2 * slot as usize..][..2].copy_from_slice(&[one.copy, one.near]);
-            each_bit(one.pixels, |k| {
-                let at = k * QUEUE_BLOCK as usize;
-                marks[at / 32] |= 1 << (at as u32 % 32 + slot);
-            });
-            count += 1;
-            pixels |= one.pixels;
+        let mut tile = QueueTile {
+            first: self.blocks.len() as u32,
+            ..QueueTile::default()
+        };
+        let mut pixels = 0;
+        for copy in copies {
+            let slot = tile.count % QUEUE_BLOCK;
+            if slot == 0 {
+                self.blocks.push(QueueBlock::default());
+            }
+            if tile.count == 0 {
+                tile.near = copy.near;
+            }
+            tile.count += 1;
+            pixels |= copy.pixels;
+            if let Some(block) = self.blocks.last_mut() {
+                block.copies[slot as usize] = QueuedCopy {
+                    instance: copy.copy,
+                    near: copy.near,
+                };
+                each_bit(copy.pixels, |k| {
+                    let at = k * QUEUE_BLOCK;
+                    block.marks[at as usize / 32] |= 1 << (at % 32 + slot);
+                });
+            }
         }
+        tile.tile = x | y << TILE_BITS | halves_of(pixels) << TILE_HALVES;
         if !gathers || pixels == u64::MAX {
-            let halves = halves_of(pixels) << RECORD_HALVES_SHIFT;
-            self.queued
-                .push([x | y << TILE_BITS | halves, first, count, near]);
+            self.queued.push(tile);
             return;
         }
+        let number = self.gathered.len() as u32;
+        self.gathered.push(tile);
         each_bit(pixels, |k| {
-            let place = corner + at(k as u32 % SIDE, k as u32 / SIDE);
-            self.waiting.push([place, first, count]);
-            if self.waiting.len() == PIXELS {
-                self.gather();
-            }
+            let [x, y] = [x * SIDE + k % SIDE, y * SIDE + k / SIDE];
+            self.pixels.push(GatheredPixel {
+                position: x | y << 16,
+                tile: number,
+            });
         });
     }
 
     /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
-    fn add_quads(&mut self, one: &TileCopy, [x, y]: [u32; 2], inside: u64) {
-        let corner = (x * SIDE) | ((y * SIDE) << QUAD_BITS);
-        cut([0, 0, SIDE], one.pixels & inside, inside, &mut |[
-            x,
-            y,
-            side,
-        ]| {
-            let place = x | y << QUAD_BITS | side.ilog2() << (2 * QUAD_BITS);
-            self.quads.push([corner + place, one.copy, 0, one.near]);
-        });
+    fn add_quads(&mut self, copy: &TileCopy, [x, y]: [u32; 2], inside: u64) {
+        let add = &mut |[left, top, side]: [u32; 3]| {
+            let corner = [x * SIDE + left, y * SIDE + top];
+            self.quads.push(copy_tile(copy, corner, side));
+        };
+        cut([0, 0, SIDE], copy.pixels & inside, inside, add);
     }
+}
 
-    /// Makes a record of the waiting pixels; empty entries fill it up.
-    fn gather(&mut self) {
-        if self.waiting.is_empty() {
-            return;
+/// Tiles of all layers, and their data in the buffer that shaders read (`tiles.glsl`).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct LayeredTiles {
+    pub words: Vec<u32>,
+    pub layers: Vec<LayerTiles>,
+}
+
+/// The tiles of objects that share a pipeline and a set of textures. Ranges count tiles, or gathered
+/// pixels, from the buffer's start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct LayerTiles {
+    /// Fragments: quads of one copy each.
+    pub quads: Range<u32>,
+    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles that
+    /// have a single copy share pixels. The tiles are drawn before tiles of several copies.
+    pub listed: Range<u32>,
+    /// Compute: tiles of one copy each, without lists of patches.
+    pub single: Range<u32>,
+    /// Tiles with queues of copies.
+    pub queued: Range<u32>,
+    /// Compute: pixels of other such tiles.
+    pub gathered: Range<u32>,
+}
+
+impl LayerTiles {
+    /// Turns tiles with lists of patches into tiles without. The two ranges are neighbours.
+    pub fn unlist(&mut self) {
+        self.single.start = self.listed.start;
+        self.listed.end = self.listed.start;
+    }
+}
+
+/// Joins the tiles of all bands: blocks of queues, then tiles, then gathered pixels.
+pub(super) fn join(bands: &[Vec<BandTiles>], layers: usize) -> LayeredTiles {
+    let all = || (0..layers).flat_map(|n| bands.iter().map(move |band| &band[n]));
+    let bytes = |band: &BandTiles| {
+        let of_one = [&band.quads, &band.listed, &band.single].map(|of| size_of_val(&of[..]));
+        let queues = [&band.queued, &band.gathered].map(|of| size_of_val(&of[..]));
+        let others = [size_of_val(&band.blocks[..]), size_of_val(&band.pixels[..])];
+        of_one
+            .into_iter()
+            .chain(queues)
+            .chain(others)
+            .sum::<usize>()
+    };
+    let padding = layers * size_of::<[GatheredPixel; TILE_PIXELS as usize]>();
+    let mut words: Vec<u32> = Vec::with_capacity((all().map(bytes).sum::<usize>() + padding) / 4);
+    // The first block of each band, and its first gathered tile.
+    let mut begins = Vec::with_capacity(bands.len() * layers);
+    for band in all() {
+        let block = words.len() / (size_of::<QueueBlock>() / 4);
+        begins.push([block as u32, 0]);
+        words.extend_from_slice(bytemuck::cast_slice(&band.blocks));
+    }
+    let number = |words: &Vec<u32>| (words.len() / (size_of::<CopyTile>() / 4)) as u32;
+    let queue = |tile: &QueueTile, block: u32| QueueTile {
+        first: tile.first + block,
+        ..*tile
+    };
+    let mut made = vec![LayerTiles::default(); layers];
+    for (n, layer) in made.iter_mut().enumerate() {
+        let of_layer = || bands.iter().map(|band| &band[n]);
+        let mut put = |of: for<'b> fn(&'b BandTiles) -> &'b [CopyTile]| {
+            let first = number(&words);
+            of_layer().for_each(|band| words.extend_from_slice(bytemuck::cast_slice(of(band))));
+            first..number(&words)
+        };
+        (layer.quads, layer.listed) = (put(|of| &of.quads), put(|of| &of.listed));
+        layer.single = put(|of| &of.single);
+        let begins = &mut begins[n * bands.len()..][..bands.len()];
+        let first = number(&words);
+        for (band, [block, _]) in of_layer().zip(&*begins) {
+            for tile in &band.queued {
+                words.extend(bytemuck::cast::<_, [u32; 4]>(queue(tile, *block)));
+            }
         }
-        let first = self.words.len() as u32;
-        self.waiting.resize(PIXELS, [u32::MAX, first, 0]);
-        let lists = self.waiting.drain(..);
-        let words = lists.flat_map(|[place, begin, n]| [place, begin.wrapping_sub(first), n]);
-        self.words.extend(words);
-        self.queued.push([0, first, TILE_SPLIT, 0]);
+        layer.queued = first..number(&words);
+        for (band, [block, tiles]) in of_layer().zip(begins) {
+            *tiles = number(&words);
+            for tile in &band.gathered {
+                words.extend(bytemuck::cast::<_, [u32; 4]>(queue(tile, *block)));
+            }
+        }
+    }
+    for (n, layer) in made.iter_mut().enumerate() {
+        let first = words.len() as u32 / 2;
+        let mut last = 0;
+        for (band, [_, tiles]) in bands.iter().zip(&begins[n * bands.len()..]) {
+            last = *tiles;
+            let pixels = band[n].pixels.iter();
+            words.extend(pixels.flat_map(|pixel| [pixel.position, pixel.tile + tiles]));
+        }
+        let end = first + (words.len() as u32 / 2 - first).next_multiple_of(TILE_PIXELS);
+        while (words.len() as u32) < 2 * end {
+            words.extend([NO_PIXEL, last]);
+        }
+        layer.gathered = first..end;
+    }
+    LayeredTiles {
+        words,
+        layers: made,
     }
 }
 
@@ -218,9 +319,9 @@ fn cut([x, y, side]: [u32; 3], pixels: u64, inside: u64, visit: &mut impl FnMut(
 }
 
 /// Visits the bits that are set.
-fn each_bit(mut bits: u64, mut visit: impl FnMut(usize)) {
+fn each_bit(mut bits: u64, mut visit: impl FnMut(u32)) {
     while bits != 0 {
-        visit(bits.trailing_zeros() as usize);
+        visit(bits.trailing_zeros());
         bits &= bits - 1;
     }
 }
@@ -267,7 +368,7 @@ mod tests {
             here.push(TileCopy {
                 batch: copy % 2,
                 copy,
-                near: 100 + copy,
+                near: near(copy),
                 pixels: if copy % 3 == 0 {
                     u64::MAX
                 } else {
@@ -297,24 +398,28 @@ mod tests {
         all
     }
 
-    /// The copies of a queue that a pixel of the tile may show.
-    fn list(words: &[u32], begin: u32, count: u32, bit: u32) -> Vec<u32> {
+    /// The depth of a copy.
+    fn near(copy: u32) -> f32 {
+        100.0 + copy as f32
+    }
+
+    /// The copies of a tile's queue that a pixel may show.
+    fn list(blocks: &[QueueBlock], tile: &QueueTile, bit: u32) -> Vec<u32> {
         let mut found = Vec::new();
-        for k in 0..count.next_multiple_of(QUEUE_BLOCK) {
-            let block = &words[begin as usize + (k / QUEUE_BLOCK) as usize * BLOCK_WORDS..];
+        for k in 0..tile.count.next_multiple_of(QUEUE_BLOCK) {
+            let block = &blocks[(tile.first + k / QUEUE_BLOCK) as usize];
             let (slot, at) = (k % QUEUE_BLOCK, bit * QUEUE_BLOCK);
-            let marks = block[(2 * QUEUE_BLOCK + at / 32) as usize];
-            if marks >> (at % 32 + slot) & 1 == 1 {
-                let copy = &block[2 * slot as usize..][..2];
-                assert!(k < count && copy[1] == 100 + copy[0]);
-                found.push(copy[0]);
+            if block.marks[at as usize / 32] >> (at % 32 + slot) & 1 == 1 {
+                let copy = block.copies[slot as usize];
+                assert!(k < tile.count && copy.near == near(copy.instance));
+                found.push(copy.instance);
             }
         }
         found
     }
 
     /// Two batches in one layer, with queues.
-    const DEALER: Dealer = Dealer {
+    const WRITER: TileWriter = TileWriter {
         compute: true,
         layer_of: &[0, 0],
         lists: &[false; 2],
@@ -323,71 +428,62 @@ mod tests {
         picture: PICTURE,
     };
 
-    fn dealt(tiles: &Tiles, dealer: &Dealer) -> Vec<BandRecords> {
-        dealer.deal(
+    fn written(tiles: &Tiles, writer: &TileWriter) -> Vec<BandTiles> {
+        writer.write(
             tiles
                 .iter()
                 .map(|(place, here)| (*place, here.iter().copied())),
         )
     }
 
-    /// The lists that work groups search, and the number of idle invocations.
-    fn visited(lists: &BandRecords) -> (Found, u32) {
+    /// The lists that work groups search.
+    fn visited(tiles: &BandTiles) -> Found {
         let mut found = BTreeMap::new();
-        let mut idle = 0;
-        for &[packed, first, count, _] in &lists.queued {
-            let [x, y] = [packed, packed >> TILE_BITS].map(|at| at & ((1 << TILE_BITS) - 1));
-            let corner = (SIDE * x) | (SIDE * y) << 16;
-            let split = count == TILE_SPLIT;
-            for k in 0..SIDE * SIDE {
-                let at = (first + 3 * k) as usize;
-                let [place, begin, count] = if split {
-                    let [place, away, count] = [0, 1, 2].map(|n| lists.words[at + n]);
-                    [place, first.wrapping_add(away), count]
-                } else {
-                    [corner + k % SIDE + ((k / SIDE) << 16), first, count]
-                };
-                if place == u32::MAX {
-                    idle += 1;
-                    continue;
-                }
-                let pixel = (place & 0xffff, place >> 16);
-                let bit = pixel.0 % SIDE + pixel.1 % SIDE * SIDE;
-                let list = list(&lists.words, begin, count, bit);
-                assert!(found.insert(pixel, list).is_none());
-            }
+        let corner = |tile: &QueueTile| {
+            [tile.tile, tile.tile >> TILE_BITS].map(|at| (at & ((1 << TILE_BITS) - 1)) * SIDE)
+        };
+        let mut visit = |tile: &QueueTile, [x, y]: [u32; 2]| {
+            let list = list(&tiles.blocks, tile, x % SIDE + y % SIDE * SIDE);
+            assert!(found.insert((x, y), list).is_none());
+        };
+        for tile in &tiles.queued {
+            let [x, y] = corner(tile);
+            (0..TILE_PIXELS).for_each(|k| visit(tile, [x + k % SIDE, y + k / SIDE]));
         }
-        (found, idle)
+        for pixel in &tiles.pixels {
+            let tile = &tiles.gathered[pixel.tile as usize];
+            let at = [pixel.position & 0xffff, pixel.position >> 16];
+            assert_eq!(at.map(|at| at / SIDE * SIDE), corner(tile));
+            visit(tile, at);
+        }
+        found
     }
 
     #[test]
-    fn gathered_pixels_list_what_they_show_and_none_is_idle() {
+    fn gathered_pixels_list_what_they_show() {
         let tiles = tiles(90);
-        let lists = &dealt(&tiles, &DEALER)[0];
-        let (found, idle) = visited(lists);
+        let lists = &written(&tiles, &WRITER)[0];
+        let found = visited(lists);
         // Each pixel searches the copies that it may show, in order.
         let shown = shown(&tiles);
         assert!(shown.iter().all(|(pixel, wanted)| found[pixel] == *wanted));
-        // Only the last record has idle invocations.
-        assert!(idle < 64);
         assert_eq!(lists.listed.len() + lists.single.len(), 0);
     }
 
     #[test]
-    fn a_large_copy_of_each_tile_has_a_record_of_its_own() {
+    fn a_large_copy_of_each_tile_has_a_tile_of_its_own() {
         let tiles = tiles(90);
         let lists = &[true; 2];
-        let lists = &dealt(&tiles, &Dealer { lists, ..DEALER })[0];
-        let (mut found, _) = visited(lists);
-        let mut records = lists.listed.iter();
+        let lists = &written(&tiles, &TileWriter { lists, ..WRITER })[0];
+        let mut found = visited(lists);
+        let mut singles = lists.listed.iter();
         for (place, here) in &tiles {
             let is_large = |one: &&TileCopy| one.pixels.count_ones() >= SINGLE_PIXELS;
             let Some(nearest) = here.iter().find(is_large) else {
                 continue;
             };
-            let corner = (place[0] * SIDE) | ((place[1] * SIDE) << 16);
-            let wanted = [corner, nearest.copy, 0, nearest.near];
-            assert_eq!(records.next(), Some(&wanted));
+            let wanted = copy_tile(nearest, place.map(|at| at * SIDE), SIDE);
+            assert_eq!(singles.next(), Some(&wanted));
             for pixel in pixels_of(*place, nearest.pixels) {
                 let list = found.entry(pixel).or_default();
                 if let Err(at) = list.binary_search(&nearest.copy) {
@@ -395,7 +491,7 @@ mod tests {
                 }
             }
         }
-        assert!(records.next().is_none() && lists.listed.len() > TILES / 2);
+        assert!(singles.next().is_none() && lists.listed.len() > TILES / 2);
         let shown = shown(&tiles);
         assert!(shown.iter().all(|(pixel, wanted)| found[pixel] == *wanted));
     }
@@ -414,23 +510,24 @@ mod tests {
                 let inside = within(*place, picture);
                 here.iter_mut().for_each(|one| one.pixels &= inside);
             }
-            let dealer = Dealer {
+            let writer = TileWriter {
                 compute: false,
                 lists: &[true; 2],
                 queues: &[queues],
                 picture,
-                ..DEALER
+                ..WRITER
             };
-            let lists = &dealt(&tiles, &dealer)[0];
+            let lists = &written(&tiles, &writer)[0];
             assert!(lists.listed.is_empty() && lists.single.is_empty());
             assert!(!lists.quads.is_empty() || count == 90);
             assert_eq!(lists.queued.is_empty(), !queues);
-            assert!(lists.queued.iter().all(|record| record[2] != TILE_SPLIT));
-            let (mut found, _) = visited(lists);
-            for &[place, copy, none, near] in &lists.quads {
-                assert_eq!((none, near), (0, 100 + copy));
-                let (mask, side) = ((1 << QUAD_BITS) - 1, 1 << (place >> (2 * QUAD_BITS)));
-                let [x, y] = [place & mask, place >> QUAD_BITS & mask];
+            assert!(lists.gathered.is_empty() && lists.pixels.is_empty());
+            let mut found = visited(lists);
+            for quad in &lists.quads {
+                let (square, copy) = (quad.square, quad.instance);
+                assert_eq!(quad.near, near(copy));
+                let (mask, side) = ((1 << QUAD_BITS) - 1, 1 << (square >> (2 * QUAD_BITS)));
+                let [x, y] = [square & mask, square >> QUAD_BITS & mask];
                 for (x, y) in (y..y + side).flat_map(|y| (x..x + side).map(move |x| (x, y))) {
                     let list = found.entry((x, y)).or_default();
                     assert!(inside(x, y) && !list.contains(&copy), "{x} {y}");
@@ -444,28 +541,29 @@ mod tests {
     }
 
     /// Two layers have copies in one tile. A layer lists its own copies in order, and one copy of
-    /// the two layers has a record of its own.
+    /// the two layers has a tile of its own.
     #[test]
     fn layers_share_tiles() {
         let tiles = tiles(90);
-        let dealer = Dealer {
+        let writer = TileWriter {
             layer_of: &[1, 0],
             lists: &[true, false],
             queues: &[true; 2],
-            ..DEALER
+            ..WRITER
         };
-        let lists = dealt(&tiles, &dealer);
+        let lists = written(&tiles, &writer);
         assert!(lists[0].listed.is_empty() && !lists[1].listed.is_empty());
         let mut found = Found::new();
         for (layer, lists) in (0u32..).zip(&lists) {
-            for (pixel, list) in visited(lists).0 {
+            for (pixel, list) in visited(lists) {
                 assert!(list.is_sorted() && list.iter().all(|copy| 1 - copy % 2 == layer));
                 found.entry(pixel).or_default().extend(list);
             }
-            for &[corner, copy, ..] in &lists.listed {
-                let place = [corner & 0xffff, corner >> 16].map(|at| at / SIDE);
+            for tile in &lists.listed {
+                let place = [tile.square, tile.square >> QUAD_BITS];
+                let place = place.map(|at| (at & ((1 << QUAD_BITS) - 1)) / SIDE);
                 for pixel in pixels_of(place, u64::MAX) {
-                    found.entry(pixel).or_default().push(copy);
+                    found.entry(pixel).or_default().push(tile.instance);
                 }
             }
         }

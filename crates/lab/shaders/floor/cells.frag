@@ -13,7 +13,7 @@ layout(depth_greater) out float gl_FragDepth;
 void main()
 {
     vec2 pixel = gl_FragCoord.xy - 0.5;
-    take_over();
+    load_varyings();
     PixelRays rays = varying_rays();
     Meridian m;
     m.v = ray_direction(rays, pixel);

@@ -5,17 +5,17 @@
 
 void main()
 {
-    take_frame();
-    take_record();
+    load_frame(pushed.object);
+    load_tile();
     tile_instance = instances[instance_number()];
-    take_object(tile_instance);
+    load(tile_instance);
     begin_tile();
     uvec2 pixel = tile_corner() + gl_LocalInvocationID.xy;
     vec3 o = ray_origin(tile_rays, pixel);
     vec3 v = ray_direction(tile_rays, pixel);
     float a = dot(v.xy, v.xy);
     float b = dot(o.xy, v.xy);
-    float inside = b * b - a * (dot(o.xy, o.xy) - object.bounds.y * object.bounds.y);
+    float inside = b * b - a * (dot(o.xy, o.xy) - shape.clip_radius * shape.clip_radius);
     Hit hit = NO_HIT;
     hit.t = -(b + sqrt(max(inside, 0.0))) / a;
     hit.point = o + hit.t * v;

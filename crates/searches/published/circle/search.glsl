@@ -5,7 +5,7 @@
 // Stored in 8 bits the distance comes in stairs, below half a texel it says nothing more.
 float hit_threshold()
 {
-    return object.map.z * (RGBA8 != 0 ? 0.5 : 0.02);
+    return shape.texel * (RGBA8 != 0 ? 0.5 : 0.02);
 }
 
 const int PAPERS_HALVINGS = 10;
@@ -20,13 +20,13 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     int halvings = 0; // of a step that has passed the surface, as only a bevel lets it
     int most = most_steps();
     for (int i = 1; i < most || halvings > 0; ++i) {
-        bool passed = bool(BEVELED) && (halvings > 0 || (object.offset.y != 0.0 && f < 0.0));
+        bool passed = bool(BEVELED) && (halvings > 0 || (shape.bevel != 0.0 && f < 0.0));
         found = passed || f < threshold;
         if (halvings == PAPERS_HALVINGS || (found && !passed)) {
             break;
         }
         // The papers step by the distance to the extended form, not to the beveled one.
-        float bevel = bool(BEVELED) ? side * (offset_width(point_rz(m, s).y) - object.offset.x) : 0.0;
+        float bevel = bool(BEVELED) ? side * (offset_width(point_rz(m, s).y) - shape.extend) : 0.0;
         last = passed ? 0.5 * last : max(f + bevel, threshold) * m.inverse_speed;
         s += passed && f < 0.0 ? -last : last;
         halvings += passed ? 1 : 0;
@@ -38,5 +38,5 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
         ++steps;
     }
     // Out of steps: the papers show what has come near.
-    return left ? LEFT : found ? FOUND : (f < object.map.z ? NEARLY : EXHAUSTED);
+    return left ? LEFT : found ? FOUND : (f < shape.texel ? NEARLY : EXHAUSTED);
 }

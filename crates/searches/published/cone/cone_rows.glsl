@@ -32,7 +32,7 @@ vec2 row_radius(vec4 cone, float height, float n, bool above)
     float g = cone.x + slope * height;
     if (cone.w < 0.0) {
         float face = level_height(cone, n);
-        float upper = mod(-cone.w - 1.0, 4096.0) / 4095.0 * uintBitsToFloat(object.patches.z);
+        float upper = mod(-cone.w - 1.0, 4096.0) / 4095.0 * uintBitsToFloat(shape.table_fact_1);
         slope = above ? (cone.y - upper) / max(1.0 / n - face, 1e-7) : (cone.z - cone.x) / max(face, 1e-7);
         g = above ? upper + slope * (height - face) : cone.x + slope * height;
     }
@@ -41,7 +41,7 @@ vec2 row_radius(vec4 cone, float height, float n, bool above)
 
 bool starts_in_table(Meridian m)
 {
-    float n = float(object.patches.y);
+    float n = float(shape.table_fact_0);
     float z = clamp(m.o.z, 0.0, 1.0);
     float row = min(floor(z * n), n - 1.0);
     vec4 cone = patch_vector(uint(row));
@@ -53,7 +53,7 @@ bool starts_in_table(Meridian m)
 // FOUND or LEFT; `hit_quadric` is the frustum that was hit, as `quadric_normal` wants it.
 uint search_cone(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
 {
-    int rows = int(object.patches.y);
+    int rows = int(shape.table_fact_0);
     float n = float(rows);
     bool up = m.v.z >= 0.0;
     float per_z = 1.0 / (up ? max(m.v.z, 1e-20) : min(m.v.z, -1e-20));

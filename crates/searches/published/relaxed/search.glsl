@@ -9,7 +9,7 @@ const int HALVINGS_OF_CONES = 12;
 // The row at a height, and its radius and slope there.
 vec4 row_at(float z, out vec2 radius)
 {
-    float n = float(object.patches.y);
+    float n = float(shape.table_fact_0);
     float row = clamp(floor(z * n), 0.0, n - 1.0);
     vec4 cone = patch_vector(uint(row));
     float height = clamp(z - row / n, 0.0, 1.0 / n);
@@ -29,7 +29,7 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
 {
     bool up = m.v.z >= 0.0;
     // The solid's own levels, floor and ceiling among them, are met at a row's border at the earliest.
-    float least = m.inverse_speed / float(object.patches.y);
+    float least = m.inverse_speed / float(shape.table_fact_0);
     float t = 0.0;
     float before = 0.0;
     vec4 cone;

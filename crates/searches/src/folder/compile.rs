@@ -41,16 +41,16 @@ const BINARY_MAP: &str = "\
 // True if the texel that holds a point is solid.
 bool solid(vec2 rz)
 {
-    vec2 texel = floor(vec2(rz.x, 1.0 - rz.y) * object.map.y) + 0.5;
-    return field(vec2(0.0, 1.0) + vec2(1.0, -1.0) * texel * object.map.z) <= 0.0;
+    vec2 texel = floor(vec2(rz.x, 1.0 - rz.y) * shape.map_size.y) + 0.5;
+    return field(vec2(0.0, 1.0) + vec2(1.0, -1.0) * texel * shape.texel) <= 0.0;
 }
 ";
 
 /// The table of a program.
 const TABLE: &str = "\
 vec4 table_vector(uint i) { return patch_vector(i); }
-uint table_length() { return object.patches.y; } // vectors
-uint table_rows() { return object.patches.z; } // --map-rows
+uint table_length() { return shape.table_fact_0; } // vectors
+uint table_rows() { return shape.table_fact_1; } // --map-rows
 ";
 
 /// Marks in the number of steps: a value that no search returns, and a hit that is no number.

@@ -69,14 +69,16 @@ impl Pipelines {
         if pass.depth == DepthOrder::Reversed {
             words = depth_less(&words);
         }
-        if let Planes::List(list) = pass.planes {
-            let mut locations = [None; Plane::COUNT];
-            for (plane, location) in list.planes().iter().zip(0..) {
-                locations[plane.location() as usize] = Some(location);
-            }
-            words = with_locations(&words, &locations);
+        let planes = match &pass.planes {
+            Planes::Color => &[Plane::Color],
+            Planes::List(list) => list.planes(),
+            Planes::All | Planes::Depth { .. } => return words,
+        };
+        let mut locations = [None; Plane::COUNT];
+        for (plane, location) in planes.iter().zip(0..) {
+            locations[plane.location() as usize] = Some(location);
         }
-        words
+        with_locations(&words, &locations)
     }
 
     fn shader(&self, words: &[u32], constants: &HashMap<u32, u32>) -> Result<ShaderModule<'_>> {

@@ -21,7 +21,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit
 {
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.
-    return clip_ray(eye, v, base, m) && object.patches.w != 0u && hit_at(eye, v, m.t_start, hit);
+    return clip_ray(eye, v, base, m) && shape.table_fact_2 != 0u && hit_at(eye, v, m.t_start, hit);
 }
 
 #endif

@@ -1,0 +1,198 @@
+// Structures in buffers that the CPU and the shaders share. build.rs makes the same structures for Rust from this file,
+// and refuses a member whose place would differ. A vec3 is always followed by a member of one word.
+#ifndef STRUCTURES_GLSL
+#define STRUCTURES_GLSL
+#include "core/variant.glsl"
+
+struct Light {
+    vec3 towards; // unit, from the surface to the light
+    float cap;    // 1 - cos of its angular radius
+    vec3 color;   // linear RGB
+    float unused;
+};
+
+// The view of a frame.
+struct Frame {
+    vec3 clip_x; // change of clip x for a step in the world
+    float parallel; // 1 if rays are parallel, else 0
+    vec3 clip_y; // change of clip y
+    float near; // depth of the near plane
+    vec3 dir_00; // ray through the centre of pixel (0, 0), forward component 1
+    float pixel_size; // width of a pixel at unit depth
+    vec3 dir_x; // change of the ray per column
+    float depth_constant; // depth in clip space = depth_constant + depth_factor / t, or * t if rays are parallel
+    vec3 dir_y; // change of the ray per row
+    float depth_factor;
+    vec3 forward; // unit
+    float depth_sense; // 1 if depth grows away from the eye, else -1
+    vec3 ambient; // linear RGB
+    float near_depth; // depth of the near plane in clip space
+    uvec2 size; // pixels
+    uint light_count;
+    uint last_copies; // index of the first LastCopy among instances
+    vec2 clip_scale; // clip position = clip_scale * position in the picture + clip_shift
+    vec2 clip_shift;
+};
+
+// The root of the hierarchy of copies that may cast shadows, and the eye.
+struct CasterRoot {
+    vec3 eye; // from the origin of the hierarchy
+    uint map_count; // number of shape maps
+    vec3 middle; // of the root's box
+    uint node_count;
+    vec3 half_size;
+    uint only_copy; // index of the only copy, or INNER_NODE
+};
+
+// All data of a frame.
+struct FrameData {
+    Frame frame;
+    CasterRoot casters;
+    float first_depth; // the depth buffer's value of depth 0 in clip space
+    float depth_range; // its value of depth 1, minus first_depth
+    float far_depth; // depth in clip space of the far plane
+    uint layer; // index of the view among those of the pass
+    Light lights[MAX_LIGHTS];
+};
+
+// A copy of an object, relative to the eye. The CPU computes it in double precision for each view, so that no rounding
+// error grows with the distance from the world's origin or from the eye.
+struct Instance {
+    vec3 position; // middle of the box's lower face, from the eye, world axes
+    float depth; // depth of the box's middle
+    vec3 scale;
+    float clip_x; // clip x of the box's middle
+    vec4 rotation; // unit quaternion, x y z w
+    vec3 origin; // ray origin of pixel (0, 0) (pixel_ray.glsl), object space
+    float clip_y; // clip y of the box's middle
+    uint object; // index of its object
+    uint listed; // first vector of its table of listed patches
+    uint table; // first vector of its table
+    uint unused;
+};
+
+// Where a copy was in the last frame. It has the size of an Instance: both are in one buffer.
+struct LastCopy {
+    vec4 row_x; // rows of the map from object space to (x w, y w, w), x and y in pixels
+    vec4 row_y;
+    vec4 row_w;
+    vec2 jitter; // half a pixel minus the view's jitter
+    float farther; // by which the surface was farther out along its normal, object units
+    float unused;
+    uvec4 unused_too;
+};
+
+// The members of an object that a search reads. Lengths are in object units.
+struct Shape {
+    vec2 map_size; // columns, rows
+    float texel; // size of a texel of the map
+    float map_scale; // factor from the map's stored values
+    float half_side; // half of the box's side, R
+    float clip_radius; // nothing is solid outside of this cylinder about the axis
+    float clip_low; // and of this range of z
+    float clip_high;
+    float extend; // e
+    float bevel; // b
+    float chamfer; // c
+    float most_steps; // upper limit on steps
+    vec2 axis; // from the box's middle
+    uint shadow_map; // index of the shape map among those of shadows
+    uint first_frustum; // first vector of the frusta
+    uvec3 replicas; // along x, y, z
+    uint flags; // bits: replicas are reflected along x, y, z, then OUTSIDE_BIT
+    uint table; // first vector of the copy's table
+    uint table_fact_0; // words about the table, by search; the quadric search has no first two
+    uint table_fact_1;
+    uint table_fact_2; // quadric search: unit of r^2 (bits of a float)
+    uint listed; // first vector of the copy's table of listed patches
+    uint listed_window; // first vector of such tables of all levels
+    uint table_window; // first vector of the tables of all levels
+    uint unused;
+};
+
+// The members of an object that only shading reads.
+struct Appearance {
+    vec3 color; // linear RGB
+    uint material; // roughness and metalness, 16 bits each
+    float specular; // strength
+    float shininess;
+    float box_height; // of the box that is drawn, profile units
+    float box_low; // height of its part below z = 0, profile units
+    vec2 texture_repeat; // along xi and eta
+    float bump; // depth a
+    float profile_width; // 2 R of the profile's box in its units
+    float arc_rate; // 1 / outline length
+    uint first_instance;
+    uint unused_0;
+    uint unused_1;
+};
+
+struct Object {
+    Shape shape;
+    Appearance appearance;
+};
+
+// A node of the hierarchy of boxes around the copies of all objects.
+struct CasterNode {
+    vec3 middle; // of its box, from the origin of the hierarchy, world axes
+    uint next; // index of the node after its subtree; of a copy: index of its shape map
+    vec3 half_size;
+    uint instance; // index of the copy, or INNER_NODE
+};
+
+// A square of pixels in which one copy may be visible: a tile in compute, also smaller for fragments.
+struct CopyTile {
+    uint square; // x | y << QUAD_BITS | log2 of the side << (2 QUAD_BITS), pixels
+    uint instance; // index of the copy
+    float near; // the copy's nearest depth
+    uint unused;
+};
+
+// A tile with a queue of copies.
+struct QueueTile {
+    uint tile; // column | row << TILE_BITS, then from TILE_HALVES on a bit for each half in which a copy may be visible:
+               // left, right, top, bottom
+    uint first; // index of its first QueueBlock
+    uint count; // number of copies
+    float near; // nearest depth
+};
+
+// A copy in a queue.
+struct QueuedCopy {
+    uint instance; // index of the copy
+    float near; // its nearest depth
+};
+
+// QUEUE_BLOCK copies of a queue, nearest first. The rest of the last block is zero.
+struct QueueBlock {
+    QueuedCopy copies[QUEUE_BLOCK];
+    uint marks[QUEUE_MARKS]; // QUEUE_BLOCK bits per pixel of the tile, one for each copy that the pixel may show
+};
+
+// A pixel of a tile with a queue, among pixels of other tiles.
+struct GatheredPixel {
+    uint position; // x | y << 16; NO_PIXEL fills up the last work group
+    uint tile; // index of the QueueTile
+};
+
+// A tile of one copy in a bin.
+struct BinTile {
+    uint square; // as in CopyTile
+    uint instance;
+    uvec2 found; // lists: two runs of patches (first | number << 9 | first << 15 | number << 24), unused; tree: range of t of
+                 // possible hits (bits of floats)
+};
+
+// Push constants of a dispatch.
+struct Pushed {
+    uint first; // index of the first tile, or of the first gathered pixel
+    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host
+    uint heads; // index of the first head of their bins
+    uint tiles; // index of the first tile of their bins
+    uint bin; // number of the bin that is read
+    uint gathered; // 1 if a work group's pixels come from several tiles
+    uint object; // index of the only object
+    uint instance; // index of its only copy
+};
+
+#endif
