@@ -8,7 +8,8 @@ void main()
 {
     load_frame(pushed.object);
     load_tile();
-    share_tile();
+    share_object();
+    share_patches();
     barrier();
     load_shared();
     begin_tile();

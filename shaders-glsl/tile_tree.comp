@@ -1,14 +1,17 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 // Traces the pixels of single-copy tiles through the tree, like the fragments of a box.
-#include "stage/tile.glsl"
+#include "stage/shared_object.glsl"
 
 void main()
 {
     load_frame(pushed.object);
     load_tile();
-    tile_instance = instances[instance_number()];
-    load(tile_instance);
+    if (ONE_OBJECT != 2u) {
+        share_object();
+        barrier();
+    }
+    load_shared();
     begin_tile();
     // Only tiles of bins contain the span.
     vec2 span = reads_bin() && is_outside() ? uintBitsToFloat(tile.found) : EVERYWHERE;

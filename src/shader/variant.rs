@@ -116,6 +116,10 @@ pub(crate) const SPECIALITIES: [&str; 4] = ["lights", "one-object", "outside", "
 /// The value of [`Speciality::outside`] for draws without an object that is seen from outside.
 const NOT_OUTSIDE: u32 = 2;
 
+/// Lights of the form that is compiled beside the general one: a loop over more of them takes half of
+/// a frame even if it has no turn.
+pub const FEW_LIGHTS: u32 = 2;
+
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
 
@@ -199,13 +203,17 @@ impl Variant {
     }
 
     /// The forms of pipelines that may draw what this variant draws, the fastest first: this one with
-    /// specialities of a set, one with these lights alone, and the general one.
+    /// specialities of a set, one for up to two lights if there are no more, and the general one.
     #[must_use]
     pub fn forms(self, kind: Kind, set: u32) -> [Self; 3] {
-        [set, set & LIGHTS_BIT, 0].map(|set| {
-            let speciality = self.speciality.only(set);
-            Self { speciality, ..self }.of_kind(kind)
-        })
+        let mut few_lights = self.speciality.only(set & LIGHTS_BIT);
+        few_lights.lights = few_lights.lights.max(FEW_LIGHTS);
+        let first = match set {
+            LIGHTS_BIT => few_lights, // as after `Renderer::prewarm`
+            _ => self.speciality.only(set),
+        };
+        let all = [first, few_lights, Speciality::GENERAL];
+        all.map(|speciality| Self { speciality, ..self }.of_kind(kind))
     }
 
     /// The module of its vertices, before [`with_outputs_for`](super::with_outputs_for) its

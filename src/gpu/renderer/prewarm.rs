@@ -7,7 +7,7 @@ use crate::gpu::content::Content;
 use crate::gpu::content::refresh::FALLBACK;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::shader::{Kind, Pushed, Speciality, Variant};
+use crate::shader::{FEW_LIGHTS, Kind, Pushed, Speciality, Variant};
 use ash::vk;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -48,8 +48,8 @@ impl Prewarm {
 }
 
 impl Renderer {
-    /// Returns the general form of every pipeline that the objects may need, and the form for the
-    /// number of lights that is set: 1, 2 or more. Once these are compiled, [`Renderer::prepare`]
+    /// Returns the general form of every pipeline that the objects may need, and the form for up to two
+    /// lights. Once these are compiled, [`Renderer::prepare`]
     /// compiles nothing and hides nothing while parameters, lights, masks, placements, the view, and
     /// the numbers of objects and copies change. A change of technique makes others necessary: a
     /// search, textures where there were none, a projection, replicas, shadows.
@@ -139,8 +139,8 @@ impl Renderer {
 }
 
 impl Content {
-    /// The general form of every pipeline that an object's technique may need, with the form for the
-    /// lights as set, and the general forms of the technique that replaces it if its contour does
+    /// The general form of every pipeline that an object's technique may need, with the form for few
+    /// lights, and the general forms of the technique that replaces it if its contour does
     /// not close. No view, mask or parameter has an influence, and no number of objects or copies.
     fn prewarmed_forms(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(), self.settings.solver);
@@ -151,20 +151,16 @@ impl Content {
         for object in &self.snapshot.objects {
             let (drawn, images) = (object.drawn(), &object.images);
             let drawn_by = |solver| demands.technique(solver, drawn, images, common);
-            let wanted = drawn_by(solver)
-                .forms()
-                .into_iter()
-                .map(|of| (of, with.lights));
-            let replaced = solver
-                .follows_tolerance()
-                .then(|| (drawn_by(FALLBACK), any_lights));
+            let wanted = drawn_by(solver).forms().into_iter();
+            let wanted = wanted.map(|technique| (technique, FEW_LIGHTS));
+            let replaced = (solver.follows_tolerance()).then(|| (drawn_by(FALLBACK), any_lights));
             for (technique, lights) in wanted.chain(replaced) {
                 let mut variant = Variant::general(technique);
                 variant.speciality.lights = lights;
                 for kind in with.kinds(&technique) {
-                    let [_, as_lit, general] = variant.forms(kind, u32::MAX);
+                    let [_, few_lights, general] = variant.forms(kind, u32::MAX);
                     let new = |variant: &Variant| known.insert((*variant, kind));
-                    let forms = [general, as_lit].into_iter().filter(new);
+                    let forms = [general, few_lights].into_iter().filter(new);
                     all.extend(forms.map(|variant| (variant, kind)));
                 }
             }
