@@ -16,7 +16,9 @@ use crate::maps::MapFormat;
 use crate::plan::Conditions;
 use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
-use crate::shader::{HostLook, Kind, ShadowCasters, Speciality, Technique, Variant};
+use crate::shader::{
+    Drawn, HostLook, Kind, Lights, Outside, ShadowCasters, Speciality, Technique, Variant,
+};
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
 
@@ -154,15 +156,19 @@ impl PipelineCompiler {
                     all.push(choice);
                 }
             };
-            for depths in [0, 1] {
+            for depths in [false, true] {
                 add(Variant {
                     speciality: Speciality {
                         lights: match conditions.casts {
-                            true => 3,
-                            false => lighting.lights.len().clamp(1, 3) as u32,
+                            true => Lights::Any,
+                            false => Lights::of(lighting.lights.len()),
                         },
-                        one_object: 2 - depths,
-                        outside: 1 + u32::from(may_cut),
+                        drawn: if depths {
+                            Drawn::OneObject
+                        } else {
+                            Drawn::OneCopy
+                        },
+                        outside: if may_cut { Outside::None } else { Outside::All },
                         depths,
                     },
                     ..general

@@ -16,14 +16,14 @@ mod view;
 mod viewports;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, MOST_PROXIES, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 pub(crate) use tiles::MOST_PIXELS;
 use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
-use crate::shader::{Kind, Pushed, Speciality, Variant};
+use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
 use crate::solid::offset_surface::Part;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -140,12 +140,12 @@ fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
             technique: of.technique,
             speciality: Speciality {
                 lights: with.lights,
-                one_object: match of.object.placements().len() {
-                    _ if !alone => 0,
-                    1 => 2,
-                    _ => 1,
+                drawn: match of.object.placements().len() {
+                    _ if !alone => Drawn::Objects,
+                    1 => Drawn::OneCopy,
+                    _ => Drawn::OneObject,
                 },
-                depths: u32::from(with.compares_depths()),
+                depths: with.compares_depths(),
                 ..Speciality::GENERAL
             },
         }

@@ -8,7 +8,7 @@ use crate::scene::Object;
 use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
-use crate::shader::{Kind, Search, Technique};
+use crate::shader::{Kind, Lights, Search, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
 use glam::DVec2;
@@ -85,8 +85,8 @@ pub(crate) struct Conditions {
     pub level_pixels: f64,
     /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
-    /// Upper limit of lights: 1, 2, or 3 for any number.
-    pub lights: u32,
+    /// Upper limit of lights.
+    pub lights: Lights,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.
@@ -95,9 +95,9 @@ pub(crate) struct Conditions {
     pub single_copy: bool,
 }
 
-/// Most copies of an object that are drawn by cells. With more copies, many are small or hidden,
-/// and tiles skip those.
-pub(crate) const MOST_PROXIES: usize = 64;
+/// Most copies of an object that are drawn by cells, on software drivers and on GPUs. With more copies,
+/// many are small or hidden, and tiles skip those. The value for GPUs is not measured.
+const MOST_PROXIES: [usize; 2] = [64, 64];
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
@@ -122,9 +122,15 @@ pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
+    /// Most copies of an object that are drawn by cells. Cells draw all copies at one level, so an
+    /// object with more copies may have a level for each.
+    pub fn most_proxies(&self) -> usize {
+        MOST_PROXIES[usize::from(!self.software)]
+    }
+
     /// True if an object may be drawn by cells. The view may still rule that out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
-        let few = of.object.placements().len() <= MOST_PROXIES;
+        let few = of.object.placements().len() <= self.most_proxies();
         self.shows_patches(of) && !self.compute && self.passes_cells && few
     }
 

@@ -32,7 +32,7 @@ pub use technique::{HostLook, ShadowCasters, Technique};
 pub use textures::{with_constant_textures, with_varying_textures};
 #[cfg(feature = "other-shaders")]
 pub(crate) use variant::SPECIALITIES;
-pub use variant::{FEW_LIGHTS, Kind, Speciality, Variant};
+pub use variant::{Drawn, Kind, Lights, Outside, Speciality, Variant};
 pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.

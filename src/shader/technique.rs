@@ -43,22 +43,22 @@ pub struct Technique {
     pub external: Option<External>,
     /// The stored values of a hit.
     pub output: Output,
-    /// 1 if the box holds several replicas.
-    pub replicas: u32,
+    /// True if the box holds several replicas.
+    pub replicas: bool,
     /// One of `SHADOW_*`.
     pub shadow: u32,
-    /// 1 if colours come from a map.
-    pub color_map: u32,
+    /// True if colours come from a map.
+    pub color_map: bool,
     /// One of `BUMP_*`.
     pub bump: u32,
     /// One of `PROJECTION_*`.
     pub projection: u32,
-    /// Searches on the map: 1 if there may be a bevel.
-    pub beveled: u32,
-    /// Searches on the map: 1 if that is the papers' texture of unsigned distances.
-    pub rgba8: u32,
-    /// Only depth: 1 if rays are parallel.
-    pub parallel: u32,
+    /// Searches on the map: true if there may be a bevel.
+    pub beveled: bool,
+    /// Searches on the map: true if that is the papers' texture of unsigned distances.
+    pub rgba8: bool,
+    /// Only depth: true if rays are parallel.
+    pub parallel: bool,
 }
 
 /// The form of an object's bumps, `BUMP_*`.
@@ -80,14 +80,14 @@ impl Technique {
         search: Search::None,
         external: None,
         output: Output::Color,
-        replicas: 0,
+        replicas: false,
         shadow: g::SHADOW_OFF,
-        color_map: 0,
+        color_map: false,
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
-        beveled: 0,
-        rgba8: 0,
-        parallel: 0,
+        beveled: false,
+        rgba8: false,
+        parallel: false,
     };
 
     /// The technique that draws `object` by the search `solver`, which is the search of the settings
@@ -104,15 +104,15 @@ impl Technique {
     ) -> Self {
         let texturing = &object.texturing;
         let casts = lighting.shadow != Shadow::Off;
-        let replicas = u32::from(object.repeat != [1; 3] || (casts && casters.repeated));
+        let replicas = object.repeat != [1; 3] || (casts && casters.repeated);
         let shadow = match lighting.shadow {
             Shadow::Off => g::SHADOW_OFF,
             Shadow::Hard => g::SHADOW_HARD,
             Shadow::Soft => g::SHADOW_SOFT,
         };
-        let color_map = u32::from(host.colors || texturing.color_map.is_some());
+        let color_map = host.colors || texturing.color_map.is_some();
         let bump = bump_of(texturing, host);
-        let textured = color_map != 0 || bump != g::BUMP_OFF;
+        let textured = color_map || bump != g::BUMP_OFF;
         let (output, parallel) = match planes {
             Planes::Color => (Output::Color, false),
             Planes::All => (Output::Planes, false),
@@ -123,7 +123,7 @@ impl Technique {
         // The replacement for another search has only the general form.
         let replaces = solver == Solver::Live && settings.solver != Solver::Live;
         let may_bevel = replaces || is_beveled || (casts && casters.beveled);
-        let of_map = |is: bool| u32::from(solver.reads_map() && is);
+        let of_map = |is: bool| solver.reads_map() && is;
         let technique = Self {
             search: match solver {
                 Solver::Live => Search::Live,
@@ -136,7 +136,7 @@ impl Technique {
                 .map(|search| External::new(search, settings, is_beveled, casts)),
             beveled: of_map(may_bevel),
             rgba8: of_map(settings.map_format == MapFormat::Rgba8),
-            parallel: u32::from(parallel),
+            parallel,
             ..Self::LISTS
         };
         if output == Output::Depth {
@@ -163,7 +163,7 @@ impl Technique {
     /// This technique and those that replace it when a bevel is added or removed.
     #[must_use]
     pub fn forms(self) -> Vec<Self> {
-        let beveled = 1 - self.beveled;
+        let beveled = !self.beveled;
         let twin = |external| Self {
             beveled,
             external,
@@ -173,14 +173,14 @@ impl Technique {
         match self.external {
             _ if self.reads_tables() => {}
             None => all.push(twin(None)),
-            Some(one) => all.extend(one.forms(beveled != 0).map(|one| twin(Some(one)))),
+            Some(one) => all.extend(one.forms(beveled).map(|one| twin(Some(one)))),
         }
         all
     }
 
     /// True if it draws neither replicas nor shadows.
     pub const fn is_single(&self) -> bool {
-        self.replicas == 0 && self.shadow == g::SHADOW_OFF
+        !self.replicas && self.shadow == g::SHADOW_OFF
     }
 
     /// True if its search walks tables.

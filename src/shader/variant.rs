@@ -92,33 +92,66 @@ impl Kind {
     }
 }
 
+/// Upper limit of lights: the value of `LIGHTS`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Lights {
+    One = 1,
+    /// The form that is compiled beside the general one.
+    Two,
+    /// A loop over more lights, which takes half of a frame even if it has no turn.
+    #[default]
+    Any,
+}
+
+impl Lights {
+    /// The limit for so many lights.
+    #[must_use]
+    pub const fn of(count: usize) -> Self {
+        match count {
+            0 | 1 => Self::One,
+            2 => Self::Two,
+            _ => Self::Any,
+        }
+    }
+}
+
+/// What a draw or dispatch holds: the value of `ONE_OBJECT`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Drawn {
+    Objects,
+    /// One object. Uniform buffers hold its block and the tables of all its levels.
+    OneObject,
+    /// One object with one copy.
+    OneCopy,
+}
+
+/// The objects of a draw whose boxes cut nothing of them, and outside of which rays from the eye begin:
+/// the value of `OUTSIDE`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Outside {
+    Some,
+    All,
+    None,
+}
+
 /// What makes a pipeline faster for some frames. Every value but that of [`Speciality::GENERAL`]
 /// promises something of the draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Speciality {
-    /// Upper limit of lights: 1, 2, or 3 for any number. Always 3 with shadows, whose lights share
-    /// one loop.
-    pub lights: u32,
-    /// 1 if the draw has one object, and uniform buffers hold its block and the tables of all its
-    /// levels; 2 if it has one copy, too.
-    pub one_object: u32,
-    /// 1 if the boxes of all objects cut nothing of them, and rays from the eye begin outside of them;
-    /// 2 if that is true of no object.
-    pub outside: u32,
-    /// Compute stage: 0 if each pixel is drawn once, so no depth is compared or kept.
-    pub depths: u32,
+    /// Any number with shadows, whose lights share one loop.
+    pub lights: Lights,
+    pub drawn: Drawn,
+    pub outside: Outside,
+    /// Compute stage: false if each pixel is drawn once, so no depth is compared or kept.
+    pub depths: bool,
 }
 
 /// The names of the members of [`Speciality`], in order.
 #[cfg(feature = "other-shaders")]
 pub(crate) const SPECIALITIES: [&str; 4] = ["lights", "one-object", "outside", "depths"];
-
-/// The value of [`Speciality::outside`] for draws without an object that is seen from outside.
-const NOT_OUTSIDE: u32 = 2;
-
-/// Lights of the form that is compiled beside the general one: a loop over more of them takes half of
-/// a frame even if it has no turn.
-pub const FEW_LIGHTS: u32 = 2;
 
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
@@ -126,22 +159,29 @@ const LIGHTS_BIT: u32 = 1;
 impl Speciality {
     /// The members of a set, with bits in the order of the members; the others promise nothing.
     fn only(self, set: u32) -> Self {
-        let general = Self::GENERAL;
-        let of = |bit: u32, own: u32, general: u32| if set >> bit & 1 != 0 { own } else { general };
-        Self {
-            lights: of(0, self.lights, general.lights),
-            one_object: of(1, self.one_object, general.one_object),
-            outside: of(2, self.outside, general.outside),
-            depths: of(3, self.depths, general.depths),
+        let mut only = Self::GENERAL;
+        for (bit, member) in Self::MEMBERS.iter().enumerate() {
+            if set >> bit & 1 != 0 {
+                member(&mut only, self);
+            }
         }
+        only
     }
+
+    /// Copies each member from another value, in order.
+    const MEMBERS: [fn(&mut Self, Self); 4] = [
+        |to, from| to.lights = from.lights,
+        |to, from| to.drawn = from.drawn,
+        |to, from| to.outside = from.outside,
+        |to, from| to.depths = from.depths,
+    ];
 
     /// Promises nothing.
     pub const GENERAL: Self = Self {
-        lights: 3,
-        one_object: 0,
-        outside: 0,
-        depths: 1,
+        lights: Lights::Any,
+        drawn: Drawn::Objects,
+        outside: Outside::Some,
+        depths: true,
     };
 }
 
@@ -168,7 +208,7 @@ impl Variant {
     /// this.
     #[must_use]
     pub const fn seen_from_outside(mut self, outside: bool) -> Self {
-        self.speciality.outside = if outside { 1 } else { NOT_OUTSIDE };
+        self.speciality.outside = if outside { Outside::All } else { Outside::None };
         self
     }
 
@@ -176,29 +216,27 @@ impl Variant {
     /// that do not make it faster, have fixed values, so that equal pipelines have equal keys.
     #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
-        let Self {
-            technique,
-            speciality: own,
-        } = self;
-        let general = Speciality::GENERAL;
+        let technique = self.technique;
+        let mut speciality = self.speciality;
         let lists = kind.makes_lists();
-        let lit = technique.is_lit() && !lists;
-        let in_cells = kind == Kind::Cells;
+        if lists || !technique.is_lit() {
+            speciality.lights = Lights::Any;
+        }
         // Lavapipe 22 crashes in shadows if it treats the solid as constants.
-        let one_object = !in_cells && (lists || technique.shadow == g::SHADOW_OFF);
+        let shadows = !lists && technique.shadow != g::SHADOW_OFF;
+        if kind == Kind::Cells || shadows {
+            speciality.drawn = Drawn::Objects;
+        }
         // Other techniques test where every ray begins. Cells need no test, and cut cells always.
         let cells = matches!(kind, Kind::Cells | Kind::CutCells);
-        let patches = technique.search == Search::Quadric && technique.replicas == 0;
-        let reads_outside = lists || (patches && !cells);
-        let of = |reads: bool, value: u32, general: u32| if reads { value } else { general };
+        let patches = technique.search == Search::Quadric && !technique.replicas;
+        if !lists && (cells || !patches) {
+            speciality.outside = Outside::None;
+        }
+        speciality.depths |= !kind.is_compute();
         Self {
             technique: if lists { Technique::LISTS } else { technique },
-            speciality: Speciality {
-                lights: of(lit, own.lights, general.lights),
-                one_object: of(one_object, own.one_object, general.one_object),
-                outside: of(reads_outside, own.outside, NOT_OUTSIDE),
-                depths: of(kind.is_compute(), own.depths, general.depths),
-            },
+            speciality,
         }
     }
 
@@ -207,7 +245,7 @@ impl Variant {
     #[must_use]
     pub fn forms(self, kind: Kind, set: u32) -> [Self; 3] {
         let mut few_lights = self.speciality.only(set & LIGHTS_BIT);
-        few_lights.lights = few_lights.lights.max(FEW_LIGHTS);
+        few_lights.lights = few_lights.lights.max(Lights::Two);
         let first = match set {
             LIGHTS_BIT => few_lights, // as after `Renderer::prewarm`
             _ => self.speciality.only(set),
@@ -257,22 +295,22 @@ impl Variant {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
-            (g::REPLICAS_ID, technique.replicas),
+            (g::REPLICAS_ID, technique.replicas.into()),
             (g::SHADOW_ID, technique.shadow),
-            (g::COLOR_MAP_ID, technique.color_map),
+            (g::COLOR_MAP_ID, technique.color_map.into()),
             (g::BUMP_ID, technique.bump),
             (g::PROJECTION_ID, technique.projection),
             (g::SEARCH_FORM_ID, form),
             (g::KNOWN_STEPS_ID, known_steps),
-            (g::BEVELED_ID, technique.beveled),
-            (g::RGBA8_ID, technique.rgba8),
-            (g::ORTHO_ID, technique.parallel),
-            (g::DEPTHS_ID, speciality.depths),
-            (g::LIGHTS_ID, speciality.lights),
+            (g::BEVELED_ID, technique.beveled.into()),
+            (g::RGBA8_ID, technique.rgba8.into()),
+            (g::ORTHO_ID, technique.parallel.into()),
+            (g::DEPTHS_ID, speciality.depths.into()),
+            (g::LIGHTS_ID, speciality.lights as u32),
             (g::LIST_LENGTH_ID, kind.list_length()),
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
-            (g::OUTSIDE_ID, speciality.outside),
-            (g::ONE_OBJECT_ID, speciality.one_object),
+            (g::OUTSIDE_ID, speciality.outside as u32),
+            (g::ONE_OBJECT_ID, speciality.drawn as u32),
         ]
     }
 }

@@ -1,17 +1,15 @@
 //! An object as the host set it, and the same object as prepared: with all that its frames read.
 
 use crate::error::{Result, lock};
-use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
 use crate::plan::levels;
 use crate::scene::{Copies, GrownObject, Growth, Object, Placement};
 use crate::settings::Solver;
-use crate::shader::generated::OUTSIDE_BIT;
-use crate::shader::{AppearanceBlock, ObjectBlock, ShapeBlock, Technique, is_beveled};
+use crate::shader::Technique;
 use crate::solid::cache::{OffsetContour, Solid};
 use crate::solid::farthest_corner;
-use crate::solid::offset_surface::{OffsetSurface, Part, Recipe};
+use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use std::ops::{Deref, Range};
 use std::sync::{Arc, Mutex};
 
@@ -270,68 +268,5 @@ impl PreparedObject {
             (map.bounds.z_min - grow).max(0.0) as f32,
             (map.bounds.z_max + grow).min(1.0) as f32,
         ]
-    }
-
-    /// The block that shaders read. `outside`: as in
-    /// [`FramePlan::outside`](crate::plan::FramePlan::outside).
-    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
-    pub fn block(&self, planned: &PlannedObject, outside: bool) -> ObjectBlock {
-        let derived = &self.derived;
-        let (object, map) = (self.drawn(), &derived.facts);
-        let f = |v: f64| v as f32;
-        let (look, offset) = (&object.texturing, &object.offset);
-        let [half_side, clip_radius, clip_low, clip_high] = self.bounds(&planned.surfaces);
-        // Textures find the profile's box in a box that has grown.
-        let growth = self.growth();
-        let profile_radius = object.profile.radius * growth.height() - growth.side;
-        let mirrored: u32 = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
-        let finest = planned.surfaces.first();
-        let start = |part| finest.map_or(0, |s| s.start(part));
-        let stored = finest.filter(|s| s.slot(Part::Tables).is_some());
-        let [table_fact_0, table_fact_1, table_fact_2] =
-            stored.map_or([0; 3], |s| s.tables().facts);
-        let shape = ShapeBlock {
-            map_size: [map.columns, map.rows].map(|n| n as f32),
-            texel: f(1.0 / f64::from(map.rows)),
-            map_scale: map.scale,
-            half_side,
-            clip_radius,
-            clip_low,
-            clip_high,
-            extend: f(offset.extend),
-            bevel: if is_beveled(object) {
-                f(offset.bevel)
-            } else {
-                0.0
-            },
-            chamfer: f(offset.chamfer),
-            most_steps: derived.steps as f32,
-            axis: object.axis_offset().map(f),
-            shadow_map: derived.shadow_map,
-            first_frustum: start(Part::Frusta),
-            replicas: object.repeat,
-            flags: mirrored | if outside { OUTSIDE_BIT } else { 0 },
-            table_fact_0,
-            table_fact_1,
-            table_fact_2,
-            listed_window: planned.window(Part::Patches).start,
-            table_window: planned.window(Part::Tables).start,
-            ..ShapeBlock::default()
-        };
-        let appearance = AppearanceBlock {
-            color: object.color,
-            material: object.material().bits(),
-            specular: object.specular.strength,
-            shininess: object.specular.shininess,
-            box_height: f(growth.height()),
-            box_low: f(growth.low),
-            texture_repeat: look.repeat.map(f),
-            bump: f(look.bump),
-            profile_width: f(2.0 * profile_radius),
-            arc_rate: f(1.0 / derived.arc.as_ref().map_or(1.0, |arc| arc.length)),
-            first_instance: self.instances.start,
-            ..AppearanceBlock::default()
-        };
-        ObjectBlock { shape, appearance }
     }
 }

@@ -1,12 +1,12 @@
 //! The content of a renderer: objects and lights as set, the snapshot of all objects with their
 //! resources, and the plan of the last view. It records no commands.
 //!
-//! `objects.rs` adds, removes and changes objects, `entry.rs` is one object as set and as prepared.
-//! `refresh.rs` makes the snapshot. `view_plan.rs` plans a view's frame from it.
+//! Modules import from those before them: `entry` (one object as set and as prepared), `objects`,
+//! `snapshot`, `view_plan`.
 
 pub(super) mod entry;
 pub(super) mod objects;
-pub(super) mod refresh;
+pub(super) mod snapshot;
 pub(super) mod view_plan;
 
 use crate::error::Result;
@@ -14,13 +14,18 @@ use crate::gpu::device::Shared;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
+use crate::plan::levels::GRAZING;
+use crate::plan::{Conditions, View, plan};
 use crate::scene::{Lighting, Shadow};
-use crate::settings::{Planes, SearchSettings};
-use crate::shader::InstanceBlock;
+use crate::settings::{Planes, SearchSettings, Solver};
+use crate::shader::{InstanceBlock, Lights};
+use crate::solid::offset_surface::{OffsetSurface, Part};
+use entry::Stale;
 use objects::Objects;
-use refresh::{Demands, Snapshot};
+use rayon::prelude::*;
+use snapshot::{Demands, Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
-use view_plan::ViewPlan;
+use view_plan::{LevelRules, PlannedObject, ViewPlan, hierarchy};
 
 /// Objects and lights as set, the last snapshot of all objects, and the last plan.
 pub(super) struct Content {
@@ -52,7 +57,10 @@ impl Content {
         host_shades: bool,
     ) -> Result<Self> {
         Ok(Self {
-            objects: Objects::new(most_instances(device, &output)),
+            objects: Objects::new(
+                most_instances(device, &output),
+                output.planes().has_motion(),
+            ),
             lighting: Lighting::default(),
             target: None,
             snapshot: Arc::default(),
@@ -86,6 +94,140 @@ impl Content {
             host_shades: self.host_shades,
             lighting: &self.lighting,
         }
+    }
+
+    /// The snapshot of all objects as set. A failed call changes nothing, and the next one tries
+    /// again.
+    pub fn refresh(&mut self) -> Result<Arc<Snapshot>> {
+        self.objects.shrink();
+        if !self.objects.stale {
+            return Ok(self.snapshot.clone());
+        }
+        let mut new = find_boundaries(&mut self.objects, &self.geometry, &self.settings)?;
+        self.rebuilds += new.failed as u64;
+        self.make_surfaces(&mut new.tables);
+        let demands = Demands {
+            settings: &self.settings,
+            planes: self.output.planes(),
+            host_shades: self.host_shades,
+            lighting: &self.lighting,
+        };
+        let (textures, notes) = (&mut self.textures, &mut self.notes);
+        let snapshot = Snapshot::new(&self.objects, &self.snapshot, demands, textures, notes)?;
+        for object in &snapshot.objects {
+            if let Some(entry) = self.objects.at_mut(object.number) {
+                entry.prepared = Some(object.clone());
+                entry.stale = Stale::Nothing;
+            }
+        }
+        self.objects.stale = false;
+        self.snapshot = Arc::new(snapshot);
+        Ok(self.snapshot.clone())
+    }
+
+    /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
+    /// the view's slot, is of this view and of all objects as set.
+    pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
+        let snapshot = self.refresh()?;
+        let with = self.conditions();
+        let is_same = |p: &&Arc<ViewPlan>| {
+            Arc::ptr_eq(&p.snapshot, &snapshot) && (p.view, p.with) == (*view, with)
+        };
+        let mut plans = self.plan.iter().chain(known);
+        let found = plans.find(is_same).cloned();
+        let made = match found {
+            Some(found) => found,
+            None => Arc::new(self.new_plan(view, snapshot, with)?),
+        };
+        self.plan = Some(made.clone());
+        Ok(made)
+    }
+
+    fn new_plan(
+        &mut self,
+        view: &View,
+        snapshot: Arc<Snapshot>,
+        with: Conditions,
+    ) -> Result<ViewPlan> {
+        let rules = LevelRules {
+            tolerance: self.settings.tolerance,
+            casts: self.casts(),
+            parallel: self.is_parallel(),
+            most_proxies: with.most_proxies(),
+        };
+        let mut new = Vec::new();
+        let objects = rules.planned(view, &snapshot, &mut new)?;
+        self.make_surfaces(&mut new);
+        let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
+        let frame = plan(view, &inputs, &with);
+        let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
+        // Without shadows levels differ, and with them all objects have one level.
+        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
+        let known = self.plan.as_ref().filter(|known| {
+            Arc::ptr_eq(&known.snapshot, &snapshot)
+                && known.view.mask == view.mask
+                && level(&known.objects) == level(&objects)
+        });
+        let known = known.and_then(|known| known.hierarchy.clone());
+        let hierarchy = || known.unwrap_or_else(|| Arc::new(hierarchy(&objects, &inputs)));
+        let hierarchy = shadowed.then(hierarchy);
+        Ok(ViewPlan {
+            view: *view,
+            snapshot,
+            with,
+            frame,
+            hierarchy,
+            objects,
+        })
+    }
+
+    /// The inputs of a plan other than view and objects.
+    pub fn conditions(&self) -> Conditions {
+        let (limits, chosen) = (self.device.limits(), &self.device.chosen);
+        Conditions {
+            compute: self.is_compute(),
+            passes_cells: limits.max_fragment_input_components
+                >= crate::solid::proxy_hull::COMPONENTS
+                && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
+            software: chosen.report.kind == "cpu",
+            subgroup_size: chosen.subgroup_size,
+            most_storage: limits.max_storage_buffer_range,
+            least_pixels: self.settings.proxy_min_pixels,
+            occlusion_culling: self.settings.occlusion_culling,
+            ray_spread: self.output.ray_spread(),
+            level_pixels: self.settings.tolerance.pixels() / GRAZING,
+            takes_patches: self.settings.takes_patches(),
+            lights: match self.casts() || self.host_shades {
+                true => Lights::Any,
+                false => Lights::of(self.lighting.lights.len()),
+            },
+            casts: self.casts(),
+            single_copy: self.has_single_copy(),
+            host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
+        }
+    }
+
+    fn has_single_copy(&self) -> bool {
+        match self.snapshot.objects.as_slice() {
+            [object] => object.drawn().placements().len() == 1,
+            _ => false,
+        }
+    }
+
+    /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
+    fn make_surfaces(&mut self, surfaces: &mut Vec<Arc<OffsetSurface>>) {
+        surfaces.retain(|surface| !surface.is_made());
+        let part = match (self.settings.solver, self.is_compute()) {
+            (Solver::Exact, false) => Part::Frusta,
+            (Solver::Exact, true) => Part::Patches,
+            _ => Part::Tables,
+        };
+        let new = distinct(surfaces);
+        new.par_iter().for_each(|surface| {
+            surface.make();
+            surface.vectors(part);
+        });
+        self.rebuilds += new.len() as u64;
     }
 
     /// True if the view has parallel rays.

@@ -1,6 +1,5 @@
 //! The objects of a renderer, and their identities.
 
-use super::Content;
 use super::entry::{Entry, Last, LastValues, Stale};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::resources::textures::ObjectImages;
@@ -76,6 +75,8 @@ pub(crate) struct Objects {
     most_instances: u32,
     /// True if anything was changed since the last snapshot.
     pub stale: bool,
+    /// True if values of the last frame are kept, for motion.
+    keeps_last: bool,
 }
 
 /// An entry, and the last object that used it.
@@ -86,7 +87,7 @@ struct Numbered {
 
 impl Objects {
     /// No objects, for a new renderer. `most_instances`: limit of the device, at least 64.
-    pub fn new(most_instances: u32) -> Self {
+    pub fn new(most_instances: u32, keeps_last: bool) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         Self {
             renderer: COUNT.fetch_add(1, Ordering::Relaxed) % ((1 << RENDERER_BITS) - 1) + 1,
@@ -98,6 +99,7 @@ impl Objects {
             copies: 0,
             most_instances,
             stale: true,
+            keeps_last,
         }
     }
 
@@ -120,6 +122,24 @@ impl Objects {
     fn get(&self, id: ObjectId) -> Option<&Entry> {
         let numbered = self.numbered.get(id.number() as usize);
         numbered.filter(|n| n.id == id)?.entry.as_ref()
+    }
+
+    /// Returns the entry of an object, or an error if the object does not exist.
+    pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
+        self.get(id).ok_or_else(gone)
+    }
+
+    /// Returns the entry of an object, with what must be made anew marked.
+    pub fn change(&mut self, id: ObjectId, stale: Stale) -> Result<&mut Entry> {
+        self.entry(id)?;
+        self.stale = true;
+        let keeps_last = self.keeps_last;
+        let entry = self.at_mut(id.number()).ok_or_else(gone)?;
+        if let (true, Last::Same) = (keeps_last, &entry.set.last) {
+            entry.set.last = Last::Was(LastValues::of(&entry.set.object));
+        }
+        entry.mark(stale);
+        Ok(entry)
     }
 
     /// All objects with their numbers, in the order in which they were added.
@@ -158,7 +178,8 @@ impl Objects {
         Ok(numbered.id)
     }
 
-    pub fn remove(&mut self, id: ObjectId) {
+    pub fn remove(&mut self, id: ObjectId) -> Result<()> {
+        self.entry(id)?;
         let numbered = &mut self.numbered[id.number() as usize];
         let entry = numbered.entry.take();
         if let Some(next) = id.next() {
@@ -174,6 +195,18 @@ impl Objects {
             let mut order = std::mem::take(&mut self.order);
             order.retain(|id| self.get(*id).is_some());
             (self.order, self.dead) = (order, 0);
+        }
+        Ok(())
+    }
+
+    /// Ends a frame of all views: values set from now on move objects from the present ones.
+    pub fn end_frame(&mut self) {
+        for entry in self.numbered.iter_mut().filter_map(|n| n.entry.as_mut()) {
+            if self.keeps_last && !matches!(entry.set.last, Last::Same) {
+                entry.set.last = Last::Same;
+                entry.mark(Stale::State);
+                self.stale = true;
+            }
         }
     }
 
@@ -237,11 +270,12 @@ impl Objects {
         }
     }
 
-    /// Gives an object another range of instances.
-    fn resize(&mut self, number: u32, count: usize) -> Result<()> {
-        let Some(entry) = self.at_mut(number) else {
+    /// Gives an object room for exactly this many copies.
+    pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
+        if self.entry(id)?.set.instances.len() == count {
             return Ok(());
-        };
+        }
+        let entry = self.change(id, Stale::State)?;
         // The old range may be a part of the new one.
         let old = std::mem::take(&mut entry.set.instances);
         let kept = old.len();
@@ -251,39 +285,8 @@ impl Objects {
             Ok(range) => (range, Ok(())),
             Err(error) => (self.allocate(kept)?, Err(error)),
         };
-        if let Some(entry) = self.at_mut(number) {
-            entry.set.instances = range;
-        }
+        self.change(id, Stale::State)?.set.instances = range;
         result
-    }
-}
-
-impl Content {
-    /// Returns the entry of an object, or an error if the object does not exist.
-    pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
-        self.objects.get(id).ok_or_else(gone)
-    }
-
-    /// Returns the entry of an object, with what must be made anew marked.
-    pub fn change(&mut self, id: ObjectId, stale: Stale) -> Result<&mut Entry> {
-        self.entry(id)?;
-        let moves = self.output.planes().has_motion();
-        self.objects.stale = true;
-        let entry = self.objects.at_mut(id.number()).ok_or_else(gone)?;
-        if let (true, Last::Same) = (moves, &entry.set.last) {
-            entry.set.last = Last::Was(LastValues::of(&entry.set.object));
-        }
-        entry.mark(stale);
-        Ok(entry)
-    }
-
-    /// Gives an object room for exactly this many copies.
-    pub fn resize(&mut self, id: ObjectId, count: usize) -> Result<()> {
-        if self.entry(id)?.set.instances.len() != count {
-            self.change(id, Stale::State)?;
-            self.objects.resize(id.number(), count)?;
-        }
-        Ok(())
     }
 }
 
@@ -307,7 +310,13 @@ mod tests {
         assert!(second > first && ObjectId::from_bits(second.to_bits()) == second);
         let last = ObjectId(u64::MAX);
         assert_eq!((last.number(), last.next()), (number, None));
-        assert_ne!(ObjectId::first(Objects::new(64).renderer, 0).to_bits(), 0);
-        assert_ne!(Objects::new(64).renderer, Objects::new(64).renderer);
+        assert_ne!(
+            ObjectId::first(Objects::new(64, false).renderer, 0).to_bits(),
+            0
+        );
+        assert_ne!(
+            Objects::new(64, false).renderer,
+            Objects::new(64, false).renderer
+        );
     }
 }

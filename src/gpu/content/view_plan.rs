@@ -1,13 +1,12 @@
 //! A frame's plan, the surfaces that it draws, and the hierarchy of copies that cast shadows.
 
-use super::Content;
 use super::entry::PreparedObject;
-use super::refresh::{Snapshot, distinct};
+use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
-use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, GRAZING, coarsest, pixels_per_unit};
-use crate::plan::{Conditions, FramePlan, MOST_PROXIES, PlanObject, View, plan, shape_of};
-use crate::settings::{Planes, Solver, Tolerance};
+use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
+use crate::plan::{Conditions, FramePlan, PlanObject, View, shape_of};
+use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use rayon::prelude::*;
@@ -18,7 +17,7 @@ use std::sync::Arc;
 pub(crate) struct ViewPlan {
     pub view: View,
     pub snapshot: Arc<Snapshot>,
-    with: Conditions,
+    pub with: Conditions,
     pub frame: FramePlan,
     /// Objects that the view's mask shows, in order.
     pub objects: Vec<PlannedObject>,
@@ -55,7 +54,7 @@ impl PlannedObject {
     }
 
     /// The object in the form that a plan reads.
-    fn input(&self) -> PlanObject<'_> {
+    pub fn input(&self) -> PlanObject<'_> {
         let (prepared, derived) = (&*self.object, &self.object.derived);
         let object = prepared.drawn();
         let bounds = prepared.bounds(&self.surfaces[..self.surfaces.len().min(1)]);
@@ -75,169 +74,88 @@ impl PlannedObject {
     }
 }
 
-impl Content {
-    /// Returns the plan of a view. Makes a new plan if neither the last one nor `known`, the one of
-    /// the view's slot, is of this view and of all objects as set.
-    pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
-        let snapshot = self.refresh()?;
-        let with = self.conditions();
-        let is_same = |p: &&Arc<ViewPlan>| {
-            Arc::ptr_eq(&p.snapshot, &snapshot) && (p.view, p.with) == (*view, with)
-        };
-        let mut plans = self.plan.iter().chain(known);
-        let found = plans.find(is_same).cloned();
-        let made = match found {
-            Some(found) => found,
-            None => Arc::new(self.new_plan(view, snapshot, with)?),
-        };
-        self.plan = Some(made.clone());
-        Ok(made)
-    }
+/// What the levels of objects follow, beside the view.
+#[derive(Clone, Copy)]
+pub(super) struct LevelRules {
+    pub tolerance: Tolerance,
+    /// True if objects cast shadows. All objects then take the finest level that one of them needs,
+    /// because a shadow may fall nearer to the eye than its caster.
+    pub casts: bool,
+    /// True if rays are parallel.
+    pub parallel: bool,
+    /// Most copies of an object that share one level.
+    pub most_proxies: usize,
+}
 
-    fn new_plan(
-        &mut self,
+impl LevelRules {
+    /// The objects that a view shows, with surfaces of the levels that it allows. Surfaces that are
+    /// new are added to `new`; they are not made yet.
+    pub fn planned(
+        self,
         view: &View,
-        snapshot: Arc<Snapshot>,
-        with: Conditions,
-    ) -> Result<ViewPlan> {
-        let objects = self.with_surfaces(view, &snapshot)?;
-        let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
-        let frame = plan(view, &inputs, &with);
-        let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
-        // Without shadows levels differ, and with them all objects have one level.
-        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
-        let known = self.plan.as_ref().filter(|known| {
-            Arc::ptr_eq(&known.snapshot, &snapshot)
-                && known.view.mask == view.mask
-                && level(&known.objects) == level(&objects)
-        });
-        let known = known.and_then(|known| known.hierarchy.clone());
-        let hierarchy = || known.unwrap_or_else(|| Arc::new(hierarchy(&objects, &inputs)));
-        let hierarchy = shadowed.then(hierarchy);
-        Ok(ViewPlan {
-            view: *view,
-            snapshot,
-            with,
-            frame,
-            hierarchy,
-            objects,
-        })
-    }
-
-    /// The inputs of a plan other than view and objects.
-    pub fn conditions(&self) -> Conditions {
-        let (limits, chosen) = (self.device.limits(), &self.device.chosen);
-        Conditions {
-            compute: self.is_compute(),
-            passes_cells: limits.max_fragment_input_components
-                >= crate::solid::proxy_hull::COMPONENTS
-                && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            software: chosen.report.kind == "cpu",
-            subgroup_size: chosen.subgroup_size,
-            most_storage: limits.max_storage_buffer_range,
-            least_pixels: self.settings.proxy_min_pixels,
-            occlusion_culling: self.settings.occlusion_culling,
-            ray_spread: self.output.ray_spread(),
-            level_pixels: self.settings.tolerance.pixels() / GRAZING,
-            takes_patches: self.settings.takes_patches(),
-            lights: match self.lighting.lights.len() {
-                _ if self.casts() || self.host_shades => 3,
-                count => count.clamp(1, 3) as u32,
-            },
-            casts: self.casts(),
-            single_copy: self.has_single_copy(),
-            host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
-        }
-    }
-
-    fn has_single_copy(&self) -> bool {
-        match self.snapshot.objects.as_slice() {
-            [object] => object.drawn().placements().len() == 1,
-            _ => false,
-        }
-    }
-
-    /// Returns the objects that a view shows, with surfaces of the levels that it allows. Makes the
-    /// surfaces that are new. With shadows, all objects take the finest level that one of them
-    /// needs, because a shadow may fall nearer to the eye than its caster.
-    fn with_surfaces(&mut self, view: &View, snapshot: &Snapshot) -> Result<Vec<PlannedObject>> {
+        snapshot: &Snapshot,
+        new: &mut Vec<Arc<OffsetSurface>>,
+    ) -> Result<Vec<PlannedObject>> {
         let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
         let mut all = Vec::with_capacity(snapshot.objects.len());
         for object in shown {
-            all.push(self.planned(object, view)?);
+            all.push(self.with_level(object, view)?);
         }
-        if self.casts() {
+        if self.casts {
             let finest = all.iter().map(|f| f.level).min().unwrap_or(0);
             all.iter_mut().for_each(|f| f.level = finest);
         }
-        let mut new = Vec::new();
         for one in &mut all {
             let coarser = one
                 .levels
                 .iter()
                 .flat_map(|of| &COPY_LEVELS[of.first + 1..]);
             for level in [one.level].iter().chain(coarser) {
-                one.surfaces.extend(one.object.surface(*level, &mut new)?);
+                one.surfaces.extend(one.object.surface(*level, new)?);
             }
         }
-        self.make_surfaces(&mut new);
         Ok(all)
     }
 
     /// An object at the coarsest level that the view allows, without surfaces. Objects with many
     /// copies have a level for each.
-    fn planned(&self, object: &Arc<PreparedObject>, view: &View) -> Result<PlannedObject> {
-        let tolerance = self.settings.tolerance;
+    fn with_level(self, object: &Arc<PreparedObject>, view: &View) -> Result<PlannedObject> {
         let mut planned = PlannedObject {
             object: object.clone(),
             level: 0,
             surfaces: Vec::new(),
             levels: None,
         };
+        let follows = object.derived.solver.follows_tolerance();
+        if self.tolerance == Tolerance::EXACT || !follows {
+            return Ok(planned);
+        }
         if self.levels_copies(object) {
             let height = object.growth().height();
-            let levels = CopyLevels::new(object.drawn(), height, view, tolerance);
+            let levels = CopyLevels::new(object.drawn(), height, view, self.tolerance);
             planned.level = COPY_LEVELS[levels.first];
             planned.levels = Some(levels);
-        } else if tolerance != Tolerance::EXACT && object.derived.solver.follows_tolerance() {
-            let pixels = object.pixels_per_unit(view, self.casts());
+        } else {
+            let pixels = object.pixels_per_unit(view, self.casts);
             // An object that does not show takes a level that is already made.
-            let hidden = pixels <= 0.0 && !self.casts();
+            let hidden = pixels <= 0.0 && !self.casts;
             let made = if hidden { object.first_level()? } else { None };
-            planned.level = made.unwrap_or_else(|| coarsest(tolerance, pixels));
+            planned.level = made.unwrap_or_else(|| coarsest(self.tolerance, pixels));
         }
         Ok(planned)
     }
 
     /// True if each copy of an object has a level of its own. The view has no influence, so a moving
     /// camera needs no other pipelines.
-    fn levels_copies(&self, object: &PreparedObject) -> bool {
-        let follows = object.derived.solver.follows_tolerance();
-        let follows = follows && !self.casts() && !self.is_parallel();
+    fn levels_copies(self, object: &PreparedObject) -> bool {
         let object = object.drawn();
-        let many = object.instances.len() > MOST_PROXIES && object.repeat == [1; 3];
-        follows && many && self.settings.tolerance != Tolerance::EXACT
-    }
-
-    /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
-    pub fn make_surfaces(&mut self, surfaces: &mut Vec<Arc<OffsetSurface>>) {
-        surfaces.retain(|surface| !surface.is_made());
-        let part = match (self.settings.solver, self.is_compute()) {
-            (Solver::Exact, false) => Part::Frusta,
-            (Solver::Exact, true) => Part::Patches,
-            _ => Part::Tables,
-        };
-        let new = distinct(surfaces);
-        new.par_iter().for_each(|surface| {
-            surface.make();
-            surface.vectors(part);
-        });
-        self.rebuilds += new.len() as u64;
+        let many = object.instances.len() > self.most_proxies && object.repeat == [1; 3];
+        many && !self.casts && !self.parallel
     }
 }
 
 /// The hierarchy over the copies of these objects.
-fn hierarchy(objects: &[PlannedObject], inputs: &[PlanObject]) -> Hierarchy {
+pub(super) fn hierarchy(objects: &[PlannedObject], inputs: &[PlanObject]) -> Hierarchy {
     let mut leaves = Vec::new();
     for (planned, input) in objects.iter().zip(inputs) {
         let map = planned.object.derived.shadow_map;

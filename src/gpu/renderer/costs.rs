@@ -1,8 +1,8 @@
 //! The draw path of each object, and the memory that it takes on the device.
 
 use super::Renderer;
+use super::blocks::instance_block;
 use crate::gpu::content::view_plan::PlannedObject;
-use crate::gpu::resources::block::instance_block;
 use crate::plan::levels::COPY_LEVELS;
 use crate::plan::{DrawPath, View};
 use crate::shader::InstanceBlock;

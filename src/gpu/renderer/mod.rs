@@ -1,9 +1,10 @@
 //! Objects on a device, ready to be recorded into any command buffer.
 //!
-//! `objects.rs` changes objects and lights, `prepare.rs` prepares the plan of a view for a slot,
-//! `record.rs` records it. `prewarm.rs` compiles pipelines before they are needed, and `costs.rs`
+//! `objects.rs` changes objects and lights, `prepare.rs` prepares the plan of a view for a slot by the
+//! data of `blocks.rs`, `record.rs` records it. `prewarm.rs` compiles pipelines before they are needed, and `costs.rs`
 //! says what objects take.
 
+mod blocks;
 pub(super) mod costs;
 mod objects;
 mod output_check;
@@ -14,7 +15,7 @@ pub(super) mod slot;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::Content;
-use crate::gpu::content::refresh::distinct;
+use crate::gpu::content::snapshot::distinct;
 use crate::gpu::device::Shared;
 use crate::gpu::open::Device;
 use crate::gpu::resources::geometry::Geometry;

@@ -1,12 +1,12 @@
 //! Changes of a renderer's objects and lights.
 
 use super::Renderer;
-use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::content::entry::{Last, Stale};
+use crate::error::{Error, ErrorKind, Result, content};
+use crate::gpu::content::entry::Stale;
 use crate::gpu::content::objects::ObjectId;
-use crate::gpu::resources::block::check_lights;
 use crate::gpu::resources::textures::{HostImage, ObjectImages};
 use crate::scene::{Copies, Lighting, Object, Offset, Placement, Shadow};
+use crate::shader::generated::MAX_LIGHTS;
 
 impl Renderer {
     /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
@@ -26,9 +26,7 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
-        self.content.entry(id)?;
-        self.content.objects.remove(id);
-        Ok(())
+        self.content.objects.remove(id)
     }
 
     /// The values of an object that were set last.
@@ -36,7 +34,7 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn object(&self, id: ObjectId) -> Result<&Object> {
-        Ok(&self.content.entry(id)?.set.object)
+        Ok(&self.content.objects.entry(id)?.set.object)
     }
 
     /// Sets all values of an object. Equal values cost nothing.
@@ -53,8 +51,8 @@ impl Renderer {
             }
             return self.set_placement(id, object.placement);
         }
-        self.content.resize(id, object.placements().len())?;
-        self.content.change(id, Stale::Shape)?.set.object = object;
+        self.content.objects.resize(id, object.placements().len())?;
+        self.content.objects.change(id, Stale::Shape)?.set.object = object;
         Ok(())
     }
 
@@ -65,8 +63,8 @@ impl Renderer {
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set_mask(&mut self, id: ObjectId, mask: u32) -> Result<()> {
-        if self.content.entry(id)?.set.mask != mask {
-            self.content.change(id, Stale::State)?.set.mask = mask;
+        if self.content.objects.entry(id)?.set.mask != mask {
+            self.content.objects.change(id, Stale::State)?.set.mask = mask;
         }
         Ok(())
     }
@@ -108,7 +106,7 @@ impl Renderer {
     }
 
     fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {
-        set(&mut self.content.change(id, Stale::Look)?.set.images);
+        set(&mut self.content.objects.change(id, Stale::Look)?.set.images);
         Ok(())
     }
 
@@ -119,7 +117,12 @@ impl Renderer {
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         offset.check()?;
         if self.object(id)?.offset != offset {
-            self.content.change(id, Stale::Shape)?.set.object.offset = offset;
+            self.content
+                .objects
+                .change(id, Stale::Shape)?
+                .set
+                .object
+                .offset = offset;
         }
         Ok(())
     }
@@ -131,7 +134,12 @@ impl Renderer {
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         placement.check()?;
         if self.object(id)?.placement != placement {
-            self.content.change(id, Stale::State)?.set.object.placement = placement;
+            self.content
+                .objects
+                .change(id, Stale::State)?
+                .set
+                .object
+                .placement = placement;
         }
         Ok(())
     }
@@ -143,8 +151,13 @@ impl Renderer {
     pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
         let instances = instances.into();
         instances.check(|all| all.iter().try_for_each(Placement::check))?;
-        self.content.resize(id, instances.len().max(1))?;
-        self.content.change(id, Stale::State)?.set.object.instances = instances;
+        self.content.objects.resize(id, instances.len().max(1))?;
+        self.content
+            .objects
+            .change(id, Stale::State)?
+            .set
+            .object
+            .instances = instances;
         Ok(())
     }
 
@@ -154,19 +167,7 @@ impl Renderer {
     /// number of copies has no motion of its own in that frame. Without this call no object moves.
     /// Outputs without [`Plane::Motion`](crate::settings::Plane::Motion) need no call.
     pub fn end_frame(&mut self) {
-        if !self.content.output.planes().has_motion() {
-            return;
-        }
-        let objects = &mut self.content.objects;
-        let mut ended = false;
-        for entry in objects.entries_mut() {
-            if !matches!(entry.set.last, Last::Same) {
-                entry.set.last = Last::Same;
-                entry.mark(Stale::State);
-                ended = true;
-            }
-        }
-        objects.stale |= ended;
+        self.content.objects.end_frame();
     }
 
     /// Sets lights and shadows for all objects.
@@ -180,7 +181,10 @@ impl Renderer {
             let message = "the host's function shades without shadows between solids; set \"off\"";
             return Err(Error::new(ErrorKind::Usage, message).at_key("shadow"));
         }
-        check_lights(lighting)?;
+        let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
+        if count > most as usize {
+            return content("light", format!("{count} lights; at most {most} are drawn"));
+        }
         self.content.objects.stale |= lighting.shadow != self.content.lighting.shadow;
         self.content.lighting = lighting.clone();
         Ok(())

@@ -3,13 +3,13 @@
 //! objects anew.
 
 use super::Renderer;
+use super::blocks::{caster_root, frame_block, instance_block, last_copy, object_block};
 use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::gpu::resources::block::{caster_root, frame_block, instance_block, last_copy};
 use crate::plan::View;
-use crate::shader::{InstanceBlock, Kind, OBJECT_STRIDE};
+use crate::shader::{Drawn, InstanceBlock, Kind, OBJECT_STRIDE};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
 use std::borrow::Cow;
@@ -120,7 +120,7 @@ impl Renderer {
         let snapshot = &plan.snapshot;
         let mut block = frame_block(view, &self.content.lighting, snapshot.instances);
         if let Some(hierarchy) = &plan.hierarchy {
-            let maps = snapshot.common.shadow_maps.maps.len();
+            let maps = snapshot.facts.shadow_maps.maps.len();
             block.casters = caster_root(hierarchy, view.eye, maps);
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
@@ -178,10 +178,10 @@ impl Renderer {
             };
             let (mut variant, kind) = (step.variant, step.kind);
             let mut begin = 0;
-            if variant.speciality.one_object != 0 {
+            if variant.speciality.drawn != Drawn::Objects {
                 let window = planned.window(part);
                 if window.len() > own_vectors {
-                    variant.speciality.one_object = 0;
+                    variant.speciality.drawn = Drawn::Objects;
                 }
                 begin = window.start;
             }
@@ -200,9 +200,7 @@ impl Renderer {
                 faster.push((forms[0], kind));
             }
             steps.push(BoundStep {
-                compares_depths: pipeline.is_some()
-                    && kind.is_compute()
-                    && taken.speciality.depths != 0,
+                compares_depths: pipeline.is_some() && kind.is_compute() && taken.speciality.depths,
                 pipeline,
                 textures: object.derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],
@@ -234,7 +232,7 @@ impl Renderer {
             let drawn = object.drawn();
             let placements = drawn.placements();
             let at = number as usize * OBJECT_STRIDE as usize;
-            to.write(SlotBuffer::Objects, at, &object.block(planned, *outside))?;
+            to.write(SlotBuffer::Objects, at, &object_block(planned, *outside))?;
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
                 None => (0..placements.len() as u32).collect(),

@@ -4,10 +4,10 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
-use crate::gpu::content::refresh::FALLBACK;
+use crate::gpu::content::snapshot::FALLBACK;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::shader::{FEW_LIGHTS, Kind, Pushed, Speciality, Variant};
+use crate::shader::{Kind, Lights, Pushed, Variant};
 use ash::vk;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -146,14 +146,13 @@ impl Content {
         let (with, solver) = (self.conditions(), self.settings.solver);
         let mut known = HashSet::new();
         let mut all = Vec::new();
-        let any_lights = Speciality::GENERAL.lights;
-        let (demands, common) = (self.demands(), &self.snapshot.common);
+        let (demands, common) = (self.demands(), &self.snapshot.facts);
         for object in &self.snapshot.objects {
             let (drawn, images) = (object.drawn(), &object.images);
             let drawn_by = |solver| demands.technique(solver, drawn, images, common);
             let wanted = drawn_by(solver).forms().into_iter();
-            let wanted = wanted.map(|technique| (technique, FEW_LIGHTS));
-            let replaced = (solver.follows_tolerance()).then(|| (drawn_by(FALLBACK), any_lights));
+            let wanted = wanted.map(|technique| (technique, Lights::Two));
+            let replaced = (solver.follows_tolerance()).then(|| (drawn_by(FALLBACK), Lights::Any));
             for (technique, lights) in wanted.chain(replaced) {
                 let mut variant = Variant::general(technique);
                 variant.speciality.lights = lights;

@@ -1,20 +1,19 @@
 //! The snapshot of all objects: what was set, with all that does not depend on a view: solids,
 //! contours, maps, textures and techniques. An object's resources follow from the object and from
-//! [`Common`] facts. They are made anew for changed objects, and for all objects if the common facts
-//! change.
+//! [`SceneFacts`]. They are made anew for changed objects, and for all objects if those facts change.
 
-use super::Content;
 use super::entry::{Boundary, Derived, Entry, PreparedObject, Stale};
+use super::objects::Objects;
 use crate::error::{Error, Result, content, lock};
-use crate::gpu::resources::block::check_format;
+use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::textures::{BoundTextures, ObjectImages, ShadowMaps, Textures};
-use crate::maps::Projection;
+use crate::maps::{MapFormat, Projection};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{HostLook, ShadowCasters, Technique, is_beveled};
-use crate::solid::offset_surface::Recipe;
+use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -26,7 +25,7 @@ pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 pub(in crate::gpu) struct Snapshot {
     /// In the order in which they were added.
     pub objects: Vec<Arc<PreparedObject>>,
-    pub common: Common,
+    pub facts: SceneFacts,
     /// Number of instances, with free ones.
     pub instances: u32,
     /// One more than the largest number that an object has had.
@@ -36,7 +35,7 @@ pub(in crate::gpu) struct Snapshot {
 /// Facts of all objects that each object's resources depend on. Without shadows no object depends on
 /// another.
 #[derive(Clone, Default)]
-pub(in crate::gpu) struct Common {
+pub(in crate::gpu) struct SceneFacts {
     shadow: Shadow,
     /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
     /// all by one search.
@@ -45,7 +44,7 @@ pub(in crate::gpu) struct Common {
     pub shadow_maps: Arc<ShadowMaps>,
 }
 
-impl Common {
+impl SceneFacts {
     /// The facts of these objects, but for their maps.
     fn of(shadow: Shadow, objects: &[(u32, &Entry)]) -> Self {
         let objects = if shadow == Shadow::Off { &[] } else { objects };
@@ -124,7 +123,7 @@ impl Demands<'_> {
         solver: Solver,
         object: &Object,
         images: &ObjectImages,
-        common: &Common,
+        facts: &SceneFacts,
     ) -> Technique {
         let host = HostLook {
             shading: self.host_shades,
@@ -132,7 +131,7 @@ impl Demands<'_> {
             relief: images.relief.is_some(),
             heights: images.relief.is_some() && images.heights,
         };
-        let casters = common.casters;
+        let casters = facts.casters;
         Technique::new(
             self.settings,
             self.planes,
@@ -145,90 +144,80 @@ impl Demands<'_> {
     }
 }
 
-impl Content {
-    /// The snapshot of all objects as set. A failed call changes nothing, and the next one tries
-    /// again.
-    pub fn refresh(&mut self) -> Result<Arc<Snapshot>> {
-        self.objects.shrink();
-        if !self.objects.stale {
-            return Ok(self.snapshot.clone());
-        }
-        self.find_boundaries()?;
-        let snapshot = self.snapshot()?;
-        for object in &snapshot.objects {
-            if let Some(entry) = self.objects.at_mut(object.number) {
-                entry.prepared = Some(object.clone());
-                entry.stale = Stale::Nothing;
-            }
-        }
-        self.objects.stale = false;
-        self.snapshot = Arc::new(snapshot);
-        Ok(self.snapshot.clone())
-    }
+/// What [`find_boundaries`] has made.
+pub(in crate::gpu) struct NewBoundaries {
+    /// The number of contours that do not close.
+    pub failed: usize,
+    /// Tables of searches, not made yet.
+    pub tables: Vec<Arc<OffsetSurface>>,
+}
 
-    /// Finds or makes the boundaries that are missing, on all cores.
-    fn find_boundaries(&mut self) -> Result<()> {
-        let (solver, settings) = (self.settings.solver, &self.settings);
-        let mut geometry = lock(&self.geometry)?;
-        let (mut contours, mut tables) = (Vec::new(), Vec::new());
-        for entry in self.objects.entries_mut().filter(|e| e.boundary.is_none()) {
-            let grown = geometry.solids.grown.grown(&entry.set.object);
-            let growth = grown.as_ref().map(|grown| grown.growth).unwrap_or_default();
-            let object = grown
-                .as_ref()
-                .map_or(&entry.set.object, |grown| &grown.object);
-            let solid = geometry.solids.get(&object.profile);
-            let (mut contour, mut table) = (None, None);
-            if solver.follows_tolerance() {
-                contour = Some(solid.contour(&object.offset)?);
-            } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
-                let rows = MapKey::new(object, &growth, settings).rows;
-                let recipe = Recipe::Table { search, rows };
-                table = Some(solid.surface(&object.offset, recipe)?);
-            }
-            contours.extend(contour.clone());
-            tables.extend(table.clone());
-            entry.boundary = Some(Arc::new(Boundary {
-                grown,
-                solid,
-                contour,
-                table,
-                levels: Mutex::default(),
-            }));
+/// Finds or makes the boundaries that objects lack, on all cores.
+pub(in crate::gpu) fn find_boundaries(
+    objects: &mut Objects,
+    geometry: &Mutex<Geometry>,
+    settings: &SearchSettings,
+) -> Result<NewBoundaries> {
+    let solver = settings.solver;
+    let mut geometry = lock(geometry)?;
+    let (mut contours, mut tables) = (Vec::new(), Vec::new());
+    for entry in objects.entries_mut().filter(|e| e.boundary.is_none()) {
+        let grown = geometry.solids.grown.grown(&entry.set.object);
+        let growth = grown.as_ref().map(|grown| grown.growth).unwrap_or_default();
+        let object = grown
+            .as_ref()
+            .map_or(&entry.set.object, |grown| &grown.object);
+        let solid = geometry.solids.get(&object.profile);
+        let (mut contour, mut table) = (None, None);
+        if solver.follows_tolerance() {
+            contour = Some(solid.contour(&object.offset)?);
+        } else if let (Solver::Other(search), false) = (solver, solver.reads_map()) {
+            let rows = MapKey::new(object, &growth, settings).rows;
+            let recipe = Recipe::Table { search, rows };
+            table = Some(solid.surface(&object.offset, recipe)?);
         }
-        drop(geometry);
-        contours.retain(|contour| !contour.is_made());
-        let fails = distinct(&mut contours).par_iter();
-        self.rebuilds += fails.filter(|c| c.get().is_err()).count() as u64;
-        self.make_surfaces(&mut tables);
-        Ok(())
+        contours.extend(contour.clone());
+        tables.extend(table.clone());
+        entry.boundary = Some(Arc::new(Boundary {
+            grown,
+            solid,
+            contour,
+            table,
+            levels: Mutex::default(),
+        }));
     }
+    drop(geometry);
+    contours.retain(|contour| !contour.is_made());
+    let fails = distinct(&mut contours).par_iter();
+    let failed = fails.filter(|c| c.get().is_err()).count();
+    Ok(NewBoundaries { failed, tables })
+}
 
-    /// Makes the resources that are missing. Boundaries are there.
-    fn snapshot(&mut self) -> Result<Snapshot> {
-        let demands = Demands {
-            settings: &self.settings,
-            planes: self.output.planes(),
-            host_shades: self.host_shades,
-            lighting: &self.lighting,
-        };
-        let order: Vec<_> = self.objects.ordered().collect();
-        let before = &self.snapshot.common;
-        let mut common = Common::of(self.lighting.shadow, &order);
+impl Snapshot {
+    /// The snapshot of all objects as set, after the snapshot `before`. Boundaries are there.
+    pub fn new(
+        objects: &Objects,
+        before: &Self,
+        demands: Demands<'_>,
+        textures: &mut Textures,
+        notes: &mut Vec<String>,
+    ) -> Result<Self> {
+        let order: Vec<_> = objects.ordered().collect();
+        let mut facts = SceneFacts::of(demands.lighting.shadow, &order);
         let mut maps = Vec::with_capacity(order.len());
         for (position, (_, entry)) in order.iter().enumerate() {
-            let map = find_map(entry, &common, &self.settings, &mut self.textures);
+            let map = find_map(entry, &facts, demands.settings, textures);
             maps.push(map.map_err(|e| named(e, position, &entry.set.object))?);
         }
-        common.add_maps(&maps, &before.shadow_maps)?;
-        let is_same = common.is_same(before);
+        facts.add_maps(&maps, &before.facts.shadow_maps)?;
+        let is_same = facts.is_same(&before.facts);
         let mut maker = Maker {
             demands,
-            common: &common,
-            textures: &mut self.textures,
-            notes: &mut self.notes,
+            facts: &facts,
+            textures,
+            notes,
         };
-        let mut objects = Vec::with_capacity(order.len());
+        let mut prepared = Vec::with_capacity(order.len());
         for (position, ((number, entry), map)) in order.iter().zip(maps).enumerate() {
             let before = entry.prepared.as_ref();
             let kept = before.filter(|_| is_same && entry.stale <= Stale::State);
@@ -248,13 +237,13 @@ impl Content {
                     Arc::new(made)
                 }
             };
-            objects.push(object);
+            prepared.push(object);
         }
-        Ok(Snapshot {
-            objects,
-            common,
-            instances: self.objects.instances(),
-            number_count: self.objects.number_count(),
+        Ok(Self {
+            objects: prepared,
+            facts,
+            instances: objects.instances(),
+            number_count: objects.number_count(),
         })
     }
 }
@@ -262,11 +251,11 @@ impl Content {
 /// Finds or bakes the shape map of an object, if its search reads one.
 fn find_map(
     entry: &Entry,
-    common: &Common,
+    facts: &SceneFacts,
     settings: &SearchSettings,
     textures: &mut Textures,
 ) -> Result<Option<Arc<ShapeTexture>>> {
-    let solver = |boundary: &Arc<Boundary>| common.solver_of(boundary, settings.solver);
+    let solver = |boundary: &Arc<Boundary>| facts.solver_of(boundary, settings.solver);
     if !entry
         .boundary
         .as_ref()
@@ -283,7 +272,7 @@ fn find_map(
 /// Makes what objects are drawn by.
 struct Maker<'a> {
     demands: Demands<'a>,
-    common: &'a Common,
+    facts: &'a SceneFacts,
     textures: &'a mut Textures,
     notes: &'a mut Vec<String>,
 }
@@ -305,21 +294,21 @@ impl Maker<'_> {
         }
         let settings = self.demands.settings;
         let object = entry.shape();
-        let solver = self.common.solver_of(boundary, settings.solver);
+        let solver = self.facts.solver_of(boundary, settings.solver);
         check_format(&entry.set.object, solver, settings).map_err(|mut e| {
             e.key = (e.key).map(|key| format!("object.{position}.{key}"));
             e
         })?;
-        let facts = map.as_ref().map_or_else(
+        let map_facts = map.as_ref().map_or_else(
             || MapKey::new(object, &entry.growth(), settings).unbaked(&object.profile),
             |map| map.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {
-            Some(self.textures.arc(&object.profile, &facts)?)
+            Some(self.textures.arc(&object.profile, &map_facts)?)
         } else {
             None
         };
-        let shadows = &self.common.shadow_maps;
+        let shadows = &self.facts.shadow_maps;
         let mut numbered = (0u32..).zip(&shadows.maps);
         let shadow_map = map.as_ref().and_then(|map| {
             let found = numbered.find(|(_, known)| Arc::ptr_eq(known, map));
@@ -339,11 +328,11 @@ impl Maker<'_> {
             solver,
             steps: steps.max(1),
             map,
-            facts,
+            facts: map_facts,
             arc,
             shadow_map: shadow_map.unwrap_or(0),
             textures,
-            technique: (self.demands).technique(solver, object, images, self.common),
+            technique: (self.demands).technique(solver, object, images, self.facts),
         })
     }
 
@@ -370,6 +359,15 @@ fn named(mut error: Error, position: usize, object: &Object) -> Error {
         Some(file) => error.in_file(file),
         None => error,
     }
+}
+
+/// Returns an error if a map's format cannot show the object's offset.
+fn check_format(object: &Object, solver: Solver, settings: &SearchSettings) -> Result<()> {
+    if solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
+        let message = "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric";
+        return content("extend", message);
+    }
+    Ok(())
 }
 
 /// Each of these values once.

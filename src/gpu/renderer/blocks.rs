@@ -1,32 +1,21 @@
 //! Conversion of scene values to the blocks that shaders read.
 
-use crate::error::{Result, content};
 use crate::gpu::content::entry::{Last, PreparedObject};
-use crate::maps::MapFormat;
+use crate::gpu::content::view_plan::PlannedObject;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{DepthOrder, View};
 use crate::scene::{Lighting, Object, Placement};
-use crate::settings::{SearchSettings, Solver};
-use crate::shader::generated::MAX_LIGHTS;
-use crate::shader::{CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy, LightBlock};
+use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT};
+use crate::shader::{
+    AppearanceBlock, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy, LightBlock,
+    ObjectBlock, ShapeBlock, is_beveled,
+};
+use crate::solid::offset_surface::Part;
 use glam::{DVec2, DVec3, DVec4};
-
-/// Returns an error if a map's format cannot show the object's offset.
-pub(crate) fn check_format(
-    object: &Object,
-    solver: Solver,
-    settings: &SearchSettings,
-) -> Result<()> {
-    if solver.reads_map() && settings.map_format == MapFormat::Rgba8 && object.offset.extend < 0.0 {
-        let message = "is negative, and maps in rgba8 hold no distances within a solid; take r16, r32 or the solver quadric";
-        return content("extend", message);
-    }
-    Ok(())
-}
 
 /// The block of one copy of `object` in a view. World coordinates are subtracted here, in double
 /// precision.
-pub(crate) fn instance_block(
+pub(super) fn instance_block(
     object: &Object,
     placement: &Placement,
     number: u32,
@@ -54,12 +43,75 @@ pub(crate) fn instance_block(
     }
 }
 
+/// The block of an object. `outside`: as in
+/// [`FramePlan::outside`](crate::plan::FramePlan::outside).
+#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
+pub(super) fn object_block(planned: &PlannedObject, outside: bool) -> ObjectBlock {
+    let prepared = &*planned.object;
+    let derived = &prepared.derived;
+    let (object, map) = (prepared.drawn(), &derived.facts);
+    let f = |v: f64| v as f32;
+    let (look, offset) = (&object.texturing, &object.offset);
+    let [half_side, clip_radius, clip_low, clip_high] = prepared.bounds(&planned.surfaces);
+    // Textures find the profile's box in a box that has grown.
+    let growth = prepared.growth();
+    let profile_radius = object.profile.radius * growth.height() - growth.side;
+    let mirrored: u32 = (0..3).map(|i| u32::from(object.mirror[i]) << i).sum();
+    let finest = planned.surfaces.first();
+    let start = |part| finest.map_or(0, |s| s.start(part));
+    let stored = finest.filter(|s| s.slot(Part::Tables).is_some());
+    let [table_fact_0, table_fact_1, table_fact_2] = stored.map_or([0; 3], |s| s.tables().facts);
+    let shape = ShapeBlock {
+        map_size: [map.columns, map.rows].map(|n| n as f32),
+        texel: f(1.0 / f64::from(map.rows)),
+        map_scale: map.scale,
+        half_side,
+        clip_radius,
+        clip_low,
+        clip_high,
+        extend: f(offset.extend),
+        bevel: if is_beveled(object) {
+            f(offset.bevel)
+        } else {
+            0.0
+        },
+        chamfer: f(offset.chamfer),
+        most_steps: derived.steps as f32,
+        axis: object.axis_offset().map(f),
+        shadow_map: derived.shadow_map,
+        first_frustum: start(Part::Frusta),
+        replicas: object.repeat,
+        flags: mirrored | if outside { OUTSIDE_BIT } else { 0 },
+        table_fact_0,
+        table_fact_1,
+        table_fact_2,
+        listed_window: planned.window(Part::Patches).start,
+        table_window: planned.window(Part::Tables).start,
+        ..ShapeBlock::default()
+    };
+    let appearance = AppearanceBlock {
+        color: object.color,
+        material: object.material().bits(),
+        specular: object.specular.strength,
+        shininess: object.specular.shininess,
+        box_height: f(growth.height()),
+        box_low: f(growth.low),
+        texture_repeat: look.repeat.map(f),
+        bump: f(look.bump),
+        profile_width: f(2.0 * profile_radius),
+        arc_rate: f(1.0 / derived.arc.as_ref().map_or(1.0, |arc| arc.length)),
+        first_instance: prepared.instances.start,
+        ..AppearanceBlock::default()
+    };
+    ObjectBlock { shape, appearance }
+}
+
 /// The structure from which `motion_of` of `stage/outputs.glsl` projects a point of a copy into the
 /// last frame.
 ///
 /// The map is exact. A point moves along its normal if the extension changes, which is exact where
 /// the surface keeps its distance to the profile. Motion leaves out a change of bevel or chamfer.
-pub(crate) fn last_copy(of: &PreparedObject, copy: usize, view: &View) -> LastCopy {
+pub(super) fn last_copy(of: &PreparedObject, copy: usize, view: &View) -> LastCopy {
     let (object, growth) = (&of.object, of.growth());
     let all = object.placements();
     let last = match &of.last {
@@ -93,7 +145,7 @@ pub(crate) fn last_copy(of: &PreparedObject, copy: usize, view: &View) -> LastCo
 
 /// The frame's block: eye, rays, lights, depths. `last_copies`: index of the first [`last_copy`]
 /// among instances.
-pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) -> FrameBlock {
+pub(super) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) -> FrameBlock {
     let vector = |v: DVec3| v.as_vec3().to_array();
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
@@ -149,7 +201,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) ->
 }
 
 /// The root of the hierarchy of copies that cast shadows. `maps`: number of shape maps.
-pub(crate) fn caster_root(all: &Hierarchy, eye: DVec3, maps: usize) -> CasterRoot {
+pub(super) fn caster_root(all: &Hierarchy, eye: DVec3, maps: usize) -> CasterRoot {
     let root = all.nodes.first().copied().unwrap_or(Hierarchy::EMPTY);
     CasterRoot {
         eye: (eye - all.origin).as_vec3().to_array(),
@@ -159,13 +211,4 @@ pub(crate) fn caster_root(all: &Hierarchy, eye: DVec3, maps: usize) -> CasterRoo
         half_size: root.half_size,
         only_copy: root.instance,
     }
-}
-
-/// Returns an error for more lights than shaders hold.
-pub(crate) fn check_lights(lighting: &Lighting) -> Result<()> {
-    let (count, most) = (lighting.lights.len(), MAX_LIGHTS);
-    if count > most as usize {
-        return content("light", format!("{count} lights; at most {most} are drawn"));
-    }
-    Ok(())
 }
