@@ -65,7 +65,7 @@ void main()
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);
     if (!is_outside()) {
-        vec4 wider = beam.width * vec4(-1.0, -1.0, 1.0, 1.0);
+        vec4 wider = beam.width.x * vec4(-1.0, -1.0, 1.0, 1.0);
         outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
         inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
         inner.x = inner.x <= inner.y ? inner.x : 1e30;

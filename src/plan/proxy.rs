@@ -47,17 +47,6 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
-/// Largest ratio of a box's sides, in the world, at which hulls are drawn. Hull rays start in the
-/// plane through the box's middle. In a flat box that is up to this many heights from their hit.
-/// The error is 32 roundings of 2^-24 each, times the 8 of a root: a twelfth of a texel.
-const LOPSIDED: f64 = 32.0;
-
-/// True if a copy's box, twice `radius` wide, is too flat or too slender for its hull.
-pub(crate) fn is_lopsided(radius: f64, copy: &Placement) -> bool {
-    let sides = copy.scale * DVec3::new(2.0 * radius, 2.0 * radius, 1.0);
-    sides.max_element() > LOPSIDED * sides.min_element()
-}
-
 /// True if a solid fills its box, so that the box is drawn: most rays enter the box within the solid,
 /// and most of the cells would be outside of the box.
 pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
@@ -80,9 +69,6 @@ pub(crate) fn frusta(
         return None;
     }
     let copies = object.placements();
-    if copies.iter().any(|copy| is_lopsided(radius, copy)) {
-        return None;
-    }
     let hull = &surface.hull().hull;
     let seen: Vec<_> = (copies.iter())
         .map(|copy| seen_from(object, copy, view))

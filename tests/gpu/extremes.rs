@@ -156,15 +156,11 @@ fn outlines_that_cross_themselves_have_no_slivers() {
 }
 
 #[test]
-fn flat_solids_are_drawn_by_the_tree() {
+fn flat_solids_are_drawn_by_cells() {
     for width in [1.0, 100.0, 1000.0] {
         let mut scene = scene_of(shapes::vase(), DVec3::new(1.5, 0.6, 0.6) * width);
         scene.objects[0].placement.scale = DVec3::new(width, width, 1.0);
-        let expected = match width > 32.0 {
-            true => DrawPath::Tiles,
-            false => DrawPath::Cells,
-        };
-        assert_eq!(path(&scene), expected, "{width}");
+        assert_eq!(path(&scene), DrawPath::Cells, "{width}");
         in_both_stages(&scene, (3, 0.2 * width), &format!("{width}:1"));
         let r = width;
         let polygon = [[0.0, 0.1], [0.8 * r, 0.1], [0.6 * r, 0.9], [0.0, 0.9]];

@@ -38,6 +38,7 @@ bool trace_cell(vec2 pixel, out Hit hit)
     // then enters from behind. The fragment of the cell where it entered searches all of the box.
     if (CUT_CELLS != 0u && by_side && entered) {
         found = trace_solid(row.m.o, row.m.v, -eye, EVERYWHERE, false, hit);
+        hit.t += row.shift;
     }
     return found;
 }

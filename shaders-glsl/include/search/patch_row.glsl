@@ -6,8 +6,9 @@
 #include "search/quadric.glsl"
 
 struct PatchRow {
-    Meridian m; // s = 0 is in the plane at depth `base`
-    float least, most; // range of t of valid hits
+    Meridian m; // s = 0 is near the middle of the axis: there 32 bits hold flat and slender boxes, too
+    float shift; // t = shift + s
+    float least, most; // range of s of valid hits
     float best;
     vec4 quadric; // patch of the nearest hit so far
 };
@@ -16,11 +17,13 @@ PatchRow begin_row(PixelRays rays, vec2 pixel)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);
-    row.m.o = ray_origin(rays, pixel);
+    vec3 origin = ray_origin(rays, pixel);
+    row.shift = dot(vec3(0.0, 0.0, 0.5) - origin, row.m.v) / dot(row.m.v, row.m.v);
+    row.m.o = origin + row.shift * row.m.v;
     row.m.a = dot(row.m.v.xy, row.m.v.xy);
     row.m.b = dot(row.m.o.xy, row.m.v.xy);
     row.m.c = dot(row.m.o.xy, row.m.o.xy);
-    row.least = -rays.base;
+    row.least = -rays.base - row.shift;
     row.most = 2e38;
     row.best = row.most;
     row.quadric = vec4(0.0);
@@ -40,7 +43,7 @@ void clip_to_sides(inout PatchRow row)
 bool end_row(PatchRow row, uint count, out Hit hit)
 {
     hit = NO_HIT;
-    hit.t = row.best;
+    hit.t = row.shift + row.best;
     hit.normal = quadric_normal(row.m, row.best, row.quadric);
     hit.point = row.m.o + row.best * row.m.v;
     hit.steps = count;

@@ -11,9 +11,9 @@ struct Beam {
     vec3 o;
     vec3 v;
     float least, nearest, a, b; // r^2 of the middle ray: least + a (t - nearest)^2
-    float per_z, speed;
-    float spread; // largest deviation of a direction from the middle one
-    float width;  // largest distance of a ray from the middle one at equal t, anywhere in the box
+    float per_z, speed; // 1 / v.z; speed across the axis
+    vec2 spread; // largest deviation of a direction from the middle one: across the axis, along it
+    vec2 width; // largest distance of a ray from the middle one at equal t, anywhere in the box: across the axis, along it
     float base;
     float unit; // unit of the radii of patches
 };
@@ -34,9 +34,10 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
     vec2 middle = vec2(corner) + half_side - 0.5;
     beam.v = rays.dir_00 + middle.x * rays.dir_x + middle.y * rays.dir_y;
     beam.o = rays.origin + rays.base * (middle.x * rays.dir_x + middle.y * rays.dir_y);
-    beam.spread = half_side * max(length(rays.dir_x + rays.dir_y), length(rays.dir_x - rays.dir_y));
-    beam.width = beam.spread * farthest + 1e-4;
-    beam.speed = length(beam.v);
+    vec3 across = rays.dir_x + rays.dir_y, down = rays.dir_x - rays.dir_y; // the square's diagonals
+    beam.spread = half_side * vec2(max(length(across.xy), length(down.xy)), max(abs(across.z), abs(down.z)));
+    beam.width = beam.spread * farthest + 1e-4 + 4e-7 * abs(vec2(length(beam.o.xy), beam.o.z));
+    beam.speed = length(beam.v.xy);
     beam.a = max(dot(beam.v.xy, beam.v.xy), 1e-12 * dot(beam.v, beam.v));
     beam.b = dot(beam.o.xy, beam.v.xy);
     // This divides, as node_span() does: rounding of 1 / a loses pixels of a plate that is a thousand times as wide as
@@ -56,9 +57,9 @@ vec2 node_span(Beam beam, uint k)
     uint at = SPAN_FIRST + k;
     uint first = shape.table + (OWN_TABLES ? shape.table_window : 0u);
     float most = node_extent(patch_tables[first + (at >> 2)][at & 3u]).y;
-    float radius = sqrt(max(most, 0.0)) + beam.width;
-    float low = (float(k) / float(SPAN_NODES) - beam.width - beam.o.z) * beam.per_z;
-    float high = (float(k + 1u) / float(SPAN_NODES) + beam.width - beam.o.z) * beam.per_z;
+    float radius = sqrt(max(most, 0.0)) + beam.width.x;
+    float low = (float(k) / float(SPAN_NODES) - beam.width.y - beam.o.z) * beam.per_z;
+    float high = (float(k + 1u) / float(SPAN_NODES) + beam.width.y - beam.o.z) * beam.per_z;
     float reach = sqrt(max(radius * radius - beam.least, 0.0) / beam.a);
     vec2 span = vec2(max(min(low, high), beam.nearest - reach), min(max(low, high), beam.nearest + reach));
     bool meets = most > 0.0 && radius * radius > beam.least && span.x <= span.y;
@@ -85,10 +86,10 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     float k1 = uintBitsToFloat(words.z);
     float k2 = uintBitsToFloat(words.w);
     float sense = float(int(words.x >> 30)) - 1.0;
-    float low = (z.x - beam.width - beam.o.z) * beam.per_z;
-    float high = (z.y + beam.width - beam.o.z) * beam.per_z;
-    float inner = max(r.x - beam.width, 0.0);
-    float outer = r.y + beam.width;
+    float low = (z.x - beam.width.y - beam.o.z) * beam.per_z;
+    float high = (z.y + beam.width.y - beam.o.z) * beam.per_z;
+    float inner = max(r.x - beam.width.x, 0.0);
+    float outer = r.y + beam.width.x;
     float reach = sqrt(max(outer * outer - beam.least, 0.0) / beam.a);
     float clear = sqrt(max(inner * inner - beam.least, 0.0) / beam.a);
     float slack = 4e-7 * (abs(beam.nearest) + reach);
@@ -103,8 +104,9 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     float al = sense * beam.a + k2 * beam.v.z * beam.v.z;
     float be = sense * beam.b + slope * beam.v.z;
     float steep = 0.5 * abs(k1) + abs(k2); // upper bound of |k1 / 2 + k2 z| for z in [0, 1]
-    float turn = max(1.0, abs(k2)) * beam.width;
-    float most = (abs(sense) * r.y + steep + turn) * beam.spread + turn * beam.speed;
+    float turned = (r.y + beam.width.x) * beam.spread.x + beam.width.x * beam.speed;
+    float tilted = (steep + abs(k2) * beam.width.y) * beam.spread.y + abs(k2) * beam.width.y * abs(beam.v.z);
+    float most = abs(sense) * turned + tilted;
     bool faces_before = min(al * before.x, al * before.y) + be <= most;
     bool faces_behind = min(al * behind.x, al * behind.y) + be <= most;
     bool meets_before = before.x <= before.y && faces_before;

@@ -171,8 +171,7 @@ impl<'a> Visible<'a> {
 
     /// True if patches are listed for a batch's tiles in this view.
     pub fn lists_patches(&self, batch: usize) -> bool {
-        let even = self.strips.iter().all(|s| s.facts[batch].even);
-        self.batches[batch].permits_lists && self.is_apart(batch) && even
+        self.batches[batch].permits_lists && self.is_apart(batch)
     }
 
     /// The copies of each batch that may show, in ascending order.

@@ -6,7 +6,7 @@ use super::bounds::{Projector, ScreenBounds, first_pixel, last_pixel};
 use super::cover::{Cover, within_rows};
 use super::outer::rows;
 use super::tile_writer::TileCopy;
-use crate::plan::proxy::{is_apart, is_lopsided};
+use crate::plan::proxy::is_apart;
 use std::ops::Range;
 
 /// A copy that some pixel may show.
@@ -31,8 +31,6 @@ pub(super) struct Opened {
 pub(super) struct CopyFacts {
     /// True if the eye is outside of each copy's bounding cylinder.
     pub apart: bool,
-    /// True if the ratio of each box's sides is small enough for beams of 32-bit floats.
-    pub even: bool,
 }
 
 /// The index of no copy.
@@ -92,10 +90,7 @@ impl<'a> Strip<'a> {
         columns: Range<u32>,
         down: u32,
     ) -> Self {
-        let facts = CopyFacts {
-            apart: true,
-            even: true,
-        };
+        let facts = CopyFacts { apart: true };
         Self {
             projector,
             batches,
@@ -191,7 +186,6 @@ impl<'a> Strip<'a> {
         if let Some(surface) = batch.surface {
             let facts = &mut self.facts[item.batch as usize];
             facts.apart &= is_apart(surface, axes.eye);
-            facts.even &= !is_lopsided(batch.object.profile.radius, placement);
         }
         if let Some(inner) = batch.inner.filter(|_| in_front) {
             self.cover.add(&axes, inner, pixels);
