@@ -19,8 +19,5 @@ void main()
     vec2 corner = vec2(tile_corner_of(tile_words[at]) + GROUP_PIXELS / 2u * half_tiles);
     float near = clip_depth_of(max(uintBitsToFloat(tile_words[at + 3u]), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner * frame.pixels.xz + frame.pixels.yw, near, 1.0);
-    if (VIEWS > 1u && VIEW_INDEX != floatBitsToUint(frame_block.view.x)) {
-        gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
-    }
     tile_queue = uvec2(tile_words[at + 1u], tile_words[at + 2u]);
 }

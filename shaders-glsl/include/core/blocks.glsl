@@ -22,7 +22,7 @@ struct Frame {
     vec4 caster_eye;       // the eye, from the origin of the hierarchy of shadow.glsl; w: number of shape maps (bits)
     vec4 caster_middle;    // root of the hierarchy: middle of its box; w: number of all nodes (bits)
     vec4 caster_half_size; // root; w: index of the only copy, or INNER_NODE (bits)
-    vec4 view; // index of the view among those of the pass (bits); depth range: first, last - first; far end
+    vec4 view; // unused; depth range: first, last - first; far end
     Light lights[MAX_LIGHTS];
 };
 

@@ -127,7 +127,7 @@ pub(crate) fn frame_block(view: &View, lighting: &Lighting, last_record: u32) ->
         ]
         .map(|side| side as f32),
         view: [
-            view.layer,
+            0,
             (least as f32).to_bits(),
             ((most - least) as f32).to_bits(),
             (1.0 - near_value).to_bits(),
