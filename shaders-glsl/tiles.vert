@@ -18,8 +18,5 @@ void main()
     vec2 corner = vec2(corner_of(tile) + GROUP_PIXELS / 2u * half_tiles);
     float near = clip_depth_of(max(tile.near, 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner * frame.clip_scale + frame.clip_shift, near, 1.0);
-    if (VIEWS > 1u && VIEW_INDEX != frame_block.layer) {
-        gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
-    }
     tile_queue = uvec2(tile.first, tile.count);
 }

@@ -130,7 +130,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | `shaderc` | compiles the GLSL at build time and a host's shading at run time, which needs a C++ compiler; else the SPIR-V kept in the repository is embedded |
-//! | `other-shaders` | for work on the shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
+//! | `other-shaders` | for measurements of other shaders: pipelines of SPIR-V that the host gives, and what drivers make of them |
 //!
 //! # Other crates
 //!

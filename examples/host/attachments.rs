@@ -11,7 +11,7 @@ struct Attachment<'a> {
     read: HostBuffer<'a>,
 }
 
-/// Colour attachments and a depth. They have a layer for each view of a pass.
+/// Colour attachments and a depth.
 pub struct Attachments<'a> {
     options: Options,
     /// Of one sample.
@@ -19,7 +19,6 @@ pub struct Attachments<'a> {
     /// Of several samples, where there are: resolved into the first colour.
     multisampled: Option<HostImage<'a>>,
     depth: Attachment<'a>,
-    views: u32,
     /// Null with dynamic rendering.
     pub pass: vk::RenderPass,
     framebuffer: vk::Framebuffer,
@@ -34,24 +33,14 @@ impl<'a> Attachments<'a> {
         options: Options,
         formats: &[(vk::Format, usize)],
     ) -> Fallible<Self> {
-        Self::of_views(host, options, formats, 1)
-    }
-
-    /// Attachments for a pass of several views, by multiview.
-    pub fn of_views(
-        host: &'a Host,
-        options: Options,
-        formats: &[(vk::Format, usize)],
-        views: u32,
-    ) -> Fallible<Self> {
-        let pixels = (options.width * options.height * views) as usize;
+        let pixels = (options.width * options.height) as usize;
         let of = |(format, bytes), samples| {
             let more = match samples {
                 1 => vk::ImageUsageFlags::SAMPLED,
                 _ => vk::ImageUsageFlags::empty(),
             };
             Ok(Attachment {
-                image: HostImage::of(host, &options, format, [samples, views], more)?,
+                image: HostImage::of(host, &options, format, samples, more)?,
                 read: HostBuffer::new(host, bytes * pixels, vk::BufferUsageFlags::TRANSFER_DST)?,
             })
         };
@@ -62,7 +51,6 @@ impl<'a> Attachments<'a> {
             multisampled: (options.samples > 1).then(several).transpose()?,
             depth: of((DEPTH, 4), options.samples)?,
             options,
-            views,
             pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
             host,
@@ -215,10 +203,6 @@ impl<'a> Attachments<'a> {
             })
             .render_area(vk::Rect2D::default().extent(self.options.extent()))
             .layer_count(1)
-            .view_mask(match self.views {
-                1 => 0,
-                views => (1 << views) - 1,
-            })
             .color_attachments(&colors)
             .depth_attachment(&depth);
         // SAFETY: `cmd` is recording; the images live as long as `self`.
@@ -259,12 +243,12 @@ impl<'a> Attachments<'a> {
         }
     }
 
-    /// The bytes of a colour attachment, view after view, once the commands have run.
+    /// The bytes of a colour attachment, once the commands have run.
     pub fn color(&self, number: usize) -> Vec<u8> {
         self.colors[number].read.bytes()
     }
 
-    /// The depths of one sample, view after view, once the commands have run.
+    /// The depths of one sample, once the commands have run.
     pub fn depths(&self) -> Vec<f32> {
         bytemuck::pod_collect_to_vec(&self.depth.read.bytes())
     }

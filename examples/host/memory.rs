@@ -86,7 +86,6 @@ pub struct HostImage<'a> {
     pub raw: vk::Image,
     pub view: vk::ImageView,
     pub aspect: vk::ImageAspectFlags,
-    layers: u32,
     memory: vk::DeviceMemory,
     host: &'a Host,
 }
@@ -99,15 +98,15 @@ impl<'a> HostImage<'a> {
         format: vk::Format,
         more: vk::ImageUsageFlags,
     ) -> Fallible<Self> {
-        Self::of(host, options, format, [1, 1], more)
+        Self::of(host, options, format, 1, more)
     }
 
-    /// An image of so many samples, or of so many layers for a pass of as many views.
+    /// An image of so many samples.
     pub fn of(
         host: &'a Host,
         options: &Options,
         format: vk::Format,
-        [samples, layers]: [u32; 2],
+        samples: u32,
         more: vk::ImageUsageFlags,
     ) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
@@ -123,7 +122,7 @@ impl<'a> HostImage<'a> {
                 .format(format)
                 .extent(options.extent().into())
                 .mip_levels(1)
-                .array_layers(layers)
+                .array_layers(1)
                 .samples(vk::SampleCountFlags::from_raw(samples))
                 .usage(if samples == 1 {
                     usage | more | U::TRANSFER_SRC
@@ -138,16 +137,12 @@ impl<'a> HostImage<'a> {
                 raw,
                 view: vk::ImageView::null(),
                 aspect,
-                layers,
                 memory,
                 host,
             };
             let info = vk::ImageViewCreateInfo::default()
                 .image(raw)
-                .view_type(match layers {
-                    1 => vk::ImageViewType::TYPE_2D,
-                    _ => vk::ImageViewType::TYPE_2D_ARRAY,
-                })
+                .view_type(vk::ImageViewType::TYPE_2D)
                 .format(format)
                 .subresource_range(image.range());
             image.view = host.device.create_image_view(&info, None)?;
@@ -160,7 +155,7 @@ impl<'a> HostImage<'a> {
         vk::ImageSubresourceRange::default()
             .aspect_mask(self.aspect)
             .level_count(1)
-            .layer_count(self.layers)
+            .layer_count(1)
     }
 
     /// The layout of the image while it is drawn into.
@@ -190,7 +185,7 @@ impl<'a> HostImage<'a> {
     pub fn region(&self, options: &Options) -> vk::BufferImageCopy {
         let layers = vk::ImageSubresourceLayers::default()
             .aspect_mask(self.aspect)
-            .layer_count(self.layers);
+            .layer_count(1);
         vk::BufferImageCopy::default()
             .image_subresource(layers)
             .image_extent(options.extent().into())

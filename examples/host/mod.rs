@@ -136,11 +136,9 @@ impl Host {
                     .queue_priorities(&priorities)];
                 let mut newer =
                     vk::PhysicalDeviceVulkan13Features::default().dynamic_rendering(true);
-                let mut views = vk::PhysicalDeviceVulkan11Features::default().multiview(true);
                 let info = vk::DeviceCreateInfo::default()
                     .queue_create_infos(&queues)
                     .enabled_features(&features)
-                    .push_next(&mut views)
                     .push_next(&mut newer);
                 let device = instance.create_device(physical, &info, None)?;
                 let queue = device.get_device_queue(family, 0);

@@ -112,7 +112,7 @@ impl Device {
     }
 
     /// Returns the same device with its own pipelines, made of the SPIR-V that `shaders` returns.
-    /// Use it to work on shaders while a program runs. The new value keeps this value alive.
+    /// Use it to compare other shaders with the library's. The new value keeps this value alive.
     ///
     /// # Errors
     /// Errors of Vulkan calls.

@@ -87,8 +87,6 @@ pub struct View {
     pub(crate) viewport: Viewport,
     pub(crate) parallel: bool,
     pub(crate) mask: u32,
-    /// Index among the views of a pass.
-    pub(crate) layer: u32,
     /// Shift of the picture by the projection's jitter, pixels.
     pub(crate) jitter: DVec2,
     /// [`View::pixel_rows`] of the last frame's view, for motion.
@@ -169,7 +167,6 @@ impl View {
             viewport,
             parallel: false,
             mask: u32::MAX,
-            layer: 0,
             jitter: DVec2::ZERO,
             last: None,
             rows: None,
@@ -188,16 +185,6 @@ impl View {
     pub fn with_jitter(self, shift: [f64; 2]) -> Self {
         let jitter = DVec2::from(shift);
         Self { jitter, ..self }
-    }
-
-    /// The same view as view `index` of a pass with several views
-    /// ([`PassFormats::views`](crate::gpu::PassFormats::views)).
-    #[must_use]
-    pub fn with_layer(self, index: u32) -> Self {
-        Self {
-            layer: index,
-            ..self
-        }
     }
 
     /// The same view after a frame of the view `last`, whose viewport may differ. Motion is that

@@ -11,7 +11,6 @@ mod spirv;
 mod technique;
 mod textures;
 mod variant;
-mod view_index;
 
 pub use blocks::{
     AppearanceBlock, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView, GatheredPixel,
@@ -33,7 +32,6 @@ pub use textures::{with_constant_textures, with_varying_textures};
 #[cfg(feature = "other-shaders")]
 pub(crate) use variant::SPECIALITIES;
 pub use variant::{Drawn, Kind, Lights, Outside, Speciality, Variant};
-pub use view_index::with_view_index;
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // The list includes numbers that only the shaders read, or that only tests compare.

@@ -7,6 +7,7 @@ pub const BOUND: usize = 3;
 
 /// Opcodes, decorations, builtins, capabilities, modes and storage classes of the specification.
 pub mod op {
+    #[cfg(test)]
     pub const ENTRY_POINT: u32 = 15;
     pub const EXECUTION_MODE: u32 = 16;
     pub const CAPABILITY: u32 = 17;
@@ -48,13 +49,10 @@ pub mod op {
     pub const LABEL: u32 = 248;
 
     pub const SPEC_ID: u32 = 1;
-    pub const BUILTIN: u32 = 11;
     pub const LOCATION: u32 = 30;
     pub const BINDING: u32 = 33;
     pub const DESCRIPTOR_SET: u32 = 34;
 
-    pub const VIEW_INDEX: u32 = 4440;
-    pub const MULTIVIEW: u32 = 4439;
     pub const SAMPLED_IMAGE_ARRAY_DYNAMIC_INDEXING: u32 = 29;
     pub const DEPTH_GREATER: u32 = 14;
     pub const DEPTH_LESS: u32 = 15;

@@ -54,7 +54,6 @@ fn a_variant_sets_every_specialisation_constant() {
         .map(|(id, _)| *id)
         // Constants of the device and of the pass.
         .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID, g::FETCHED_CELLS_ID])
-        .chain([g::VIEWS_ID, g::VIEW_INDEX_ID])
         .chain([g::SLOPE_BIAS_ID, g::SLOPE_BIAS_LIMIT_ID])
         .collect();
     let mut all = BTreeSet::new();

@@ -24,7 +24,6 @@ mod embedding_crowds;
 mod embedding_lists;
 mod embedding_outputs;
 mod embedding_samples;
-mod embedding_stereo;
 mod embedding_tools;
 mod embedding_visibility;
 mod exhausted;

@@ -804,9 +804,8 @@ typedef struct RevmapPass {
     uint32_t depth_compare;
     /// 1 to leave the depth attachment as it is, 0 to write depths.
     uint32_t depth_read_only;
-    /// Views of the pass: 1 (or 0), or 2 to 6 with multiview, whose view mask has the lowest bits
-    /// set. Each view is a frame of its own in a slot of its own: prepare it with its
-    /// RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
+    /// 1 or 0. A pass draws one view, and its view mask is 0: begin a pass for each view, and prepare
+    /// each view in a slot of its own.
     uint32_t views;
     /// For REVMAP_PLANES_DEPTH and REVMAP_PLANES_DEPTH_PARALLEL: depths move away from the eye by
     /// this times the slope, the larger change of depth from a pixel to the next. 0 for no bias.
@@ -859,7 +858,7 @@ typedef struct RevmapView {
     /// The view shows the objects whose mask shares a bit with this one; 0: objects of any mask
     /// but 0. See revmap_renderer_set_mask().
     uint32_t mask;
-    /// Index among the views of the pass: see RevmapPass.views.
+    /// 0: a pass has one view. See RevmapPass.views.
     uint32_t layer;
     /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
     /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.

@@ -6,7 +6,7 @@ pub mod statistics;
 
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
-use crate::fault::{Outcome, RevmapResult, enter};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, alone, create, handle};
 use crate::pointers::{list, put};
 use crate::shading::RevmapShading;
@@ -81,9 +81,8 @@ pub struct RevmapPass {
     pub depth_compare: u32,
     /// 1 to leave the depth attachment as it is, 0 to write depths.
     pub depth_read_only: u32,
-    /// Views of the pass: 1 (or 0), or 2 to 6 with multiview, whose view mask has the lowest bits
-    /// set. Each view is a frame of its own in a slot of its own: prepare it with its
-    /// RevmapView.layer, and record all frames in the one pass. Needs the feature multiview.
+    /// 1 or 0. A pass draws one view, and its view mask is 0: begin a pass for each view, and prepare
+    /// each view in a slot of its own.
     pub views: u32,
     /// For REVMAP_PLANES_DEPTH and REVMAP_PLANES_DEPTH_PARALLEL: depths move away from the eye by
     /// this times the slope, the larger change of depth from a pixel to the next. 0 for no bias.
@@ -128,6 +127,13 @@ described! {
 
 impl RevmapPass {
     unsafe fn formats(&self) -> Outcome<PassFormats> {
+        if self.views > 1 {
+            let message = format!(
+                "views: {} in one pass; give 1, and begin a pass for each view",
+                self.views
+            );
+            return Err(Fault::new(RevmapResult::Usage, message));
+        }
         let begun = match enums::pass_kind(self.kind)? {
             RevmapPassKind::RenderPass => PassKind::RenderPass {
                 // SAFETY: the caller's pass, which lives as long as it promised.
@@ -161,7 +167,6 @@ impl RevmapPass {
         Ok(PassFormats {
             samples: self.samples,
             sample_rays: self.sample_rays != 0,
-            views: self.views.max(1),
             depth,
             depth_test,
             slope_bias: SlopeBias::new(self.slope_bias, self.slope_bias_limit)?,

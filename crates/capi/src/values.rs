@@ -108,7 +108,7 @@ pub struct RevmapView {
     /// The view shows the objects whose mask shares a bit with this one; 0: objects of any mask
     /// but 0. See revmap_renderer_set_mask().
     pub mask: u32,
-    /// Index among the views of the pass: see RevmapPass.views.
+    /// 0: a pass has one view. See RevmapPass.views.
     pub layer: u32,
     /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
     /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.
@@ -254,6 +254,13 @@ impl RevmapView {
     }
 
     fn without_last(&self) -> Outcome<View> {
+        if self.layer > 0 {
+            let message = format!(
+                "view: layer {} of a pass; give 0, and begin a pass for each view",
+                self.layer
+            );
+            return Err(Fault::new(RevmapResult::Usage, message));
+        }
         if !(self.depth_bias.is_finite() && self.jitter.iter().all(|shift| shift.is_finite())) {
             let message = "view: jitter and depth_bias are not finite; give finite numbers";
             return Err(Fault::new(RevmapResult::Content, message));
@@ -273,7 +280,7 @@ impl RevmapView {
             0 => u32::MAX,
             mask => mask,
         };
-        let made = made.with_mask(mask).with_layer(self.layer);
+        let made = made.with_mask(mask);
         let made = made.with_jitter(self.jitter);
         let made = made.with_depth_bias(self.depth_bias);
         match self.depth_range {

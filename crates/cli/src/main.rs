@@ -140,7 +140,9 @@ fn main() -> ExitCode {
         revmap_searches::watchdog::set_limit()?;
         program.command.run()
     };
-    match catch_unwind(AssertUnwindSafe(run)) {
+    let ended = catch_unwind(AssertUnwindSafe(run));
+    overrun::settle();
+    match ended {
         Ok(Ok(())) => output::end(),
         Ok(Err(error)) => failure::report(error),
         Err(cause) => {

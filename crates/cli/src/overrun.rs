@@ -3,20 +3,37 @@
 
 use super::output;
 use revmap_searches::folder;
-use revmap_searches::watchdog::{self, LEFT_OUT};
+use revmap_searches::watchdog::{self, Overrun};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Once, OnceLock};
 
 /// Commands that begin again: they measure other searches too.
 const RUNS: [&str; 3] = ["bench", "chart", "stability"];
+
+/// The variable that names searches not to draw by, a line each: a name, a tab, the reason.
+const LEFT_OUT: &str = "REVMAP_LEFT_OUT";
 
 /// The folder of results.
 static OUT: OnceLock<PathBuf> = OnceLock::new();
 
 /// Watches over frames from now on.
 pub fn watch() {
-    watchdog::set_handler(handle);
+    let named = std::env::var(LEFT_OUT).unwrap_or_default();
+    for (name, reason) in named.lines().filter_map(|line| line.split_once('\t')) {
+        watchdog::leave_out(name.to_owned(), reason.to_owned());
+    }
+    // Without the thread, a frame that ends late is still an error.
+    let waits = || handle(&watchdog::wait());
+    let _ = std::thread::Builder::new().spawn(waits);
+}
+
+/// Ends the program, or begins the run again, if a frame has overrun. The waiting thread does the
+/// same; the first of both acts.
+pub fn settle() {
+    if let Some(overrun) = watchdog::found() {
+        handle(&overrun);
+    }
 }
 
 /// Notes the folder of results, which a run that begins again uses.
@@ -65,7 +82,12 @@ pub fn is_again() -> bool {
     std::env::var_os(LEFT_OUT).is_some()
 }
 
-fn handle(name: &str, reason: &str) {
+fn handle(overrun: &Overrun) {
+    static ENDING: Once = Once::new();
+    ENDING.call_once(|| end(overrun));
+}
+
+fn end(Overrun { name, reason }: &Overrun) -> ! {
     let words: Vec<_> = std::env::args_os().collect();
     let runs = words.get(1).and_then(|word| word.to_str());
     if !runs.is_some_and(|word| RUNS.contains(&word)) {

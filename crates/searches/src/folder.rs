@@ -240,7 +240,7 @@ impl Folder {
         };
         // SAFETY: the words are compiled from the library's entry files, with its macros. The
         // person who names a folder runs its GLSL, as any program of theirs: drivers bound memory
-        // accesses as far as they do, and the watchdog ends what does not end.
+        // accesses as far as they do, and the watchdog reports what does not end.
         #[allow(unsafe_code)]
         let words = unsafe { Words::new(words) };
         Search {

@@ -1,12 +1,12 @@
 //! A limit on the time of a frame that a folder's search draws. Vulkan cannot end a shader that
-//! runs. A program that must end sets a [handler](set_handler), which says which search did not end,
-//! and may begin again without that search.
+//! runs, so a frame that does not end blocks its thread. The library only reports such a frame, by
+//! [`wait`] and [`found`]: a program may then end, or begin again without the search.
 
 use crate::folder;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// The variable that sets another limit of a frame, and of a table's program, than ten seconds.
@@ -55,14 +55,6 @@ fn in_words(limit: Duration) -> String {
     }
 }
 
-/// The variable that names searches not to draw by, a line each: a name, a tab, the reason.
-pub const LEFT_OUT: &str = "REVMAP_LEFT_OUT";
-
-/// Called with a search's name and the reason when its frame does not end.
-pub type Handler = fn(&str, &str);
-
-static HANDLER: OnceLock<Handler> = OnceLock::new();
-
 /// Searches not to draw by, each with the reason.
 static OUT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
@@ -73,33 +65,56 @@ pub fn leave_out(name: String, reason: String) {
     }
 }
 
-/// Sets the handler. A frame that does not end blocks its thread, so a handler should end the program.
-/// The library never does.
-pub fn set_handler(handler: Handler) {
-    let _ = HANDLER.set(handler);
-}
-
-/// Fails for a search that is [left out](leave_out), or that [`LEFT_OUT`] names.
+/// Fails for a search that is [left out](leave_out).
 ///
 /// # Errors
 /// [`ErrorKind::Other`], with the reason.
 pub fn check(name: &str) -> Result<()> {
-    let named = std::env::var(LEFT_OUT).unwrap_or_default();
-    let mut lines = named.lines().filter_map(|line| line.split_once('\t'));
-    let named = lines.find(|(known, _)| *known == name);
-    let reason = named.map(|(_, reason)| reason.to_owned()).or_else(|| {
-        let out = OUT.lock().ok()?;
-        let found = out.iter().find(|(known, _)| known == name);
-        found.map(|(_, reason)| reason.clone())
-    });
-    match reason {
-        Some(reason) => Err(Error::new(ErrorKind::Other, reason)),
+    let out = OUT.lock().unwrap_or_else(PoisonError::into_inner);
+    match out.iter().find(|(known, _)| known == name) {
+        Some((_, reason)) => Err(Error::new(ErrorKind::Other, reason.clone())),
         None => Ok(()),
     }
 }
 
+/// A search whose frame did not end in time, or lost the device.
+#[derive(Clone, Debug)]
+pub struct Overrun {
+    /// The search's name.
+    pub name: String,
+    /// The reason, for people.
+    pub reason: String,
+}
+
+/// The first overrun.
+static FOUND: Mutex<Option<Overrun>> = Mutex::new(None);
+static CHANGED: Condvar = Condvar::new();
+
+fn lock() -> MutexGuard<'static, Option<Overrun>> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The first overrun so far.
+#[must_use]
+pub fn found() -> Option<Overrun> {
+    lock().clone()
+}
+
+/// Blocks until a frame overruns, and returns the first overrun. The frame may still be drawn, and may
+/// block its thread for good.
+#[must_use]
+pub fn wait() -> Overrun {
+    let mut found = lock();
+    loop {
+        if let Some(overrun) = &*found {
+            return overrun.clone();
+        }
+        found = CHANGED.wait(found).unwrap_or_else(PoisonError::into_inner);
+    }
+}
+
 /// Draws a frame. If a folder's search draws it, the frame has a limit of time, and a device that
-/// is lost counts as a frame that does not end. The [handler](set_handler) hears of both.
+/// is lost counts as a frame that does not end. [`wait`] and [`found`] report both.
 ///
 /// # Errors
 /// Those of `draw`; [`ErrorKind::Other`] for a frame that ended after the limit.
@@ -121,7 +136,7 @@ fn limited<T>(name: &str, limit: Duration, draw: impl FnOnce() -> Result<T>) -> 
             let reason = format!(
                 "a frame by {name} took more than {words}: its search does not end, or is too slow; bound its loop by most_steps(), or set {LIMIT}"
             );
-            overrun(name, &reason);
+            report(name, &reason);
             Error::new(ErrorKind::Other, reason)
         })
     };
@@ -138,17 +153,17 @@ fn limited<T>(name: &str, limit: Duration, draw: impl FnOnce() -> Result<T>) -> 
                 "the device was lost while {name} drew: its search does not end, or reads what is not there ({})",
                 error.message
             );
-            overrun(name, &reason);
+            report(name, &reason);
             Err(Error::new(ErrorKind::DeviceLost, reason))
         }
         (drawn, None) => drawn,
     }
 }
 
-fn overrun(name: &str, reason: &str) {
-    if let Some(handler) = HANDLER.get() {
-        handler(name, reason);
-    }
+fn report(name: &str, reason: &str) {
+    let [name, reason] = [name, reason].map(str::to_owned);
+    lock().get_or_insert(Overrun { name, reason });
+    CHANGED.notify_all();
 }
 
 #[cfg(test)]
@@ -167,13 +182,18 @@ mod tests {
     }
 
     #[test]
-    fn a_late_frame_and_a_lost_device_are_errors() {
+    fn late_frames_and_lost_devices_are_errors_and_reported() {
         let limit = Duration::from_millis(1);
         let late = limited("slow", limit, || {
-            std::thread::sleep(Duration::from_millis(50));
+            // The frame is still being drawn when it is reported.
+            assert_eq!(wait().name, "slow");
             Ok(())
         });
         let late = late.unwrap_err();
+        assert_eq!(
+            found().map(|found| found.reason),
+            Some(late.message.clone())
+        );
         assert_eq!(late.kind, ErrorKind::Other);
         let text = late.to_string();
         assert!(

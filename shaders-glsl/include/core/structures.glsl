@@ -51,7 +51,7 @@ struct FrameData {
     float first_depth; // the depth buffer's value of depth 0 in clip space
     float depth_range; // its value of depth 1, minus first_depth
     float far_depth; // depth in clip space of the far plane
-    uint layer; // index of the view among those of the pass
+    float unused;
     Light lights[MAX_LIGHTS];
 };
 

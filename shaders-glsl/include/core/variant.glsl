@@ -67,8 +67,6 @@ layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one obje
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
-layout(constant_id = 19) const uint VIEWS = 1u; // views of the pass; more than 1 by multiview
-layout(constant_id = 20) const uint VIEW_INDEX = 0u; // replaced by gl_ViewIndex in src/shader/view_index.rs
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel

@@ -17,13 +17,9 @@ Instance begin(uint number)
     return i;
 }
 
-// Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w. Must follow the position: a pass of several views
-// draws each frame in all of them, and the frame's own view keeps it.
+// Writes the varyings of varyings.glsl; `scale` becomes ray_dir_00.w.
 void hand_over(Instance i, float scale)
 {
-    if (VIEWS > 1u && VIEW_INDEX != frame_block.layer) {
-        gl_Position = vec4(1e6, 1e6, 2.0, 1.0);
-    }
     PixelRays rays = pixel_rays(i);
     ray_origin_base = vec4(rays.origin, rays.base);
     ray_dir_00 = vec4(rays.dir_00, scale);

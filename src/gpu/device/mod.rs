@@ -59,10 +59,7 @@ pub(in crate::gpu) fn create(
     if chosen.offers(ash::khr::portability_subset::NAME) {
         extensions.push(ash::khr::portability_subset::NAME.as_ptr());
     }
-    // Every device of Vulkan 1.1 offers it.
-    let mut views = vk::PhysicalDeviceMultiviewFeatures::default().multiview(true);
     let mut info = vk::DeviceCreateInfo::default()
-        .push_next(&mut views)
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
         .enabled_features(&features);

@@ -194,7 +194,6 @@ pub(super) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) ->
         first_depth: least as f32,
         depth_range: (most - least) as f32,
         far_depth: 1.0 - near_depth,
-        layer: view.layer,
         lights,
         ..FrameBlock::default()
     }

@@ -10,9 +10,6 @@ use crate::plan::{MOST_PIXELS, View};
 use crate::settings::{Plane, Planes, SearchSettings};
 use ash::vk;
 
-/// Most views of a pass; every device with multiview has this many.
-const MOST_VIEWS: u32 = 6;
-
 impl Output {
     /// Returns an error for an output that the device or the solver cannot draw.
     pub(crate) fn check(&self, device: &Shared, settings: &SearchSettings) -> Result<()> {
@@ -90,7 +87,7 @@ pub(super) fn check_viewport(view: &View, limits: &vk::PhysicalDeviceLimits) -> 
 impl PassFormats {
     fn check(&self, device: &Shared) -> Result<()> {
         let (features, limits) = (&device.chosen.features, device.limits());
-        let &Self { views, samples, .. } = self;
+        let samples = self.samples;
         let all = self.planes == Planes::All;
         let unsupported = |message: &str| Err(Error::new(ErrorKind::Unsupported, message));
         if all && features.fragment_stores_and_atomics == vk::FALSE {
@@ -102,20 +99,9 @@ impl PassFormats {
             let message = "rays through samples need the feature sampleRateShading; enable it";
             return unsupported(message);
         }
-        if !(1..=MOST_VIEWS).contains(&views) {
-            return usage("views", format!("{views} views; give 1 to {MOST_VIEWS}"));
-        }
         if !self.slope_bias.is_none() && !matches!(self.planes, Planes::Depth { .. }) {
             let message = "only depths alone have a bias for slopes; draw Planes::Depth";
             return usage("slope_bias", message);
-        }
-        if views > 1 && matches!(self.begun, PassKind::SingleSubpass { .. }) {
-            let message = "a pass known by its formats has one view; give the render pass";
-            return usage("views", message);
-        }
-        if views > 1 && all {
-            let message = "all planes are drawn for one view; give a list of planes";
-            return usage("views", message);
         }
         if ![1, 2, 4, 8].contains(&samples) {
             return usage("samples", format!("{samples} samples; give 1, 2, 4 or 8"));

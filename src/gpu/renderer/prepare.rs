@@ -138,16 +138,13 @@ impl Renderer {
 
     fn check(&self, slot: usize, view: &View) -> Result<()> {
         let output = &self.content.output;
-        let (slots, views) = (self.slots.len(), output.views());
+        let slots = self.slots.len();
         let message = if slot >= slots {
             format!("slot {slot}; there are {slots}")
         } else if view.order != output.depth_order() {
             "the view's depth order is not the output's; give both the same".into()
         } else if view.parallel != self.content.is_parallel() {
             "parallel views go with an output of parallel depths, and no others".into()
-        } else if view.layer >= views {
-            let layer = view.layer;
-            format!("view {layer} of a pass with {views}; give an index below that")
         } else {
             check_viewport(view, self.device.limits())?;
             return output.check_target(self.content.target.as_ref());

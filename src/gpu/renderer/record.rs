@@ -26,8 +26,8 @@ impl Renderer {
     /// and scissor are dynamic and are not set.
     ///
     /// The caller must ensure that
-    /// * `cmd` is recording, within a pass that is compatible with the output, with the view's
-    ///   viewport and a scissor set;
+    /// * `cmd` is recording, within a pass that is compatible with the output and has a view mask of
+    ///   0, with the view's viewport and a scissor set;
     /// * the renderer lives until the commands have run, and the frame's slot is not prepared again
     ///   before that.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer, frame: &PreparedFrame) -> Result<()> {

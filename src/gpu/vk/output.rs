@@ -7,7 +7,7 @@ use crate::gpu::vk::descriptors::{HOST_TEXTURES, SETS};
 use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings};
-use crate::shader::generated::{EXHAUSTED_BIT, SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID, VIEWS_ID};
+use crate::shader::generated::{EXHAUSTED_BIT, SLOPE_BIAS_ID, SLOPE_BIAS_LIMIT_ID};
 use crate::shading::Shading;
 use ash::vk;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -22,7 +22,8 @@ pub enum Output {
     Compute(Planes),
 }
 
-/// The pass in which fragments are drawn.
+/// The pass in which fragments are drawn. A pass draws one view: its view mask is 0. A host with
+/// several views begins a pass for each, and prepares each view in a slot of its own.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PassFormats {
     /// Kind of pass: a render pass or dynamic rendering.
@@ -33,13 +34,6 @@ pub struct PassFormats {
     /// pixel is right; a pixel costs as many rays. Needs the feature `sampleRateShading`. False for
     /// one ray through the pixel's centre, which all samples share.
     pub sample_rays: bool,
-    /// Views of the pass: 1, or 2 to 6 with multiview, such as the two eyes of a headset.
-    ///
-    /// The pass's view mask has the lowest bits set, one for each view. Each view is a frame of its
-    /// own in a slot of its own: prepare it for [`View::with_layer`](crate::plan::View::with_layer),
-    /// and record all frames in the one pass. The device must have the feature `multiview` enabled;
-    /// devices that the library opens have it.
-    pub views: u32,
     /// The end of the depth range that is near.
     pub depth: DepthOrder,
     /// The depth test of every draw.
@@ -58,7 +52,6 @@ impl PassFormats {
             begun,
             samples: 1,
             sample_rays: false,
-            views: 1,
             depth: DepthOrder::Normal,
             depth_test: DepthTest::default(),
             slope_bias: SlopeBias::default(),
@@ -149,6 +142,7 @@ impl HostPass {
     /// The caller must ensure that
     /// * the pass is null, which is refused, or of the device of every renderer that is made with this
     ///   value;
+    /// * the view mask of the subpass that is drawn in is 0;
     /// * it lives until each of these renderers and all their prewarms are dropped.
     #[must_use]
     pub const unsafe fn new(pass: vk::RenderPass) -> Self {
@@ -181,7 +175,8 @@ pub enum PassKind {
         /// Format of the depth attachment.
         depth: vk::Format,
     },
-    /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host).
+    /// Dynamic rendering (Vulkan 1.3 or `VK_KHR_dynamic_rendering`, enabled by the host), with a view
+    /// mask of 0.
     Dynamic {
         /// Formats of the colour attachments in order; empty if only depth is drawn.
         color: Vec<vk::Format>,
@@ -209,11 +204,6 @@ impl Output {
         }
     }
 
-    /// The views of a pass.
-    pub(crate) fn views(&self) -> u32 {
-        self.pass().map_or(1, |pass| pass.views)
-    }
-
     /// Largest distance of a ray from its pixel's centre, pixels.
     pub(crate) fn ray_spread(&self) -> f64 {
         let spreads = self.pass().is_some_and(|pass| pass.sample_rays);
@@ -221,10 +211,9 @@ impl Output {
     }
 
     /// `(constant_id, value)` of the specialisation constants of a pass.
-    pub(crate) fn constants(&self) -> [(u32, u32); 3] {
+    pub(crate) fn constants(&self) -> [(u32, u32); 2] {
         let bias = self.pass().map(|pass| pass.slope_bias).unwrap_or_default();
         [
-            (VIEWS_ID, self.views()),
             (SLOPE_BIAS_ID, bias.factor),
             (SLOPE_BIAS_LIMIT_ID, bias.limit),
         ]

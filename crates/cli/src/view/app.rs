@@ -4,8 +4,6 @@ use super::actions::Change;
 use super::controls::{self, Asked, Told};
 use super::framing::Framing;
 use super::picture::Painter;
-#[cfg(feature = "shaderc")]
-use super::reload::Reload;
 use super::shown::{Inspected, Shown};
 use super::times::Times;
 use super::{View, keys, overlay, saved, search_reload};
@@ -43,8 +41,6 @@ pub struct App {
     /// The change in progress: all of it is undone at once.
     pub(super) changing: Option<Change>,
     pub(super) painter: Painter,
-    #[cfg(feature = "shaderc")]
-    reload: Option<Reload>,
     /// The search of a folder, after each change of its files.
     search: Option<Receiver<Result<Solver>>>,
     times: Times,
@@ -84,8 +80,6 @@ impl App {
             version: 0,
             undo: Vec::new(),
             changing: None,
-            #[cfg(feature = "shaderc")]
-            reload: None,
             search: None,
             times,
             drawing_ms: 0.0,
@@ -103,10 +97,6 @@ impl App {
 
     /// Starts what needs the window's context.
     pub fn begin(&mut self, context: &Context) {
-        #[cfg(feature = "shaderc")]
-        if let Some(folder) = &self.options.watch_shaders {
-            self.reload = Some(Reload::new(folder, context.clone()));
-        }
         self.search = search_reload::watch(self.options.solver, context.clone());
         let (width, height) = self.options.size;
         let size = Vec2::new(width as f32, height as f32) / context.pixels_per_point();
@@ -122,14 +112,14 @@ impl App {
     }
 
     /// Shows the panel. Returns the points at the left that it covers.
-    fn controls(&mut self, ui: &mut Ui, notes: [&str; 2]) -> f32 {
+    fn controls(&mut self, ui: &mut Ui, note: &str) -> f32 {
         if !self.panel {
             return 0.0;
         }
         let told = Told {
             times: &self.times,
             problem: self.problem.as_deref(),
-            notes,
+            note,
             undos: self.undo.len(),
             draw_paths: &self.painter.draw_paths,
         };
@@ -172,22 +162,17 @@ impl App {
     }
 
     /// Shows scale and words over the free part.
-    fn overlay(&self, context: &Context, free: Rect, notes: [&str; 2]) {
+    fn overlay(&self, context: &Context, free: Rect, note: &str) {
         if let Some(legend) = self.painter.texture().and(self.painter.legend.as_ref()) {
             overlay::legend(context, free, legend);
         }
         let hidden = |text| if self.panel { "" } else { text };
-        let [numbers, shaders] = notes.map(hidden);
         let problem = hidden(self.problem.as_deref().unwrap_or_default());
         let hint = if self.hint { HINT } else { "" };
-        let lines = [problem, numbers, shaders, &self.written, hint];
+        let lines = [problem, hidden(note), &self.written, hint];
         overlay::lines(context, free, &lines);
         if self.help {
             overlay::help(context, free);
-        }
-        #[cfg(feature = "shaderc")]
-        if let Some(text) = self.reload.as_ref().and_then(|r| r.problem.as_deref()) {
-            controls::shader_problem(context, text);
         }
     }
 
@@ -279,27 +264,6 @@ impl App {
             }
         }
     }
-
-    /// Draws with changed shaders when they compile. Returns the state of their compilation.
-    #[cfg(feature = "shaderc")]
-    fn reload_shaders(&mut self) -> &'static str {
-        let Some(reload) = &mut self.reload else {
-            return "";
-        };
-        let device = self.painter.device();
-        if let Some(device) = reload.take(device, &self.shown, self.framing.window) {
-            self.painter.take(device);
-        }
-        match reload.is_busy() {
-            true => "the shaders are being compiled",
-            false => "",
-        }
-    }
-
-    #[cfg(not(feature = "shaderc"))]
-    fn reload_shaders(&mut self) -> &'static str {
-        ""
-    }
 }
 
 /// The title of a window that shows this file.
@@ -321,10 +285,9 @@ impl eframe::App for &mut App {
         let context = ui.ctx().clone();
         let whole = context.content_rect();
         let background = ui.painter().add(Shape::Noop);
-        let shaders = self.reload_shaders();
         self.reload_search();
         let words = self.painter.words.clone();
-        let covered = self.controls(ui, [&words, shaders]);
+        let covered = self.controls(ui, &words);
         if context.will_discard() {
             return; // the same frame comes again, laid out better
         }
@@ -352,7 +315,7 @@ impl eframe::App for &mut App {
             let picture = Shape::image(id, whole, all, Color32::WHITE);
             ui.painter().set(background, picture);
         }
-        self.overlay(&context, free, [&words, shaders]);
+        self.overlay(&context, free, &words);
         self.count(&context);
         if self.quit {
             context.send_viewport_cmd(ViewportCommand::Close);

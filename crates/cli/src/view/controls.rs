@@ -14,8 +14,8 @@ pub struct Told<'a> {
     pub times: &'a Times,
     /// The problem that the last values caused.
     pub problem: Option<&'a str>,
-    /// The numbers of an inspected picture, the state of shaders.
-    pub notes: [&'a str; 2],
+    /// The numbers of an inspected picture.
+    pub note: &'a str,
     pub undos: usize,
     /// The draw path of each object.
     pub draw_paths: &'a [DrawPath],
@@ -49,8 +49,8 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told, asked: &mut Asked) {
         ui.colored_label(egui::Color32::LIGHT_RED, text);
     }
     told.times.show(ui);
-    for note in told.notes.iter().filter(|note| !note.is_empty()) {
-        ui.label(*note);
+    if !told.note.is_empty() {
+        ui.label(told.note);
     }
     ui.horizontal(|ui| {
         asked.changed |= choice(ui, "stage", &mut shown.stage, &DrawStage::NAMES);
@@ -72,24 +72,6 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told, asked: &mut Asked) {
         let angle = Slider::new(&mut scene.camera.fov_y, 5.0..=120.0).text("fov_y");
         asked.changed |= ui.add(angle).changed();
     });
-}
-
-/// Number of lines of the compiler that are shown.
-#[cfg(feature = "shaderc")]
-const LINES: usize = 12;
-
-/// Shows in a window of its own why shaders do not compile.
-#[cfg(feature = "shaderc")]
-pub fn shader_problem(context: &egui::Context, text: &str) {
-    egui::Window::new("shaders: those before are kept")
-        .id(egui::Id::new("shaders"))
-        .anchor(egui::Align2::RIGHT_BOTTOM, [-8.0, -8.0])
-        .show(context, |ui| {
-            for line in text.lines().take(LINES) {
-                let line = egui::RichText::new(line).monospace();
-                ui.colored_label(egui::Color32::LIGHT_RED, line);
-            }
-        });
 }
 
 fn object(ui: &mut Ui, object: &mut Object) -> bool {

@@ -9,8 +9,6 @@ mod legend;
 mod orbit;
 mod overlay;
 mod picture;
-#[cfg(feature = "shaderc")]
-mod reload;
 mod saved;
 mod screen;
 mod search_reload;
@@ -58,11 +56,6 @@ pub struct View {
     /// Quantity to show: color, depth, normals, steps, or error against the reference
     #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&shown::Inspected::NAMES))]
     show: shown::Inspected,
-    /// Draw with the GLSL files of a folder, and with what becomes of them while the window is open
-    /// [default folder: that of the source tree]
-    #[cfg(feature = "shaderc")]
-    #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true, default_missing_value = reload::FOLDER)]
-    watch_shaders: Option<PathBuf>,
     /// Show so many frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,

@@ -75,14 +75,6 @@ impl Painter {
         &self.device
     }
 
-    /// Draws with other shaders from now on: those of the same device in another state.
-    #[cfg(feature = "shaderc")]
-    pub fn take(&mut self, device: Device) {
-        (self.offscreen, self.made) = (None, None);
-        self.compiled = device.pipelines_compiled();
-        self.device = device;
-    }
-
     /// The texture with the picture; `None` while the picture is outdated.
     pub fn texture(&self) -> Option<TextureId> {
         self.made.and(self.texture.as_ref()).map(TextureHandle::id)

@@ -9,7 +9,7 @@ use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
     Kind, Module, Search, Variant, depth_less, frozen, with_constant_textures, with_locations,
-    with_outputs_for, with_varying_textures, with_view_index, words,
+    with_outputs_for, with_varying_textures, words,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -135,10 +135,7 @@ impl Pipelines {
     ) -> Result<vk::Pipeline> {
         let [vertex, fragment] = modules;
         let fragments = self.words(variant, fragment, host)?;
-        let mut vertices = with_outputs_for(&self.words(variant, vertex, None)?, &fragments);
-        if pass.views > 1 {
-            vertices = with_view_index(&vertices);
-        }
+        let vertices = with_outputs_for(&self.words(variant, vertex, None)?, &fragments);
         let vertex = self.shader(&vertices, constants)?;
         let fragment = self.shader(&self.fragments(fragments, pass), constants)?;
         let stages = [
@@ -190,9 +187,7 @@ impl Pipelines {
                 depth,
                 stencil,
             } => {
-                let views = if pass.views > 1 { pass.views } else { 0 };
                 rendering = rendering
-                    .view_mask((1 << views) - 1)
                     .color_attachment_formats(color)
                     .depth_attachment_format(*depth)
                     .stencil_attachment_format(*stencil);

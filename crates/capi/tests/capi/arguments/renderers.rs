@@ -32,6 +32,7 @@ fn renderers_and_objects() {
             Usage, "1 attachments": make(&RevmapPass { planes: 1, ..pass }, 2);
             Usage, "stencil": make(&RevmapPass { stencil_format: color, ..pass }, 2);
             Usage, "7 is no RevmapPassKind": make(&RevmapPass { kind: 7, ..pass }, 2);
+            Usage, "views: 2 in one pass": make(&RevmapPass { views: 2, ..pass }, 2);
             Usage, "slope_bias": make(&RevmapPass { slope_bias: 1.0, slope_bias_limit: 1.0, ..pass }, 2);
             Usage, "factor": make(&RevmapPass { slope_bias: -1.0, ..pass }, 2);
             Usage, "pass is null": make(&RevmapPass { kind: 1, ..pass }, 2);
@@ -164,7 +165,7 @@ fn renderers_and_objects() {
             ..ranged([0.2, 0.7])
         };
         fail! {
-            Usage, "view 1 of a pass with 1": revmap_renderer_prepare(renderer, some, 0, &second);
+            Usage, "layer 1 of a pass": revmap_renderer_prepare(renderer, some, 0, &second);
             Content, "depth range": revmap_renderer_prepare(renderer, some, 0, &ranged([0.7, 0.2]));
             Content, "depth range": revmap_renderer_prepare(renderer, some, 0, &ranged([0.0, f64::NAN]));
             Content, "viewport": revmap_renderer_prepare(renderer, some, 0, &wide);
