@@ -97,6 +97,10 @@ fn shadows_are_the_references() {
             // surface), and `live` rounds the table's rim. A caster without its offset or its
             // replicas changes a quarter of its shadow or more.
             assert!(dark > 1500 && 8 * off <= dark, "{what}");
+            // Stages are compared in `agreement.rs`, too: here casters of several kinds are enough.
+            if name != "beveled, and replicas beside" {
+                continue;
+            }
             let fragment = from_boxes(settings);
             let (boxes, mut tiles) = (draw(&scene, &fragment), draw(&scene, &in_compute(fragment)));
             // Tiles search the nearer solid first, and leave out what is behind its hit.
