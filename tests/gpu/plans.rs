@@ -1,6 +1,5 @@
 //! Renderers of many objects. The random host (`tests/soak`) prepares several views at a time,
 //! changes objects after `prepare` and records old tokens.
-#![allow(unsafe_code)]
 
 use crate::common::host::{HostBuffer, borrow, once, open, renderer_of, target, view_of};
 use crate::common::{eye, placement, scene_of, shapes};
