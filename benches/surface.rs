@@ -1,24 +1,21 @@
-//! What it costs to make contour, patches and tables anew, and to walk them: `cargo bench --bench
+//! What it costs to make contour, patches and tables anew, and to cast rays: `cargo bench --bench
 //! patches`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/common/shapes.rs"]
 #[allow(dead_code)]
 mod shapes;
-#[path = "../tests/common/walk.rs"]
-#[allow(dead_code)]
-mod walk;
 
 use divan::{Bencher, black_box};
-use glam::{DVec2, DVec3};
-use revmap::profile::Outline;
-use revmap::scene::Offset;
+use glam::DVec3;
+use revmap::cast::RayCaster;
+use revmap::profile::{Outline, Profile};
+use revmap::scene::{Object, Offset};
 use revmap::surface::{
     Contour, ContourSource, FitOptions, ProxyHull, ProxyHullOptions, QuadricPatch, ROWS, Tables,
     fit_patches,
 };
 use revmap_files::ProfileAxis;
-use walk::trace_patches;
 
 fn main() {
     divan::main();
@@ -121,15 +118,16 @@ fn picture(bencher: Bencher) {
     bencher.bench(|| revmap_files::trace(black_box(&raster).clone()));
 }
 
-/// One ray.
-#[divan::bench(args = [64, 128, ROWS])]
-fn ray(bencher: Bencher, rows: u32) {
-    let tables = Tables::new(&patches_of("king"), rows);
+/// One ray of the CPU's caster.
+#[divan::bench]
+fn ray(bencher: Bencher) {
+    let profile = Profile::new(outline("king"), 0.5);
+    let caster = RayCaster::new(&Object::new("king", profile.into())).unwrap();
     let mut k = 0u32;
     bencher.bench_local(|| {
         k += 1;
         let aim = DVec3::new(0.1, 0.05, (f64::from(k) * 0.618).fract());
         let origin = DVec3::new(2.0, (f64::from(k) * 0.7548).fract() - 0.5, 1.0);
-        trace_patches(&tables, 0.5, DVec2::ZERO, origin, aim - origin)
+        caster.cast(origin, aim - origin)
     });
 }

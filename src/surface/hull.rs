@@ -37,7 +37,7 @@
 //! number, and an index buffer repeats them. Corner `v` has `frustum = v / (6 n)` and `side = v %
 //! (6 n) / 6`. The number `v % 6` selects one of `A_side, A_side+1, B_side+1, A_side, B_side+1,
 //! B_side`, where ring `A` is `from`, `B` is `to`, and corner `s` is at the azimuth `2 pi s / n`.
-//! Counter-clockwise is front. `tests/common/walk.rs` does the same on the CPU.
+//! Counter-clockwise is front.
 
 use super::QuadricPatch;
 use super::cavity_culling::CavityCulling;

@@ -15,8 +15,7 @@
 //!   rows (level 1), of each 16, and so on. `levels[l]` is the start of level `l`. An empty node is
 //!   `[+inf, -inf]`. The topmost level has at most 4 nodes.
 //!
-//! All extents are rounded outwards, by a millionth. `tests/common/walk.rs` describes the walk and
-//! performs it as the shader does.
+//! All extents are rounded outwards, by a millionth. `include/search/quadric.glsl` performs the walk.
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};

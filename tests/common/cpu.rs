@@ -6,5 +6,3 @@ pub mod rays;
 pub mod samples;
 #[allow(dead_code)] // some are for real profiles, which are drawings
 pub mod shapes;
-#[allow(dead_code)]
-pub mod walk;

@@ -2,15 +2,20 @@
 
 use crate::common::samples;
 use crate::common::shapes::offset;
-use crate::common::walk::guards;
 use glam::DVec2;
 use proptest::prelude::*;
 use revmap::error::ErrorKind;
 use revmap::profile::Outline;
 use revmap::scene::Offset;
 use revmap::surface::{
-    Contour, ContourSource, FitOptions, MOST_SEGMENTS, ROWS, Tables, fit_patches,
+    Contour, ContourSource, FitOptions, MOST_SEGMENTS, QuadricPatch, ROWS, Tables, fit_patches,
 };
+
+/// Returns true if a point of the quadric belongs to the patch.
+fn guards(patch: &QuadricPatch, square: f64, z: f64) -> bool {
+    let [cz, cr, low, high] = patch.guard;
+    (low..=high).contains(&(cz * z + cr * square))
+}
 
 /// Twice the winding number of the boundary round a point, with the axis as boundary: 2 inside.
 fn turns(contour: &Contour, q: DVec2) -> f64 {

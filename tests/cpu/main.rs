@@ -9,3 +9,15 @@ mod cast;
 mod contours;
 mod hull_rays;
 mod surface;
+
+/// The smallest scene and the smallest program stand in the documents as they are.
+#[test]
+fn documents_show_what_is_there() {
+    let shown = |page: &str, text: &str| assert!(page.contains(text.trim()), "{text}");
+    let scene = include_str!("../../assets/scenes/smallest.toml");
+    shown(include_str!("../../README.md"), scene);
+    let (_, program) = include_str!("../../examples/smallest.rs")
+        .split_once('\n')
+        .unwrap();
+    shown(include_str!("../../docs/embedding.md"), program);
+}

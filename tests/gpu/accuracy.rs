@@ -1,10 +1,8 @@
-//! Pictures compared with the reference in double precision, also from unusual viewpoints.
+//! Pictures of circle tracing compared with the reference in double precision. `revmap stability` has
+//! unusual viewpoints.
 
 use crate::common::ways::STAGES;
-use crate::common::{
-    assert_sound, draw, errors, eye, placement, reference, scene_of, shapes, sized,
-};
-use glam::DVec3;
+use crate::common::{draw, errors, eye, placement, reference, scene_of, shapes, sized};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{Planes, Settings};
 use revmap_searches::CIRCLE;
@@ -41,76 +39,24 @@ const LIMITS: [(&str, f64, f64, f64); 8] = [
 fn circle_tracing_on_an_exact_map_is_accurate() {
     let mut failures = Vec::new();
     for ((name, profile), (_, wrong, p99, degrees)) in shapes::all().into_iter().zip(LIMITS) {
-        for elevation in [0.0, 30.0, 65.0] {
-            for scale in [[1.0; 3], [2.0, 0.5, 1.0]] {
-                let mut scene = scene_of(profile.clone(), eye(elevation, 2.2));
-                scene.objects[0].placement = placement([0.0; 3], [0.0; 3], scale);
-                let truth = reference(&scene, &precise());
-                let frame = draw(&scene, &precise());
-                let c = errors(&truth, &frame, 1024);
-                let (depth, normal) = (c.depth.unwrap(), c.normal.unwrap());
-                let what = format!(
-                    "{name:6} at {elevation:2} degrees, scale {scale:?}: {:5} hits, {:2} missed, {:2} ghosts, depth p99 {:6.3} texels, normals {:5.2} degrees rms",
-                    c.hits, c.missed, c.ghost, depth.p99, normal.rms
-                );
-                println!("{what}");
-                if c.wrong() > wrong || depth.p99 > p99 || normal.rms > degrees {
-                    failures.push(what);
-                }
+        for (elevation, scale) in [(0.0, [1.0; 3]), (30.0, [2.0, 0.5, 1.0]), (65.0, [1.0; 3])] {
+            let mut scene = scene_of(profile.clone(), eye(elevation, 2.2));
+            scene.objects[0].placement = placement([0.0; 3], [0.0; 3], scale);
+            let truth = reference(&scene, &precise());
+            let frame = draw(&scene, &precise());
+            let c = errors(&truth, &frame, 1024);
+            let (depth, normal) = (c.depth.unwrap(), c.normal.unwrap());
+            let what = format!(
+                "{name:6} at {elevation:2} degrees, scale {scale:?}: {:5} hits, {:2} missed, {:2} ghosts, depth p99 {:6.3} texels, normals {:5.2} degrees rms",
+                c.hits, c.missed, c.ghost, depth.p99, normal.rms
+            );
+            println!("{what}");
+            if c.wrong() > wrong || depth.p99 > p99 || normal.rms > degrees {
+                failures.push(what);
             }
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-/// Viewpoints within the box, within the solid, on the axis and along it.
-#[test]
-fn strange_viewpoints_give_right_pictures() {
-    // Names, solids, eyes and targets.
-    let views = "
-        within the box                | torus  | 0 0.05 0.52  | 0.3 0.1 0.5
-        between wall and box          | glass  | 0.45 0.1 0.8 | 0 0 0.5
-        within the solid              | sphere | 0.1 0.05 0.4 | 1 0.3 0.6
-        within the solid, on the axis | vase   | 0 0 0.5      | 1 0 0.5
-        down the axis                 | glass  | 0 0 2.5      | 0 0 0.5
-        down the axis, within the box | glass  | 0 0 0.98     | 0 0 0.5
-        up the axis, within the solid | cone   | 0 0 0.2      | 0 0 0.5
-        in the plane of a disc        | discs  | 1.4 0 0.5    | 0 0 0.5
-        on the box's face             | jewel  | 0.5 0 0.7    | 0 0 0.5";
-    let point = |text: &str| {
-        let numbers: Vec<f64> = text.split(' ').map(|n| n.parse().unwrap()).collect();
-        DVec3::from_slice(&numbers)
-    };
-    for row in views.trim().lines() {
-        let cells: Vec<_> = row.split('|').map(str::trim).collect();
-        let (name, eye, target) = (cells[0], point(cells[2]), point(cells[3]));
-        let (_, profile) = shapes::all().into_iter().find(|s| s.0 == cells[1]).unwrap();
-        let mut scene = scene_of(profile, eye);
-        scene.camera.target = target;
-        if eye.truncate() == target.truncate() {
-            scene.camera.up = DVec3::Y;
-        }
-        scene.camera.fov_y = 70.0;
-        let truth = reference(&scene, &precise());
-        for stage in STAGES {
-            let frame = draw(&scene, &Settings { stage, ..precise() });
-            assert_sound(&frame, name);
-            let c = errors(&truth, &frame, 1024);
-            let (depth, normal) = (c.depth.unwrap(), c.normal.unwrap());
-            println!(
-                "{name}, {stage:?}: {} hits, {} missed, {} ghosts, depth p99 {:.3}, normals {:.2}",
-                c.hits, c.missed, c.ghost, depth.p99, normal.rms
-            );
-            assert!(c.hits > 1000, "{name}: {} hits", c.hits);
-            assert!(c.wrong() <= 0.005, "{name}: {c}");
-            // Rays in the planes of discs graze them: one texel is allowed (measured, llvmpipe
-            // 22.3.6).
-            assert!(depth.p99 <= 1.0, "{name}: depth p99 {}", depth.p99);
-            // Many visible points are at a crease in a view straight down on a glass or edge on to
-            // discs (measured, llvmpipe 22.3.6).
-            assert!(normal.rms <= 7.0, "{name}: normals {}", normal.rms);
-        }
-    }
 }
 
 /// A colour-only picture equals that with all planes, up to rounding in the last of 8 bits.

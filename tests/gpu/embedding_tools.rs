@@ -1,67 +1,17 @@
-//! Tools for hosts: objects that stay hidden until their pipelines are compiled, statistics of a
-//! frame, labels of its commands, two renderers recorded on two threads.
+//! Tools for hosts: labels of a frame's commands, two renderers recorded on two threads.
 #![allow(unsafe_code)]
 
 use crate::common::host::{
     self, Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
 };
-use crate::embedding::{drawn, options, renderer, three};
+use crate::embedding::{options, renderer, three};
 use ash::vk;
-use glam::{DMat4, Vec3};
-use revmap::gpu::{FrameStatistics, Output, PreparedFrame, Renderer, View};
+use glam::DMat4;
+use revmap::gpu::{Output, PreparedFrame, Renderer};
 use revmap::scene::Scene;
 use revmap::settings::SearchSettings;
-use std::cell::RefCell;
 use std::ffi::{CStr, c_char};
 use std::sync::Mutex;
-
-/// Draws a frame and returns its statistics.
-fn draw(stage: &mut Stage, renderer: &mut Renderer, view: &View) -> FrameStatistics {
-    let renderer = RefCell::new(renderer);
-    let mut statistics = FrameStatistics::default();
-    let drawn = stage.frame(
-        DMat4::IDENTITY,
-        Vec3::Z,
-        &[],
-        |cmd, slot| {
-            // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-            let frame = unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?;
-            statistics = frame.statistics();
-            Ok(frame)
-        },
-        // SAFETY: the frame was prepared, the pass has the output's formats.
-        |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
-    );
-    drawn.unwrap();
-    statistics
-}
-
-/// A renderer that hides compiles nothing while it prepares. What it leaves out appears once
-/// another thread has compiled it, without a change of the scene.
-#[test]
-fn objects_are_hidden_until_they_are_compiled() {
-    let host = open();
-    let device = borrow(&host);
-    let (options, scene) = (options(), three());
-    let view = view_of(&scene, &options);
-    let mut stage = Stage::new(&host, options).unwrap();
-    let mut made = renderer(&device, &stage);
-    made.hide_until_compiled(true);
-    add(&mut made, &scene);
-    let before = device.pipelines_compiled();
-    let hidden = draw(&mut stage, &mut made, &view);
-    let (background, _) = stage.read().unwrap();
-    assert!(background.chunks(4).all(|p| p == &background[..4]), "drawn");
-    assert_eq!(device.pipelines_compiled(), before);
-    assert!(hidden.hidden > 0 && hidden.draws == 0, "{hidden:?}");
-    let warm = made.prewarm().unwrap();
-    std::thread::scope(|scope| scope.spawn(|| warm.compile()).join().unwrap()).unwrap();
-    let shown = draw(&mut stage, &mut made, &view);
-    let found = stage.read().unwrap();
-    assert_eq!((shown.hidden, shown.objects), (0, 3), "{shown:?}");
-    assert!(shown.draws > 0 && shown.slot_bytes > 0, "{shown:?}");
-    assert!(found == drawn(&host, &device, options, &scene, &view));
-}
 
 static LABELS: Mutex<Vec<String>> = Mutex::new(Vec::new());
 static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
@@ -136,7 +86,7 @@ fn commands_have_labels_where_a_host_enables_them() {
         }
         let mut made = renderer(&device, &stage);
         add(&mut made, &scene);
-        draw(&mut stage, &mut made, &view);
+        host::frame(&mut stage, &mut made, &view, DMat4::IDENTITY, &[]);
         stage.wait().unwrap();
         let labels = std::mem::take(&mut *LABELS.lock().unwrap());
         let names = std::mem::take(&mut *NAMES.lock().unwrap());

@@ -7,7 +7,7 @@ use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{DepthTest, Device, DrawPath, Output, PassFormats, Renderer, View};
 use revmap::scene::Scene;
-use revmap::settings::SearchSettings;
+use revmap::settings::{Planes, SearchSettings};
 
 fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
     let output = Output::Pass(PassFormats {
@@ -55,6 +55,17 @@ fn a_view_shows_the_objects_of_its_mask() {
         let hidden = |n: &usize| paths[*n] == DrawPath::Nothing;
         assert_eq!((0..3).filter(hidden).count(), 2, "{paths:?}");
     }
+    // In compute, too.
+    let output = Output::Compute(Planes::Color);
+    let mut compute = Renderer::new(&device, output, &SearchSettings::exact(), 1).unwrap();
+    for (number, id) in host::add(&mut compute, &scene).into_iter().enumerate() {
+        compute.set_mask(id, 1 << number).unwrap();
+    }
+    compute.plan(&view.with_mask(5)).unwrap();
+    let hidden: Vec<_> = (compute.draw_paths().into_iter())
+        .map(|path| path == DrawPath::Nothing)
+        .collect();
+    assert_eq!(hidden, [false, true, false]);
     some.set_mask(ids[2], 4).unwrap();
     frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);
     frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);

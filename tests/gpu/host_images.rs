@@ -1,5 +1,5 @@
-//! Images of the host as textures: those with the texels of a map give the map's picture, and change
-//! between frames in flight.
+//! Images of the host as textures: those with the texels of a map give the map's picture. The random
+//! host (`tests/soak`) changes them between frames in flight.
 #![allow(unsafe_code)]
 
 use crate::common::host::{self, Host, Mesh, Stage, Texture, borrow, frame, open};
@@ -142,50 +142,6 @@ fn an_image_of_heights_gives_the_picture_of_its_slopes() {
         assert!(of_heights <= 20, "{of_heights} of {none}");
         assert!(back == wanted);
     }
-}
-
-/// An image that is replaced between frames in flight is held until the slots are prepared again, and
-/// may then be destroyed. A set of textures of a destroyed image is never bound again.
-#[test]
-fn images_change_between_frames_in_flight() {
-    let host = open();
-    let device = borrow(&host);
-    let scene = close();
-    let mut stage = Stage::new(&host, options()).unwrap();
-    let mut made = renderer(&device, &stage);
-    made.set_lighting(&scene.lighting()).unwrap();
-    let id = made.add(scene.objects[0].clone()).unwrap();
-    let mut waiting: Vec<(HostImage, Texture)> = Vec::new();
-    let mut destroyed = 0;
-    for n in 0..8u8 {
-        let shade = [30 * n, 255 - 30 * n, 40, 255];
-        let texture = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &colors(|_, _| shade));
-        let image = texture.image();
-        made.set_color_image(id, Some(image.clone())).unwrap();
-        waiting.push((image, texture));
-        let picture = next(&mut stage, &mut made);
-        let mut alone = scene.objects[0].clone();
-        alone.color = [0, 1, 2].map(|k| {
-            let linear = revmap::frame::linear_from_srgb(f64::from(shade[k]) / 255.0);
-            linear as f32
-        });
-        let wanted = drawn(&host, &device, &alone, |_, _| {});
-        assert!(differ(&wanted, &picture) < 60, "frame {n}");
-        let before = waiting.len();
-        waiting.retain(|(image, _)| image.is_held());
-        destroyed += before - waiting.len();
-        assert!(
-            (1..=host::FRAMES).contains(&waiting.len()),
-            "frame {n}: {}",
-            waiting.len()
-        );
-    }
-    assert_eq!(destroyed, 8 - host::FRAMES);
-    made.remove(id).unwrap();
-    for _ in 0..host::FRAMES {
-        next(&mut stage, &mut made);
-    }
-    assert!(waiting.iter().all(|(image, _)| !image.is_held()));
 }
 
 /// Null handles and objects of other renderers are refused.

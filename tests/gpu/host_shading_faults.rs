@@ -228,23 +228,3 @@ fn pipelines_are_prewarmed_and_told_apart() {
     let drawn = || shown[1].chunks(4).filter(|pixel| pixel[3] != 0);
     assert!(drawn().count() > 3000 && drawn().all(|pixel| pixel == [255, 0, 0, 255]));
 }
-
-/// A shading from bytes draws what the compiled one draws.
-#[test]
-fn bytes_draw_what_was_compiled() {
-    let host = open();
-    let device = borrow(&host);
-    let scene = scene();
-    let set = UniformSet::of(&host, &lights(&scene)).unwrap();
-    for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let compiled = shading(stage, COPY);
-        let bytes = compiled.to_bytes().unwrap();
-        println!("{stage:?}: {} bytes", bytes.len());
-        let read = Arc::new(Shading::from_bytes(&bytes).unwrap());
-        let [a, b] = [&compiled, &read].map(|by| {
-            let by = Some((by, &set));
-            picture(&host, &device, &scene, &SearchSettings::exact(), stage, by).0
-        });
-        assert!(a == b && a.iter().any(|byte| *byte != 0));
-    }
-}

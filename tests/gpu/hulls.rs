@@ -128,17 +128,22 @@ fn offsets_in_motion() {
 /// Fragments of cells before a side draw the cut there; the box is drawn if the solid fills it.
 #[test]
 fn what_the_box_cuts() {
-    for (name, profile) in shapes::all() {
-        for (extend, axis) in [
+    // Each shape is cut in four ways, each way is seen from two of four sides.
+    const SIDES: [f64; 4] = [-50.0, 0.0, 30.0, 89.5];
+    for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
+        for (k, (extend, axis)) in [
             (0.0, [0.3, 0.62]),
             (0.12, [0.5, 0.5]),
             (0.25, [0.4, 0.5]),
             (0.5, [0.45, 0.55]),
-        ] {
+        ]
+        .into_iter()
+        .enumerate()
+        {
             let fills = profile.outline.bounds().unwrap().r_max + extend > 1.5 * profile.radius;
             let box_alone: Ways = [&[DrawPath::Box], &[DrawPath::Tiles]];
             let ways = if fills { box_alone } else { WRAPPED };
-            for elevation in [-50.0, 0.0, 30.0, 89.5] {
+            for elevation in [SIDES[(n + k) % 4], SIDES[(n + k + 2) % 4]] {
                 let mut scene = scene_of(profile.clone(), eye(elevation, 2.8));
                 let object = &mut scene.objects[0];
                 object.clip = Clip::Box;

@@ -9,7 +9,6 @@ mod random;
 mod accuracy;
 mod agreement;
 mod antialias;
-mod bitmaps;
 mod bumps;
 #[allow(unsafe_code)]
 mod calls;
@@ -30,8 +29,6 @@ mod exhausted;
 mod extremes;
 mod fallback;
 mod forward_host;
-mod gallery;
-mod golden;
 mod host_images;
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 mod host_shading;
@@ -55,7 +52,6 @@ mod shadowed_host;
 mod shadows;
 mod small_copies;
 mod small_device;
-mod smallest;
 mod spirv;
 mod submissions;
 mod texturing;

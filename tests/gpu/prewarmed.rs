@@ -2,7 +2,7 @@
 //! technique. General and special forms draw the same bits.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Checked, Host, add, borrow, never, open, view_of};
+use crate::common::host::{Checked, Host, borrow, never, open, view_of};
 use crate::common::ways::STAGES;
 use crate::common::{placement, shapes};
 use crate::embedding::{hundred, options, three};
@@ -128,100 +128,6 @@ fn no_parameter_compiles_a_pipeline() {
                 warm.update(&scene, name);
             }
         }
-    }
-}
-
-/// An offset that moves a solid past the sides of its box, so that they cut it.
-#[test]
-fn no_cut_compiles_a_pipeline() {
-    let (host, device) = opened();
-    for stage in STAGES {
-        let mut scene = vase();
-        scene.objects[0].clip = Clip::Box;
-        let search = SearchSettings {
-            proxy_min_pixels: 0,
-            ..exact()
-        };
-        let mut warm = Warm::new(&host, &device, (stage, &search), &scene);
-        for extend in [0.0, 0.01, 0.2, 0.3] {
-            scene.objects[0].offset.extend = extend;
-            warm.update(&scene, &format!("{extend}"));
-        }
-    }
-}
-
-/// A crowd that the box cuts becomes whole, and is cut again.
-#[test]
-fn a_crowd_that_becomes_whole_compiles_nothing() {
-    let (host, device) = opened();
-    for stage in STAGES {
-        let mut scene = hundred();
-        scene.objects[1].clip = Clip::Box;
-        scene.objects[1].offset.extend = 0.2;
-        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
-        for extend in [0.2, -0.05, 0.2] {
-            scene.objects[1].offset.extend = extend;
-            warm.update(&scene, &format!("{extend}"));
-        }
-    }
-}
-
-/// Masks show one, several or none of the objects of a look.
-#[test]
-fn masks_compile_nothing_and_hide_nothing_else() {
-    let (host, device) = opened();
-    for stage in STAGES {
-        let mut scene = three();
-        scene.objects.push(scene.objects[0].clone());
-        scene.objects[3].placement.position.y = 1.4;
-        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
-        for (n, id) in warm.drawn.ids.clone().into_iter().enumerate() {
-            warm.drawn.renderer.set_mask(id, 1 << n).unwrap();
-        }
-        for mask in [15u32, 1, 8, 9, 6, 15, 4, 0] {
-            warm.drawn.view = view_of(&scene, &options()).with_mask(mask);
-            let shown = warm.frame(&format!("mask {mask}"));
-            assert_eq!(shown.objects, mask.count_ones(), "{stage:?}, mask {mask}");
-        }
-    }
-}
-
-/// Objects of a look come and go, one, many and none.
-#[test]
-fn other_objects_of_a_look_compile_nothing() {
-    let (host, device) = opened();
-    for stage in STAGES {
-        let scene = vase();
-        let mut warm = Warm::new(&host, &device, (stage, &exact()), &scene);
-        let mut more: Vec<Object> = vec![scene.objects[0].clone(); 40];
-        for (n, object) in more.iter_mut().enumerate() {
-            object.placement.position = DVec3::new(-0.3 * n as f64, 0.7, 0.1);
-        }
-        let objects = more[..1].to_vec();
-        let one = add(
-            &mut warm.drawn.renderer,
-            &Scene {
-                objects,
-                ..scene.clone()
-            },
-        );
-        assert_eq!(warm.frame("a second object").objects, 2);
-        warm.drawn.renderer.remove(one[0]).unwrap();
-        assert_eq!(warm.frame("one object again").objects, 1);
-        let all = add(
-            &mut warm.drawn.renderer,
-            &Scene {
-                objects: more,
-                ..scene
-            },
-        );
-        warm.frame("many objects");
-        warm.drawn.renderer.remove(warm.drawn.ids[0]).unwrap();
-        warm.frame("without the first");
-        for id in all {
-            warm.drawn.renderer.remove(id).unwrap();
-        }
-        assert_eq!(warm.frame("no object").objects, 0);
     }
 }
 

@@ -1,14 +1,13 @@
-//! Replicas in a box give the same picture as the same number of single solids.
+//! Replicas in a box, compared with the reference, whose replicas are single solids
+//! (`crates/reference/src/tests/crowds.rs`).
 
 use crate::common::passing::count;
 use crate::common::{draw, hits, placement, reference, scene_of, shapes, sized};
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::MapFormat;
-use revmap::profile::{Outline, Profile};
-use revmap::scene::{Clip, Object, Placement, Scene};
+use revmap::scene::{Object, Placement, Scene};
 use revmap::settings::{Settings, Solver};
-use std::sync::Arc;
 
 const COUNT: [u32; 3] = [3, 3, 2];
 const ROWS: u32 = 512;
@@ -22,65 +21,10 @@ fn settings(solver: Solver) -> Settings {
     }
 }
 
-/// The profile turned upside down within its box.
-fn flipped(profile: &Profile) -> Profile {
-    let turn = |points: &Vec<glam::DVec2>| {
-        // Reversing the order of points keeps the orientation of loops.
-        let turned = points.iter().rev();
-        turned.map(|p| glam::DVec2::new(p.x, 1.0 - p.y)).collect()
-    };
-    let loops = profile.outline.loops.iter().map(turn).collect();
-    Profile::new(Outline { loops }, profile.radius)
-}
-
-/// The box's cells as separate objects: one object for each kind of reflection, one instance for
-/// each cell.
-fn singles(replicas: &Object) -> Vec<Object> {
-    let n = COUNT.map(f64::from);
-    let upright = replicas.profile.clone();
-    let upturned = Arc::new(flipped(&upright));
-    let radius = upright.radius;
-    let mut objects = Vec::new();
-    for kind in 0..8u32 {
-        let reflected = [0, 1, 2].map(|k| kind >> k & 1 == 1);
-        let profile = if reflected[2] { &upturned } else { &upright };
-        let mut object = Object::new("single", profile.clone());
-        object.offset = replicas.offset;
-        object.texturing = replicas.texturing.clone();
-        object.axis = [0, 1].map(|k| match reflected[k] {
-            true => 1.0 - replicas.axis[k],
-            false => replicas.axis[k],
-        });
-        for cell in 0..COUNT.iter().product::<u32>() {
-            let [nx, ny, _] = COUNT;
-            let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
-            if (0..3).any(|k| (replicas.mirror[k] && at[k] % 2 == 1) != reflected[k]) {
-                continue;
-            }
-            let at = at.map(f64::from);
-            let own = DVec3::new(
-                (2.0 * (at[0] + 0.5) / n[0] - 1.0) * radius,
-                (2.0 * (at[1] + 0.5) / n[1] - 1.0) * radius,
-                at[2] / n[2],
-            );
-            let outer = replicas.placement;
-            object.instances.push(Placement {
-                position: outer.position + outer.rotation * (outer.scale * own),
-                rotation: outer.rotation,
-                scale: outer.scale / DVec3::from_array(n),
-            });
-        }
-        if !object.instances.is_empty() {
-            objects.push(object);
-        }
-    }
-    objects
-}
-
-/// Pixels that differ: by a hit, by more than a texel of depth, or by more than 2 degrees of
-/// normal.
-fn differences(a: &Frame, b: &Frame, texel: f64) -> [usize; 3] {
-    let mut found = [0; 3];
+/// Pixels that differ: by a hit, by more than a texel of depth, by more than 2 degrees of normal, or
+/// by the place in the texture.
+fn differences(a: &Frame, b: &Frame, texel: f64) -> [usize; 4] {
+    let mut found = [0; 4];
     for i in 0..a.pixels() {
         if a.hits(i) != b.hits(i) {
             found[0] += 1;
@@ -90,10 +34,13 @@ fn differences(a: &Frame, b: &Frame, texel: f64) -> [usize; 3] {
             continue;
         }
         let normal = |f: &Frame| DVec3::from_array(f.normal[i].map(f64::from));
+        let round = (a.uv[i][0] - b.uv[i][0]).abs();
         if f64::from((a.distance[i] - b.distance[i]).abs()) > texel {
             found[1] += 1;
         } else if normal(a).dot(normal(b)) < 2f64.to_radians().cos() {
             found[2] += 1;
+        } else if round.min(1.0 - round) > 1e-2 || (a.uv[i][1] - b.uv[i][1]).abs() > 1e-2 {
+            found[3] += 1;
         }
     }
     found
@@ -139,60 +86,37 @@ fn cases() -> Vec<(&'static str, Scene)> {
 }
 
 #[test]
-fn replicas_are_as_many_single_solids() {
+fn replicas_are_those_of_the_reference() {
     for (name, scene) in cases() {
-        let mut alone = scene.clone();
-        alone.objects = singles(&scene.objects[0]);
-        // Each cell cuts its solid.
-        alone.objects.iter_mut().for_each(|o| o.clip = Clip::Box);
-        let copies: usize = alone.objects.iter().map(|o| o.instances.len()).sum();
-        assert_eq!(copies, 18, "{name}");
-
         let texel = 1.0 / f64::from(ROWS);
         let truth = reference(&scene, &settings(Solver::DEFAULT));
         let hits = hits(&truth);
         assert!(hits > 4000, "{name}: {hits}");
         for solver in [Solver::Live, Solver::Quadric] {
-            let together = draw(&scene, &settings(solver));
-            let apart = draw(&alone, &settings(solver));
-            // A cell is half or a third of the box.
-            let found = differences(&together, &apart, texel / 3.0);
+            let frame = draw(&scene, &settings(solver));
+            let found = differences(&truth, &frame, texel);
             let what = format!("{name}, {}: {hits} hits; differ: {found:?}", solver.name());
             println!("{what}");
-            // The remaining differences come from rounding: neither picture is wrong by more than a
-            // texel.
-            assert!(found.iter().sum::<usize>() <= hits / 500, "{what}");
+            // `live` rounds edges within a texel.
+            let most = match solver {
+                Solver::Live => [hits / 200, hits / 100, hits / 12, hits / 100],
+                _ => [hits / 500; 4],
+            };
+            assert!(
+                found.iter().zip(most).all(|(found, most)| *found <= most),
+                "{what}"
+            );
             if scene.objects[0].placement == Placement::default() {
-                for (frame, which) in [(&together, "together"), (&apart, "apart")] {
-                    let c = count(&scene, &truth, frame, texel);
-                    println!("    {which}: {c:?}");
-                    assert_eq!((c.passed, c.made_up), (0, 0), "{what}, {which}");
-                }
+                let c = count(&scene, &truth, &frame, texel);
+                assert_eq!((c.passed, c.made_up), (0, 0), "{what}");
             }
         }
+        // A texture on the whole box would run once from 0 to 1 over its height.
+        let rows = |range: std::ops::Range<f32>| {
+            let within = |i: &usize| truth.hits(*i) && range.contains(&truth.uv[*i][1]);
+            (0..truth.pixels()).filter(within).count()
+        };
+        let [low, high] = [rows(0.0..0.3), rows(0.7..1.0)];
+        assert!(name != "plain" || low > 500 && high > 500);
     }
-}
-
-/// Each replica has the whole texture, like a single solid.
-#[test]
-fn textures_are_laid_on_each_replica() {
-    let (_, scene) = cases().remove(0);
-    let mut alone = scene.clone();
-    alone.objects = singles(&scene.objects[0]);
-    let [together, apart] = [&scene, &alone].map(|s| draw(s, &settings(Solver::DEFAULT)));
-    let both: Vec<usize> = (0..together.pixels())
-        .filter(|&i| together.hits(i) && apart.hits(i))
-        .collect();
-    let off = both.iter().filter(|&&i| {
-        let [a, b] = [together.uv[i], apart.uv[i]];
-        let round = (a[0] - b[0]).abs();
-        round.min(1.0 - round) > 1e-3 || (a[1] - b[1]).abs() > 1e-3
-    });
-    let (off, all) = (off.count(), both.len());
-    assert!(all > 4000 && off <= all / 500, "{off} of {all}");
-    // The coordinates of a single solid in the whole box would run once from 0 to 1 over its
-    // height.
-    let low = both.iter().filter(|&&i| together.uv[i][1] < 0.3).count();
-    let high = both.iter().filter(|&&i| together.uv[i][1] > 0.7).count();
-    assert!(low > 500 && high > 500);
 }

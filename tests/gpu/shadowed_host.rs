@@ -110,12 +110,14 @@ impl Truth {
         }
     }
 
-    /// The sun at pixels of the picture, each with its index.
+    /// The sun at every third pixel of the picture, each with its index.
     fn picture(&self) -> Vec<(usize, Sun)> {
         let [view, projection] = shadowed::view_and_projection();
         let back = (projection * view).inverse();
         let (width, height) = (OPTIONS.width as usize, OPTIONS.height as usize);
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let pixels = (0..width * height)
+            .step_by(3)
+            .map(|n| (n % width, n / width));
         let seen = pixels.map(|(x, y)| {
             let way = |[dx, dy]: [f64; 2]| {
                 let at = |size: usize, k: f64| 2.0 * k / size as f64 - 1.0;
@@ -158,13 +160,15 @@ fn solids_and_meshes_shadow_each_other() {
         println!("{differing} pixels differ, {} are wrong", wrong(picture));
         [differing, wrong(picture)]
     });
-    assert!(lit > 100_000 && shadow > 20_000, "{lit}, {shadow}");
+    assert!(lit > 33_000 && shadow > 6600, "{lit}, {shadow}");
     assert!(edge < (lit + shadow) / 10, "{edge} near an edge");
     assert!(counts[0][1] == 0 && counts[1][1] == 0, "{counts:?}");
     // 16 on lavapipe 22, 25 on lavapipe 25, 88 on SwiftShader.
     assert!(counts[1][0] < 150, "{counts:?}");
-    assert!(counts[2].into_iter().all(|n| n > 20_000), "{counts:?}");
-    assert!(counts[3].into_iter().all(|n| n > 4000), "{counts:?}");
+    // All pixels may differ, and a third is compared with the truth.
+    let shows = |[differing, wrong]: [usize; 2], most| differing > most && wrong > most / 3;
+    assert!(shows(counts[2], 20_000), "{counts:?}");
+    assert!(shows(counts[3], 4000), "{counts:?}");
 }
 
 /// The bytes of the example are what its GLSL gives.

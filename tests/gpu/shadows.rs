@@ -97,6 +97,10 @@ fn shadows_are_the_references() {
             // surface), and `live` rounds the table's rim. A caster without its offset or its
             // replicas changes a quarter of its shadow or more.
             assert!(dark > 1500 && 8 * off <= dark, "{what}");
+            // Stages are compared in `agreement.rs`, too: here casters of several kinds are enough.
+            if name != "beveled, and replicas beside" {
+                continue;
+            }
             let fragment = from_boxes(settings);
             let (boxes, mut tiles) = (draw(&scene, &fragment), draw(&scene, &in_compute(fragment)));
             // Tiles search the nearer solid first, and leave out what is behind its hit.
@@ -128,7 +132,8 @@ fn penumbra_error(truth: &Frame, frame: &Frame, lit: &Frame) -> (f64, usize) {
 /// another size, differs by much more.
 #[test]
 fn soft_shadows_are_the_references() {
-    for (name, mut scene) in cases() {
+    // A caster as it is, and casters with an offset and in replicas.
+    for (name, mut scene) in cases().into_iter().step_by(5) {
         scene.objects.iter_mut().for_each(|o| o.color = [0.8; 3]);
         scene.lights[0].radius = 6.0;
         let settings = sized(160, 120);
@@ -179,28 +184,26 @@ fn every_column_of_a_tile_is_lit_alike() {
             ..Light::default()
         });
     }
-    for shadow in [Shadow::Soft, Shadow::Hard] {
+    for (shadow, (width, height)) in [(Shadow::Soft, (161, 123)), (Shadow::Hard, (203, 77))] {
         scene.shadow = shadow;
-        for (width, height) in [(161, 123), (203, 77)] {
-            for solver in [CIRCLE, Solver::Live, Solver::Quadric, Solver::Exact] {
-                let [one, other] =
-                    STAGES.map(|stage| draw(&scene, &drawn_by((width, height), stage, solver)));
-                let columns = otherwise_by_column(&one, &other);
-                let name = format!("{shadow:?}, {width} x {height}, {}", solver.name());
-                // Rays of `live` start elsewhere in the two stages, which is visible at a
-                // silhouette.
-                let few = usize::from(solver == Solver::Live);
-                assert!(columns.iter().all(|&n| n <= few), "{name}: {columns:?}");
-                // The fault that this test detects: the first column is lit inside the shadow.
-                let mut planted = other;
-                let first = |k: &usize| (k % width as usize).is_multiple_of(8);
-                for k in (0..planted.pixels()).filter(first) {
-                    let [r, g, b, a] = planted.color[k];
-                    planted.color[k] = [r + 0.5, g + 0.5, b + 0.5, a];
-                }
-                let [first, rest @ ..] = otherwise_by_column(&one, &planted);
-                assert!(first > 100 && rest.iter().all(|&n| n <= few), "{name}");
+        for solver in [CIRCLE, Solver::Live, Solver::Quadric, Solver::Exact] {
+            let [one, other] =
+                STAGES.map(|stage| draw(&scene, &drawn_by((width, height), stage, solver)));
+            let columns = otherwise_by_column(&one, &other);
+            let name = format!("{shadow:?}, {width} x {height}, {}", solver.name());
+            // Rays of `live` start elsewhere in the two stages, which is visible at a
+            // silhouette.
+            let few = usize::from(solver == Solver::Live);
+            assert!(columns.iter().all(|&n| n <= few), "{name}: {columns:?}");
+            // The fault that this test detects: the first column is lit inside the shadow.
+            let mut planted = other;
+            let first = |k: &usize| (k % width as usize).is_multiple_of(8);
+            for k in (0..planted.pixels()).filter(first) {
+                let [r, g, b, a] = planted.color[k];
+                planted.color[k] = [r + 0.5, g + 0.5, b + 0.5, a];
             }
+            let [first, rest @ ..] = otherwise_by_column(&one, &planted);
+            assert!(first > 100 && rest.iter().all(|&n| n <= few), "{name}");
         }
     }
 }

@@ -63,7 +63,12 @@ fn bands_are_the_whole_frame() {
         .into_iter()
         .flat_map(|s| kinds.map(|k| (s.clone(), k)));
     for ((name, scene), (stage, planes, antialias, samples)) in all {
-        for proxy_min_pixels in [0, u32::MAX] {
+        let least: &[u32] = match name {
+            "three" => &[0, u32::MAX],
+            "copies" => &[0],
+            _ => &[u32::MAX],
+        };
+        for &proxy_min_pixels in least {
             let settings = Settings {
                 stage,
                 planes,

@@ -1,5 +1,5 @@
-//! What a host may do with a prepared frame: submit it never, prepare its slot twice in one command
-//! buffer, retry after a failure, record it twice. No texture and no object is lost.
+//! Retries after a failed `prepare`: no texture and no object is lost. The random host (`tests/soak`)
+//! drops frames, prepares slots twice in one command buffer and records frames twice.
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
@@ -35,11 +35,6 @@ fn with_maps(mut object: Object, seed: u32) -> Object {
     object.texturing.color_map = Some(Arc::new(colors.unwrap()));
     object.texturing.displacement_map = Some(Arc::new(slopes.unwrap()));
     object.texturing.bump = 0.02;
-    object
-}
-
-fn higher(mut object: Object) -> Object {
-    object.placement.position.z += 0.3;
     object
 }
 
@@ -167,87 +162,6 @@ pub fn differ(a: &[u8], b: &[u8]) -> usize {
     pairs.filter(|(a, b)| a != b).count()
 }
 
-/// Runs a test in both stages with the picture that a fresh renderer draws.
-fn in_both_stages(test: impl Fn(Drawn, &[u8], &str)) {
-    let host = open();
-    let device = borrow(&host);
-    let (scene, plain) = (textured(), three());
-    for stage in STAGES {
-        let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
-        let bare = Drawn::new(&host, &device, stage, &plain).picture(0);
-        let shown = differ(&wanted, &bare);
-        assert!(shown > 3000, "{stage:?}: textures show in {shown} pixels");
-        let drawn = Drawn::new(&host, &device, stage, &scene);
-        test(drawn, &wanted, &format!("{stage:?}"));
-    }
-}
-
-#[test]
-fn frames_that_are_never_submitted_lose_no_texture() {
-    in_both_stages(|mut drawn, wanted, stage| {
-        let host = drawn.host;
-        for dropped in [0, 1, 0, 0] {
-            never(host, |cmd| drawn.record(cmd, dropped, 1).unwrap());
-        }
-        for slot in [1, 0, 1] {
-            let found = drawn.picture(slot);
-            assert_eq!(differ(&found, wanted), 0, "{stage}, slot {slot}");
-        }
-    });
-}
-
-/// A frame is dropped after another one is in flight, and new textures come in between.
-#[test]
-fn a_dropped_frame_between_frames_in_flight_loses_no_texture() {
-    in_both_stages(|mut drawn, wanted, stage| {
-        let host = drawn.host;
-        assert_eq!(differ(&drawn.picture(0), wanted), 0, "{stage}");
-        let ids: Vec<_> = add(
-            &mut drawn.renderer,
-            &Scene {
-                objects: vec![higher(with_maps(three().objects[1].clone(), 5))],
-                ..three()
-            },
-        );
-        never(host, |cmd| drawn.record(cmd, 1, 1).unwrap());
-        let shown = drawn.picture(0);
-        assert!(differ(&shown, wanted) > 500, "{stage}");
-        never(host, |cmd| drawn.record(cmd, 0, 0).unwrap());
-        assert_eq!(differ(&drawn.picture(1), &shown), 0, "{stage}");
-        drawn.renderer.remove(ids[0]).unwrap();
-        assert_eq!(differ(&drawn.picture(0), wanted), 0, "{stage}");
-    });
-}
-
-/// A host plans, changes its mind and plans again before it submits.
-#[test]
-fn a_slot_is_prepared_again_in_the_same_commands() {
-    in_both_stages(|mut drawn, wanted, stage| {
-        let host = drawn.host;
-        drawn.clear();
-        once(host, |cmd| {
-            drawn.record(cmd, 0, 0).unwrap();
-            // Other textures, more objects, then those of before.
-            let more = (0..40).map(|n| with_maps(three().objects[1].clone(), n));
-            let objects = more.collect();
-            let ids = add(&mut drawn.renderer, &Scene { objects, ..three() });
-            drawn.record(cmd, 0, 0).unwrap();
-            for id in ids {
-                drawn.renderer.remove(id).unwrap();
-            }
-            drawn.record(cmd, 0, 1).unwrap();
-        });
-        assert_eq!(differ(&drawn.read(), wanted), 0, "{stage}");
-        for slot in [1, 0] {
-            assert_eq!(
-                differ(&drawn.picture(slot), wanted),
-                0,
-                "{stage}, slot {slot}"
-            );
-        }
-    });
-}
-
 /// Each Vulkan call that fails in the first `prepare` is an error; the retry draws everything. The
 /// commands of the failed call are dropped or submitted.
 #[test]
@@ -364,27 +278,4 @@ fn one_wrong_object_hides_no_other() {
     renderer.remove(last).unwrap();
     assert_eq!(shown(&mut renderer).unwrap(), 4);
     assert!(renderer.object(good).is_ok());
-}
-
-/// A frame of compute is recorded twice, with the documented barrier between.
-#[test]
-fn a_frame_is_recorded_twice() {
-    in_both_stages(|mut drawn, wanted, stage| {
-        let host = drawn.host;
-        drawn.clear();
-        once(host, |cmd| drawn.record(cmd, 0, 2).unwrap());
-        assert_eq!(differ(&drawn.read(), wanted), 0, "{stage}");
-    });
-    // Lists of patches are counted in bins, which the second recording clears again.
-    let host = open();
-    let device = borrow(&host);
-    let search = SearchSettings {
-        proxy_min_pixels: 0,
-        ..SearchSettings::exact()
-    };
-    let mut drawn = Drawn::by(&host, &device, DrawStage::Compute, &three(), &search);
-    let wanted = drawn.picture(0);
-    drawn.clear();
-    once(&host, |cmd| drawn.record(cmd, 1, 2).unwrap());
-    assert_eq!(differ(&drawn.read(), &wanted), 0);
 }

@@ -96,43 +96,6 @@ fn a_map_that_cannot_be_baked_changes_nothing() {
     device().check().unwrap();
 }
 
-/// Objects come and go, change their profile and number of copies. The frame equals that of a new
-/// renderer.
-#[test]
-fn other_objects_are_taken_over() {
-    type Change = (&'static str, fn(&mut Scene));
-    let changes: [Change; 5] = [
-        ("three instances", |s| {
-            s.objects[0].instances = (0..3)
-                .map(|n| placement([0.0, 0.7 * f64::from(n) - 0.7, 0.0], [0.0; 3], [0.6; 3]))
-                .collect();
-        }),
-        ("another object", |s| {
-            s.objects.push(Object::new("ball", shapes::sphere().into()));
-            s.objects[1].placement.position.y = 1.0;
-        }),
-        ("another profile", |s| {
-            s.objects[0].profile = shapes::glass().into()
-        }),
-        ("one instance", |s| s.objects[0].instances.clear()),
-        ("one object", |s| {
-            s.objects.remove(0);
-        }),
-    ];
-    for stage in STAGES {
-        let mut scene = vase();
-        let mut renderer = Offscreen::new(device(), &scene, &settings(stage)).unwrap();
-        next_frame(&mut renderer);
-        for (what, change) in changes {
-            change(&mut scene);
-            let kept = updated(&mut renderer, &scene);
-            let fresh = draw(&scene, &settings(stage));
-            assert_eq!(fresh.first_difference(&kept), None, "{stage:?}: {what}");
-        }
-    }
-    device().check().unwrap();
-}
-
 /// A vase, a second equal vase, and a sphere, side by side.
 fn three() -> Scene {
     let mut scene = scene_of(shapes::vase(), eye(25.0, 4.0));

@@ -1,6 +1,5 @@
 // Intersects the ray of a fragment with the patches of its cell, without branches unless the box cuts the solid.
-// src/surface/hull.rs defines cells and proves that no ray is lost; `trace_hull` of tests/common/walk.rs is the CPU twin
-// for whole solids.
+// src/surface/hull.rs defines cells and proves that no ray is lost.
 #ifndef CELL_GLSL
 #define CELL_GLSL
 #extension GL_EXT_control_flow_attributes : require

@@ -1,6 +1,6 @@
 // The quadric search. The solid's boundary is a set of patches of quadrics of revolution, sorted into rows of equal
 // height. A 4-ary tree over the rows holds their ranges of r^2. Rays and patches are parabolas in (z, r^2). Rows are
-// visited in order of t. src/surface/rows.rs defines the layout; tests/common/walk.rs is the CPU twin of this file.
+// visited in order of t. src/surface/rows.rs defines the layout.
 //
 // The search is exact up to rounding. It has no step size, no threshold and no limit on steps.
 #ifndef SEARCH_QUADRIC_GLSL

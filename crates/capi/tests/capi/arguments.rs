@@ -48,9 +48,7 @@ fn profiles_and_textures() {
             Usage, "points is null": revmap_profile_from_points(null(), 3, 0.5, &mut profile);
             Usage, "memory": revmap_profile_from_points(at, usize::MAX, 0.5, &mut profile);
             Content, "3 points": revmap_profile_from_points(at, 2, 0.5, &mut profile);
-            Content, "radius": revmap_profile_from_points(at, 3, f64::NAN, &mut profile);
             Usage, "9 is no RevmapAxis": revmap_profile_from_bytes(svg.as_ptr().cast(), svg.len(), 9, &mut profile);
-            File, "": revmap_profile_from_bytes(null(), 0, 0, &mut profile);
             Usage, "path is null": revmap_profile_from_file(null(), 0, &mut profile);
             Usage, "UTF-8": revmap_profile_from_file(c"\xff".as_ptr(), 0, &mut profile);
             File, "missing.png: does not exist": revmap_profile_from_file(c"missing.png".as_ptr(), 0, &mut profile);
@@ -77,10 +75,8 @@ fn profiles_and_textures() {
         let (mut colors, mut heights) = (null_mut(), null_mut());
         fail! {
             Usage, "null": revmap_color_map_from_texels(2, 2, null(), &mut colors);
-            Content, "texels": revmap_color_map_from_texels(0, 2, null(), &mut colors);
             Content, "finite": revmap_height_map_from_heights(1, 1, &f32::NAN, 0, &mut heights);
             Usage, "RevmapSlopeFilter": revmap_height_map_from_heights(1, 1, &0.5, 2, &mut heights);
-            File, "": revmap_color_map_from_file(c"/".as_ptr(), &mut colors);
         }
         ok! { revmap_color_map_from_texels(1, 1, &[1, 2, 3, 4], &mut colors); }
         // A handle of another kind.

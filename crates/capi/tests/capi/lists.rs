@@ -2,12 +2,12 @@
 //! bit. Motion, masks, depth tests, rays through samples.
 
 use crate::host::{
-    Attachments, COLOR, DEPTH, Host, Options, Stage, borrow, dynamic, frame, once, open, open_with,
+    Attachments, COLOR, DEPTH, Host, Options, borrow, dynamic, once, open, open_with,
     view_and_projection, viewport,
 };
 use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
 use ash::vk;
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3};
 use revmap::gpu::{DepthOrder, ObjectId, Output, PassFormats, Renderer, View};
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
@@ -390,62 +390,6 @@ fn a_pass_tests_depths_as_it_says() {
         assert_eq!(covered, if covers { first + other } else { 0 });
         assert!(after.last() == before.last(), "depths were written");
         ok! { revmap_renderer_destroy(second); }
-    }
-}
-
-#[test]
-fn rays_through_samples_draw_what_rust_draws() {
-    let host = open();
-    let options = Options {
-        dynamic: true,
-        samples: 4,
-        ..OPTIONS
-    };
-    let mut stage = Stage::new(&host, options).unwrap();
-    let view = view_in_rust(FIRST);
-    let own = borrow(&host);
-    let pictures = [true, false].map(|sample_rays| {
-        let output = Output::Pass(PassFormats {
-            samples: 4,
-            sample_rays,
-            ..PassFormats::new(dynamic(&[COLOR]), Planes::Color)
-        });
-        let mut renderer = Renderer::new(&own, output, &SearchSettings::default(), 2).unwrap();
-        for object in scene().objects {
-            renderer.add(object).unwrap();
-        }
-        frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
-        stage.read().unwrap().0
-    });
-    let (device, mut made) = (lend(&host), null_mut());
-    let mut pass = sized!(RevmapPass);
-    (pass.samples, pass.sample_rays) = (4, 1);
-    (pass.color_formats, pass.color_format_count) = (&COLOR, 1);
-    pass.depth_format = DEPTH;
-    // SAFETY: live values; the stage has waited for a slot before it is prepared.
-    unsafe {
-        ok! { revmap_renderer_create(device, &pass, null(), 2, &mut made); }
-        add(made, Object::COLOR);
-        let prepare = |cmd, slot: usize| {
-            ok! { revmap_renderer_prepare(made, cmd, slot as u32, &view_in_c(FIRST)); }
-            Ok(slot as u32)
-        };
-        let record = |cmd, &slot: &u32| {
-            ok! { revmap_renderer_record(made, cmd, slot); }
-            Ok(())
-        };
-        let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
-        drawn.unwrap();
-    }
-    let found = stage.read().unwrap().0;
-    assert!(
-        pictures[0] != pictures[1],
-        "rays through samples change nothing"
-    );
-    assert!(found == pictures[0], "pixels differ");
-    ok! {
-        revmap_renderer_destroy(made);
-        revmap_device_destroy(device);
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// A difference of an 8-bit channel that is none for the eye, and the share of channels that may exceed
 /// it in pictures that are alike. Drivers round differently, and a silhouette may fall to either side
-/// of a pixel's centre. The tests of kept pictures allow the same (`tests/gpu/golden.rs`).
+/// of a pixel's centre.
 const ALIKE: (u8, f64) = (3, 0.002);
 
 /// Compares `b` with `a`; `exact` and `alike` fail if they differ in a byte, or visibly.

@@ -20,94 +20,38 @@ fn profiles_that_are_none() {
         std::fs::create_dir(bench.path(folder)).unwrap();
         refused(folder);
     }
-    bench.grey("whole.png", 64, 64, |x, y| ((x * 37 + y * 101) % 256) as u8);
-    let whole = bench.read("whole.png");
-    let svg = b"<svg xmlns='http://www.w3.org/2000/svg' width='10' height='20'></svg>";
-    for (name, content) in [
-        ("truncated.png", &whole[..whole.len() / 2]),
-        ("header.png", &whole[..20]),
-        ("empty.png", &[]),
-        ("text.png", b"this is no picture"),
-        ("empty.svg", svg),
-        ("broken.svg", &svg[..40]),
-    ] {
-        bench.file(name, content);
-        refused(name);
-    }
-    for (name, side) in [("even.png", 20), ("dot.png", 1)] {
-        for shade in [0, 255] {
-            bench.grey(name, side, side, |_, _| shade);
-            refused(name);
-        }
-    }
-}
-
-#[test]
-fn polygons_that_turn_into_nothing() {
-    let bench = Bench::new();
-    for points in [
-        "[]",
-        "[[0, 0], [0.3, 1]]",
-        "[[0, 0], [nan, 0.5], [0, 1]]",
-        "[[0, 0], [0.3, inf], [0, 1]]",
-        "[[-0.2, 0.1], [0.3, 0.1], [0, 0.9]]",
-        "[[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]",
-        "[[0, 0], [0, 0.5], [0, 1]]",
-    ] {
-        bench.object(&format!("polygon = {points}"));
-        bench.refused(RENDER, 1, &["scene.toml", "object.0.polygon"]);
-    }
-    bench.object("polygon = [[0, 0], [0.3], [0, 1]]");
-    bench.refused(RENDER, 1, &["scene.toml", "object.0.polygon.1"]);
+    bench.file("text.png", b"this is no picture");
+    refused("text.png");
+    bench.grey("black.png", 20, 20, |_, _| 0);
+    refused("black.png");
 }
 
 #[test]
 fn scenes_with_slips() {
     let bench = Bench::new();
+    // The readers' own tests have the others (`crates/files/src/scene`).
     for row in table(
         r#"bevle = 1                 | object.0.bevle          | `bevel`
            bevel = "steep"           | object.0.bevel          | a number
-           bevel = -1                | object.0.bevel          | -1
-           bevel = nan               | object.0.bevel          | NaN
            chamfer = 2               | object.0.chamfer        | 2
-           chamfer = -0.1            | object.0.chamfer        | -0.1
-           chamfer = nan             | object.0.chamfer        | NaN
-           bevel = inf               | object.0.bevel          | inf
-           extend = inf              | object.0.extend         | inf
-           extend = nan              | object.0.extend         | NaN
-           bump = nan                | object.0.bump           | NaN
-           bump_form = "steep"       | object.0.bump_form      | papers
-           projection = "conic"      | object.0.projection     | spherical
-           texture_repeat = [0, 1]   | object.0.texture_repeat | 0
-           texture_repeat = [1, -2]  | object.0.texture_repeat | -2
-           axis = [1.5, 0.5]         | object.0.axis           | 1.5
-           axis = [nan, 0.5]         | object.0.axis           | NaN
-           repeat = [2, -1, 1]       | object.0.repeat         | -1
-           mirror = [1, 0, 0]        | object.0.mirror         | true
-           repeat = [1, 1, 0]        | object.0.repeat         | 0
            repeat = [10000, 1, 1]    | object.0.repeat         | 10000
-           scale = [1, 1, 0]         | object.0.scale          | 0
-           scale = [0, 0, 0]         | object.0.scale          | 0
-           scale = 0                 | object.0.scale          | 3 numbers
-           map_rows = 0              | object.0.map_rows       | 0
-           rotation = [0, 0, 0, 0]   | object.0.rotation       | quaternion
+           polygon = [[0, 0], [0, 1]] | scene.toml
            height_map = "none.png"   | object.0.height_map     | none.png"#,
     ) {
-        bench.file("scene.toml", format!("{CAMERA}{CONE}{}\n", row[0]));
+        let cone = CONE.lines().next().unwrap().to_owned() + "\n";
+        let object = if row[0].starts_with("polygon") {
+            &cone
+        } else {
+            CONE
+        };
+        bench.file("scene.toml", format!("{CAMERA}{object}{}\n", row[0]));
         bench.refused(RENDER, 1, &row[1..]);
     }
     for row in table(
         "eye = [2, 0, 0.5] | eye = [0, 0, 0.5] | camera.target | eye
-         eye = [2, 0, 0.5] |                   | camera.eye | missing
-         eye = [2, 0, 0.5] | eye = [2, 0]      | camera.eye | 3 numbers
-         eye = [2, 0, 0.5] | eye = [0, 0, 9]   | camera.up | parallel
-         eye =             | fov_y = 0; eye =   | camera.fov_y | 0
-         eye =             | fov_y = 180; eye = | camera.fov_y | 180
-         eye =             | eyes = 2; eye =    | camera.eyes | `eye`
-         [camera]          | [camera           | line 1 | TOML
-         [camera]          | [[camera]]        | camera | a table",
+         [camera]          | [camera           | line 1 | TOML",
     ) {
-        let changed = format!("{CAMERA}{CONE}").replacen(row[0], &row[1].replace("; ", "\n"), 1);
+        let changed = format!("{CAMERA}{CONE}").replacen(row[0], row[1], 1);
         bench.file("scene.toml", changed);
         bench.refused(RENDER, 1, &[&["scene.toml"], &row[2..]].concat());
     }

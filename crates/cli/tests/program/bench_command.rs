@@ -99,31 +99,6 @@ fn a_mesh_stands_beside_the_searches() {
     assert!(reason[4].contains("give the stage fragment"), "{reason:?}");
 }
 
-/// A close picture is one of its own: named so, and summed up by itself as well as with the others.
-#[test]
-fn close_pictures_are_measured_beside_whole_ones() {
-    let bench = Bench::new();
-    let said = bench.said(&format!(
-        "bench {SPHERE} --quick --size 64x48 --solver hull --stage fragment --framing close,whole \
-         --passes 2 --rounds 1 --out f"
-    ));
-    for wanted in [
-        "all together: 2 pictures",
-        "whole: 1 picture",
-        "close: 1 picture",
-    ] {
-        assert!(said.contains(wanted), "{said}");
-    }
-    let results = load(&bench, "f/results.csv");
-    let solver = results.column("solver").unwrap();
-    let searches = results.records.iter().filter(|r| r[solver] != "floor");
-    let mut scenes: Vec<&str> = searches.map(|r| r[0].as_str()).collect();
-    scenes.sort_unstable();
-    assert_eq!(scenes, ["sphere", "sphere", "sphere:close", "sphere:close"]);
-    // Charts need clocks that agree, and frames this small are easily timed wrongly.
-    bench.has(&["f/pictures/sphere-close.png"]);
-}
-
 #[test]
 fn a_brief_chart_has_its_pages() {
     let bench = Bench::new();
@@ -268,19 +243,4 @@ fn a_run_that_is_ended_by_the_system_has_its_report() {
         assert!(said.contains("interrupted"), "{said}");
         bench.has(&["kept/report.html", "kept/machine.txt", "kept/excluded.csv"]);
     }
-}
-
-/// Two scenes whose names differ in what no file name has.
-#[test]
-fn every_scene_has_its_own_picture() {
-    let bench = Bench::new();
-    let scene = bench.read("scene.toml");
-    bench.file("v 1.toml", &scene);
-    bench.file("v-1.toml", &scene);
-    let options =
-        "bench --size 64x48 --solver circle --stage fragment --passes 2 --rounds 1 --out o";
-    let mut command = bench.command(options);
-    let output = command.args(["v 1.toml", "v-1.toml"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
-    bench.has(&["o/pictures/v-1.png", "o/pictures/v-1-2.png"]);
 }

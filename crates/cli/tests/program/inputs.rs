@@ -1,7 +1,7 @@
 //! What people feed the program besides drawings: names, photographs, tables, numbers, links. Every
 //! case is done right, or refused or warned about by name.
 
-use crate::run::{Bench, CAMERA, CONE, SVG, lines};
+use crate::run::{Bench, SVG, lines};
 use std::path::PathBuf;
 
 const SMALL: &str = "--size 32x24";
@@ -10,22 +10,6 @@ const SMALL: &str = "--size 32x24";
 fn input(bench: &Bench, name: &str) {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/inputs");
     bench.file(name, std::fs::read(folder.join(name)).unwrap());
-}
-
-/// Wants one warning with these words.
-#[track_caller]
-fn warned(bench: &Bench, arguments: &str, words: &str) {
-    let said = lines(&bench.done(arguments));
-    let warnings: Vec<_> = said.iter().filter(|l| l.starts_with("warning: ")).collect();
-    assert!(
-        warnings.len() == 1 && warnings[0].contains(words),
-        "{said:?}"
-    );
-}
-
-/// Size of a map that `bake` wrote.
-fn size(bench: &Bench, map: &str) -> (u32, u32) {
-    image::image_dimensions(bench.path(map)).unwrap()
 }
 
 #[cfg(target_os = "linux")]
@@ -99,94 +83,6 @@ fn a_pipe_is_read_once() {
     assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
 }
 
-#[test]
-fn photographs_are_upright_and_whole() {
-    let bench = Bench::new();
-    for name in ["exif.jpg", "vase.jpg", "cut-off.jpg"] {
-        input(&bench, name);
-    }
-    bench.done("bake exif.jpg -o turned.png");
-    bench.done("bake vase.jpg -o stored.png");
-    assert_eq!(size(&bench, "turned.png"), size(&bench, "stored.png"));
-    bench.refused(
-        "bake cut-off.jpg -o no.png",
-        1,
-        &["cut-off.jpg", "the image is damaged"],
-    );
-    bench.object("profile = \"vase.jpg\"\nprofile_smooth = \"auto\"\ncolor_map = \"cut-off.jpg\"");
-    let words = ["cut-off.jpg", "object.0.color_map", "the image is damaged"];
-    bench.refused("render scene.toml -o no.png", 1, &words);
-}
-
-#[test]
-fn cut_outs_and_axes_are_named() {
-    let bench = Bench::new();
-    input(&bench, "band.png");
-    warned(
-        &bench,
-        "bake band.png -o map.png",
-        "transparency has another form",
-    );
-    let bottle = |x: u32, y: u32| match y {
-        10..40 => x.abs_diff(62) < 6,
-        40..90 => x.abs_diff(62) < 25,
-        _ => false,
-    };
-    bench.grey(
-        "aside.png",
-        100,
-        100,
-        |x, y| if bottle(x, y) { 0 } else { 255 },
-    );
-    warned(
-        &bench,
-        "bake aside.png -o map.png",
-        "set --profile-axis 0.625",
-    );
-    warned(
-        &bench,
-        &format!("render aside.png -o out.png {SMALL}"),
-        "object.0.profile: the middle of the solid",
-    );
-    for done in [
-        "bake aside.png -o map.png --profile-axis 0.625".to_owned(),
-        format!("render aside.png -o out.png {SMALL} --set object.0.profile_axis=.625"),
-    ] {
-        assert!(
-            !lines(&bench.done(&done)).join(" ").contains("warning"),
-            "{done}"
-        );
-    }
-    bench.refused(
-        "bake aside.png -o no.png --profile-axis 1.5",
-        1,
-        &["--profile-axis", "1.5"],
-    );
-    bench.refused(
-        "bake aside.png -o no.png --profile-axis middle",
-        2,
-        &["--profile-axis", "0.62"],
-    );
-}
-
-#[test]
-fn points_beyond_the_box_and_insets_that_leave_nothing_are_named() {
-    let bench = Bench::new();
-    bench.object("polygon = [[0, -10], [40, -10], [20, 88]]");
-    let render = format!("render scene.toml -o out.png {SMALL}");
-    warned(
-        &bench,
-        &format!("{render} --set camera.eye=[200,0,100]"),
-        "object.0.polygon: points outside",
-    );
-    bench.file("scene.toml", format!("{CAMERA}{CONE}"));
-    warned(
-        &bench,
-        &format!("{render} --set object.0.extend=-0.9"),
-        "object.0.extend: the inset of 0.9",
-    );
-}
-
 /// Where a colour map is transparent, the object's colour shows.
 #[test]
 fn transparent_texels_show_the_color() {
@@ -205,36 +101,6 @@ fn transparent_texels_show_the_color() {
     }
     let blue = picture.pixels().filter(|p| p.0[2] > 200 && p.0[0] < 100);
     assert!(blue.count() > 5);
-}
-
-#[test]
-fn headings_say_which_column_is_which() {
-    let bench = Bench::new();
-    bench.file(
-        "scene.toml",
-        format!("{CAMERA}{CONE}instances = \"copies.csv\"\n"),
-    );
-    let drawn = |text: &str| {
-        bench.file("copies.csv", text);
-        bench.done(&format!("render scene.toml -o out.png {SMALL}"));
-        bench.read("out.png")
-    };
-    let usual = drawn("x,y,z,qx,qy,qz,qw,sx,sy,sz\n0,0.2,0.1,0,0,0,1,1,1,0.5\n");
-    let other = drawn("qw,qx,qy,qz,x,z,y,sx,sy,sz\n1,0,0,0,0,0.1,0.2,1,1,0.5\n");
-    assert!(usual == other);
-    for (text, words) in [
-        ("#x,y,z,w,qx,qy,qz,sx,sy,sz\n", "\"w\""),
-        ("x,y,z,qx,qy,qz,w,sx,sy,sz\n", "\"w\""),
-        ("x,y,z,sx,sy,sz\n", "lacks qx, qy, qz, qw"),
-        ("x;y;z\n", "commas"),
-    ] {
-        bench.file("copies.csv", text);
-        bench.refused(
-            "render scene.toml -o no.png",
-            1,
-            &["copies.csv", "line 1", words],
-        );
-    }
 }
 
 #[test]

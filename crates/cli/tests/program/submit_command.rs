@@ -82,12 +82,10 @@ fn submissions_are_gathered() {
     // A chart needs clocks that agree, and frames this small are easily timed wrongly.
     let drawn = bench.path("c/charts/devices.png").exists();
     assert_eq!(drawn, a.lines.len() + b.lines.len() > 2, "{said}");
+    refusals(&bench);
 }
 
-#[test]
-fn refusals() {
-    let bench = Bench::new();
-    bench.done(&format!("{QUICK} a.toml"));
+fn refusals(bench: &Bench) {
     let text = String::from_utf8(bench.read("a.toml")).unwrap();
     bench.file("changed.toml", text.replacen("wrong = 0", "wrong = 1", 1));
     bench.file("later.toml", text.replacen("format = 1", "format = 9", 1));

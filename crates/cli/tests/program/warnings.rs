@@ -1,6 +1,6 @@
 //! What looks unintended is said in one line each, and changes no exit code.
 
-use crate::run::{Bench, CAMERA, CONE, SVG, lines};
+use crate::run::{Bench, SVG, lines};
 
 const RENDER: &str = "render scene.toml -o out.png --size 32x24";
 
@@ -123,53 +123,4 @@ fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
     bench.file("a.svg", SVG);
     bench.object("profile = \"a.svg\"\nprofile_invert = true");
     bench.refused(RENDER, 1, &["object.0.profile_invert", "pictures"]);
-}
-
-#[test]
-fn noisy_pictures_are_named_and_smoothed() {
-    let bench = Bench::new();
-    bench.grey("noisy.png", 96, 96, |x, y| {
-        let ball = (f64::from(x) - 47.5).hypot(f64::from(y) - 47.5) - 30.0;
-        let noise = (x * 131 + y * 7919).wrapping_mul(2_654_435_761) >> 16 & 63;
-        let grey = 40.0 + 150.0 * (0.5 + 0.5 * ball).clamp(0.0, 1.0);
-        grey as u8 + noise as u8
-    });
-    bench.object("profile = \"noisy.png\"");
-    let words = [
-        "object.0.profile: the outline is rough",
-        "profile_smooth = \"auto\"",
-    ];
-    warned_once(&bench, RENDER, &words);
-    let auto = format!("{RENDER} --set object.0.profile_smooth=auto");
-    assert_eq!(warned(&bench, &auto), [""; 0]);
-    let much = format!("{RENDER} --set object.0.profile_smooth=much");
-    bench.refused(&much, 1, &["object.0.profile_smooth", "\"auto\""]);
-    // A picture in place of a scene is smoothed.
-    let alone = "render noisy.png -o out.png --size 32x24";
-    assert_eq!(warned(&bench, alone), [""; 0]);
-    let plain = format!("{alone} --set object.0.profile_smooth=0");
-    assert_eq!(warned(&bench, &plain).len(), 1);
-
-    let bake = "bake noisy.png -o map.png --map-rows 64";
-    assert_eq!(warned(&bench, bake).len(), 1);
-    let smooth = format!("{bake} --profile-smooth auto");
-    assert_eq!(warned(&bench, &smooth), [""; 0]);
-}
-
-#[test]
-fn faults_of_instances_name_file_and_line() {
-    let bench = Bench::new();
-    let scene = format!("{CAMERA}{CONE}instances = \"copies.csv\"\n");
-    bench.file("scene.toml", scene);
-    let copies = "\u{feff}x,y,z,qx,qy,qz,qw,sx,sy,sz\r\n0,0,0,0,0,0,1,1,1,1\r\n";
-    bench.file("copies.csv", copies);
-    bench.done(RENDER);
-    for (row, words) in [
-        ("1,2", "has 2 values"),
-        ("0,0,0,0,0,0,1,1,0,1", "scale"),
-        ("0,0,0,0,0,0,1,1,x,1", "\"x\""),
-    ] {
-        bench.file("copies.csv", format!("0,0,0,0,0,0,1,1,1,1\n{row}\n"));
-        bench.refused(RENDER, 1, &["copies.csv", "line 2", words]);
-    }
 }

@@ -114,21 +114,3 @@ fn programs_get_json() {
         Value::Null
     );
 }
-
-/// Where numbers have a decimal comma, `awk` would write and read it.
-#[test]
-fn scripts_have_a_locale_of_their_own() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    let files = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().path());
-    let mut found = 0;
-    for file in files.filter(|path| path.is_file()) {
-        let text = std::fs::read_to_string(&file).unwrap();
-        if ["awk ", "sort "].iter().any(|word| text.contains(word)) {
-            found += 1;
-            assert!(text.contains("\nexport LC_ALL=C "), "{}", file.display());
-        }
-    }
-    assert!(found > 0);
-}

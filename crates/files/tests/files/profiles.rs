@@ -92,29 +92,6 @@ fn files_without_end_are_refused() {
     assert!(refusal(&large).contains("1 GiB"));
 }
 
-/// Every real profile touches its axis, is inside its box, and is one patch of plausible size.
-#[test]
-fn real_profiles_are_plausible() {
-    for (name, radius, area) in [
-        ("pawn.svg", 85.0 / 220.0, 0.199),
-        ("bishop.svg", 85.0 / 340.0, 0.119),
-        ("king.svg", 85.0 / 400.0, 0.102),
-        ("rook.svg", 85.0 / 260.0, 0.180),
-        ("bottle.png", 229.0 / 946.0, 0.148),
-    ] {
-        let profile = asset(name);
-        assert!((profile.radius - radius).abs() < 1e-12, "{name}");
-        let bounds = profile.outline.bounds().unwrap();
-        assert_eq!(bounds.r_min, 0.0, "{name}");
-        assert!(
-            bounds.r_max < radius && bounds.z_min > 0.0 && bounds.z_max < 1.0,
-            "{name}: {bounds:?}"
-        );
-        let solid = profile.outline.area();
-        assert!((solid - area).abs() < 0.01 * area, "{name}: {solid}");
-    }
-}
-
 /// The map of a drawing as an image must agree with the drawing's, at the image's resolution and at
 /// others.
 #[test]

@@ -1,8 +1,6 @@
-//! The scenes that come with the program: each is readable, is drawn inside its frame, and its
-//! chess pieces are on their board.
+//! The scenes that come with the program, and bare profiles in place of scenes.
 
-use glam::{DVec2, DVec3};
-use revmap::scene::{CameraFrame, Scene};
+use revmap::scene::Scene;
 use revmap_files::ProfileAxis;
 use std::path::PathBuf;
 
@@ -21,93 +19,6 @@ fn scenes() -> Vec<(String, Scene)> {
         (name, scene)
     };
     files.into_iter().map(load).collect()
-}
-
-/// Points all around each solid.
-fn rims(scene: &Scene) -> Vec<DVec3> {
-    let mut points = Vec::new();
-    for object in &scene.objects {
-        for circle in object.profile.outline.loops.concat() {
-            for placement in object.placements() {
-                for k in 0..64 {
-                    let turn = DVec2::from_angle(f64::from(k) / 64.0 * std::f64::consts::TAU);
-                    let local = (circle.x * turn).extend(circle.y);
-                    let turned = placement.rotation * (placement.scale * local);
-                    points.push(placement.position + turned);
-                }
-            }
-        }
-    }
-    points
-}
-
-#[test]
-fn there_is_one_for_every_profile_and_for_every_kind_of_input() {
-    let names: Vec<String> = scenes().into_iter().map(|(name, _)| name).collect();
-    for name in [
-        "chess", "pawn", "rook", "bishop", "king", "bottle", "sphere", "vase", "goblet",
-    ] {
-        assert!(names.iter().any(|n| n == name), "{name}");
-    }
-}
-
-/// The solids extend nearly to the picture's edge, and not beyond it.
-#[test]
-fn solids_fill_their_picture() {
-    for (name, scene) in scenes() {
-        let camera = CameraFrame::new(&scene.camera, 800, 600).unwrap();
-        let forward = (scene.camera.target - scene.camera.eye).normalize();
-        let right = forward.cross(scene.camera.up).normalize();
-        let up = right.cross(forward);
-        // The picture's half height at distance 1, from the ray through the middle of its upper
-        // edge.
-        let edge = camera.direction(400.0, 0.0);
-        let half = edge.dot(up) / edge.dot(forward);
-        let fill = rims(&scene)
-            .into_iter()
-            .map(|point| {
-                let seen = point - scene.camera.eye;
-                let depth = seen.dot(forward);
-                (seen.dot(up).abs() / depth / half).max(seen.dot(right).abs() / depth / half * 0.75)
-            })
-            .fold(0.0, f64::max);
-        assert!((0.85..1.0).contains(&fill), "{name}: {fill:.3}");
-    }
-}
-
-#[test]
-fn pieces_stand_on_their_board() {
-    let scene = revmap_files::scene(folder().join("chess.toml")).unwrap();
-    let mut patches = 0;
-    for object in scene.objects.iter().filter(|o| o.file.is_some()) {
-        let foot = object.profile.outline.bounds().unwrap().z_min;
-        for placement in object.placements() {
-            let z = placement.position.z + placement.scale.z * foot;
-            assert!(z.abs() < 0.005, "{}: its foot is at {z:.4}", object.name);
-            patches += 1;
-        }
-    }
-    assert_eq!(patches, 18);
-}
-
-/// Copies of one drawing share its profile, and so its map.
-#[test]
-fn light_and_dark_pieces_share_their_profiles() {
-    let scene = revmap_files::scene(folder().join("chess.toml")).unwrap();
-    let find = |name: &str| {
-        let found: Vec<_> = scene.objects.iter().filter(|o| o.name == name).collect();
-        assert_eq!(found.len(), 2, "{name}");
-        std::sync::Arc::ptr_eq(&found[0].profile, &found[1].profile)
-    };
-    let names = ["pawn.svg", "rook.svg", "bishop.svg", "king.svg"];
-    assert!(names.into_iter().all(find));
-}
-
-#[test]
-fn nothing_in_them_looks_unintended() {
-    for (name, scene) in scenes() {
-        assert_eq!(revmap_files::warnings(&scene, 800, 600), [""; 0], "{name}");
-    }
 }
 
 /// Pictures of every solid, whole and half, bring no warning about their form.

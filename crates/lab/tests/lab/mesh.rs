@@ -1,7 +1,6 @@
 //! The mesh baseline: that it is the same solid, as exact as its tessellation lets it be, shaded as
 //! the renderer shades, and that what it does not draw is refused. All under the validation layers.
 
-use crate::mesh_shading::wrong_planes;
 use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
 use revmap::error::ErrorKind;
@@ -158,15 +157,6 @@ fn crowd() -> Scene {
     scene
 }
 
-#[test]
-fn several_solids_hide_each_other() {
-    let scene = crowd();
-    let settings = settings(128, 256);
-    assert!(held(&scene, &settings, 3e-3, 0.3).hits > 8000);
-    let wrong = wrong_planes(&reference(&scene, &settings), &draw(&scene, &settings));
-    assert!(wrong.is_empty(), "{wrong:?}");
-}
-
 /// Offsets and cameras that move give what a new renderer gives, in both kinds of picture.
 #[test]
 fn updates_leave_nothing_behind() {
@@ -272,14 +262,6 @@ fn what_a_mesh_cannot_draw_is_refused() {
         let method = Method::Mesh { segments, rings };
         refused(ErrorKind::Usage, "", &|_, s| s.method = method);
     }
-}
-
-/// An axis off the middle is no obstacle while the solid stays in its box.
-#[test]
-fn an_axis_may_stand_off_the_middle() {
-    let mut scene = scene_of(shapes::vase(), eye(30.0, 2.0));
-    scene.objects[0].axis = [0.6, 0.45];
-    held(&scene, &settings(128, 256), 2e-3, 0.3);
 }
 
 /// By levels of detail.

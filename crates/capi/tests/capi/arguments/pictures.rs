@@ -25,20 +25,6 @@ fn off_screen_pictures() {
         fail! {
             Usage, "depths and lists": revmap_offscreen_create(device, &deep, &scene, &mut offscreen);
         }
-        let list = RevmapPicture {
-            planes: RevmapPlanes::List as u32,
-            ..picture
-        };
-        fail! {
-            Usage, "depths and lists": revmap_offscreen_create(device, &list, &scene, &mut offscreen);
-        }
-        let empty = RevmapPicture {
-            width: 0,
-            ..picture
-        };
-        fail! {
-            Usage, "pixels": revmap_offscreen_create(device, &empty, &scene, &mut offscreen);
-        }
         ok! { revmap_offscreen_create(device, &picture, &scene, &mut offscreen); }
         let mut pixels = vec![[0u8; 4]; 64 * 48];
         let bytes = size_of_val(&pixels[..]);
@@ -54,7 +40,6 @@ fn off_screen_pictures() {
         assert!(times.frame_ms > 0.0);
         fail! {
             Usage, "give room for as many": revmap_offscreen_read(offscreen, 0, at, bytes - 1);
-            Usage, "give room": revmap_offscreen_read(offscreen, 0, null_mut(), bytes);
             Usage, "RevmapPlane": revmap_offscreen_read(offscreen, 8, at, bytes);
         }
         let distance = RevmapPlane::Distance as u32;
@@ -80,36 +65,34 @@ fn off_screen_pictures() {
             Handle, "was destroyed": revmap_offscreen_draw(offscreen, null_mut());
         }
 
-        // Every plane, of both stages.
-        for stage in [RevmapStage::Fragment, RevmapStage::Compute] {
-            picture.planes = RevmapPlanes::All as u32;
-            picture.stage = stage as u32;
-            scene.camera.target = [0.0, 0.0, 0.5];
-            ok! {
-                revmap_offscreen_create(device, &picture, &scene, &mut offscreen);
-                revmap_offscreen_draw(offscreen, null_mut());
-            }
-            let read = |plane: RevmapPlane, floats: usize| {
-                let mut all = vec![0f32; floats * pixels.len()];
-                let bytes = size_of_val(&all[..]);
-                ok! { revmap_offscreen_read(offscreen, plane as u32, all.as_mut_ptr().cast(), bytes); }
-                all
-            };
-            let distances = read(RevmapPlane::Distance, 1);
-            assert_eq!(distances.iter().filter(|d| d.is_finite()).count(), hit);
-            let normals = read(RevmapPlane::Normal, 3);
-            for (n, distance) in normals.chunks_exact(3).zip(&distances) {
-                let length = n.iter().map(|c| c * c).sum::<f32>();
-                assert!(length == 0.0 || (length - 1.0).abs() < 1e-5);
-                assert_eq!(length > 0.0, distance.is_finite());
-            }
-            assert_eq!(read(RevmapPlane::ShadingNormal, 3), normals);
-            assert!(read(RevmapPlane::Albedo, 3).contains(&info.color[0]));
-            assert!(read(RevmapPlane::Uv, 2).iter().any(|v| *v > 0.5));
-            assert!(read(RevmapPlane::Color, 4).iter().any(|v| *v > 0.0));
-            read(RevmapPlane::Steps, 1);
-            ok! { revmap_offscreen_destroy(offscreen); }
+        // Every plane.
+        picture.planes = RevmapPlanes::All as u32;
+        picture.stage = RevmapStage::Compute as u32;
+        scene.camera.target = [0.0, 0.0, 0.5];
+        ok! {
+            revmap_offscreen_create(device, &picture, &scene, &mut offscreen);
+            revmap_offscreen_draw(offscreen, null_mut());
         }
+        let read = |plane: RevmapPlane, floats: usize| {
+            let mut all = vec![0f32; floats * pixels.len()];
+            let bytes = size_of_val(&all[..]);
+            ok! { revmap_offscreen_read(offscreen, plane as u32, all.as_mut_ptr().cast(), bytes); }
+            all
+        };
+        let distances = read(RevmapPlane::Distance, 1);
+        assert_eq!(distances.iter().filter(|d| d.is_finite()).count(), hit);
+        let normals = read(RevmapPlane::Normal, 3);
+        for (n, distance) in normals.chunks_exact(3).zip(&distances) {
+            let length = n.iter().map(|c| c * c).sum::<f32>();
+            assert!(length == 0.0 || (length - 1.0).abs() < 1e-5);
+            assert_eq!(length > 0.0, distance.is_finite());
+        }
+        assert_eq!(read(RevmapPlane::ShadingNormal, 3), normals);
+        assert!(read(RevmapPlane::Albedo, 3).contains(&info.color[0]));
+        assert!(read(RevmapPlane::Uv, 2).iter().any(|v| *v > 0.5));
+        assert!(read(RevmapPlane::Color, 4).iter().any(|v| *v > 0.0));
+        read(RevmapPlane::Steps, 1);
+        ok! { revmap_offscreen_destroy(offscreen); }
         ok! {
             revmap_device_check(device);
             revmap_profile_destroy(profile);
