@@ -1,5 +1,5 @@
 //! Scenes drawn without a host: [`Offscreen`] makes a target, submits, waits and reads frames back.
-//! [`antialias`] smooths the silhouettes of such a frame.
+//! [`antialias`] smooths the silhouettes of such a frame, [`samples`] takes several rays per pixel.
 //!
 //! The crate is a client of [`revmap::gpu`] and uses its public interface alone.
 //!
@@ -26,6 +26,7 @@ mod draw;
 #[allow(unsafe_code)]
 mod offscreen;
 mod read_back;
+pub mod samples;
 #[allow(unsafe_code)]
 mod target;
 
