@@ -8,4 +8,5 @@ mod antialias;
 mod cast;
 mod contours;
 mod hull_rays;
+mod imports;
 mod surface;

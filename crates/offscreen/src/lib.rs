@@ -30,7 +30,8 @@ pub mod samples;
 #[allow(unsafe_code)]
 mod target;
 
-pub use draw::{Guest, Times};
+pub use commands::Times;
+pub use draw::Guest;
 pub use offscreen::{Offscreen, OffscreenOptions};
 
 use revmap::error::Result;

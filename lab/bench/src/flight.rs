@@ -2,7 +2,8 @@
 //! are from exact ones.
 
 use super::columns::Cell;
-use super::plan::{Flight, army, flight_camera};
+use super::plan::{army, flight_camera};
+use super::plan_file::Flight;
 use super::row::Row;
 use super::stats;
 use super::table::Table;

@@ -12,6 +12,7 @@
 //! | [`plan`], [`view`] | what a benchmark measures, of what it draws |
 //! | [`measure`], [`flight`], [`row`] | measuring, and one measured line |
 //! | [`ratios`], [`exhibit`], [`compare_runs`] | what lines say beside each other |
+//! | [`plan_file`] | a plan as TOML: what is measured, and what is shown of it |
 //! | [`columns`], [`table`], [`chart`], [`page`], [`report`] | tables, charts, one HTML page |
 //! | [`folder`], [`submission`] | files of a run; one file of a machine's figures |
 
@@ -34,6 +35,7 @@ pub mod page;
 pub mod pictures;
 mod places;
 pub mod plan;
+pub mod plan_file;
 mod published;
 pub mod ratios;
 pub mod renderer;

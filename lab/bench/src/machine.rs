@@ -1,6 +1,6 @@
 //! The note on the machine that stands beside every result.
 
-use super::surroundings;
+use super::surroundings::{self, field};
 
 /// Place and time of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,13 +77,6 @@ pub fn label(device: &str, driver: &str) -> String {
     version.map_or(name.clone(), |v| format!("{name} {v}"))
 }
 
-/// The value of the first line that starts with `key`.
-pub(super) fn field(text: &str, key: &str, sign: char) -> Option<String> {
-    let mut fields = text.lines().filter_map(|line| line.split_once(sign));
-    let found = fields.find(|(name, _)| name.trim() == key);
-    found.map(|(_, value)| value.trim().trim_matches('"').to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,15 +94,5 @@ mod tests {
         here.device = "NVIDIA GeForce RTX 4090".into();
         assert_eq!(here.folder(), "2026-01-31-nvidia-geforce-rtx");
         assert!(here.lines.iter().all(|(_, which)| !which.is_empty()));
-    }
-
-    #[test]
-    fn fields_of_the_systems_files() {
-        let processor = field("a : b\nmodel name\t: X 3\n", "model name", ':');
-        assert_eq!(processor.as_deref(), Some("X 3"));
-        let names = "NAME=\"u\"\nPRETTY_NAME=\"Deb 12\"";
-        let system = field(names, "PRETTY_NAME", '=');
-        assert_eq!(system.as_deref(), Some("Deb 12"));
-        assert_eq!(field("", "x", '='), None);
     }
 }

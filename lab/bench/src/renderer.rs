@@ -9,7 +9,7 @@ use revmap::scene::Scene;
 use revmap::settings::{Settings, Solver};
 use revmap_mesh::{MeshLayer, MeshPipelines};
 use revmap_offscreen::{Guest, Offscreen, OffscreenOptions, Times};
-use revmap_searches::folder::check_scene;
+use revmap_searches::folder::{check_scene, name_of};
 use revmap_searches::watchdog::watched;
 use std::sync::{Arc, OnceLock};
 
@@ -114,7 +114,9 @@ impl MethodRenderer {
     /// Draws one frame and waits for it.
     pub fn draw(&mut self) -> Result<Times> {
         let guest = self.meshes.as_deref().map(|meshes| meshes as &dyn Guest);
-        let times = watched(self.solver, || self.offscreen.draw_with(guest))?;
+        let times = watched(self.solver.and_then(name_of), || {
+            self.offscreen.draw_with(guest)
+        })?;
         self.meshes.iter_mut().for_each(|m| m.drop_staging());
         Ok(times)
     }

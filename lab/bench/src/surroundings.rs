@@ -1,7 +1,6 @@
 //! The surroundings of a run that change its times: variables that drivers read, allowed processors,
 //! niceness, and the clock's governor.
 
-use super::machine::field;
 use std::collections::BTreeMap;
 
 /// Starts of the names of variables that Vulkan's loader and layers, Mesa's and other drivers read.
@@ -144,6 +143,13 @@ pub(super) fn differences(
     names.into_iter().filter(differs).map(warning).collect()
 }
 
+/// The value of the first line that starts with `key`.
+pub(super) fn field(text: &str, key: &str, sign: char) -> Option<String> {
+    let mut fields = text.lines().filter_map(|line| line.split_once(sign));
+    let found = fields.find(|(name, _)| name.trim() == key);
+    found.map(|(_, value)| value.trim().trim_matches('"').to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -205,5 +211,15 @@ mod tests {
         assert!(found[0].contains("differ in scheduling"), "{found:?}");
         // A run of an earlier version says nothing.
         assert_eq!(differences(&of_note("device: card\n"), &other), [""; 0]);
+    }
+
+    #[test]
+    fn fields_of_the_systems_files() {
+        let processor = field("a : b\nmodel name\t: X 3\n", "model name", ':');
+        assert_eq!(processor.as_deref(), Some("X 3"));
+        let names = "NAME=\"u\"\nPRETTY_NAME=\"Deb 12\"";
+        let system = field(names, "PRETTY_NAME", '=');
+        assert_eq!(system.as_deref(), Some("Deb 12"));
+        assert_eq!(field("", "x", '='), None);
     }
 }

@@ -95,6 +95,11 @@ pub fn of(solver: Solver) -> Option<&'static Folder> {
     found.map(|(.., folder)| *folder)
 }
 
+/// The name of a folder's search; `None` for a search that no folder holds.
+pub fn name_of(solver: Solver) -> Option<String> {
+    of(solver).map(Folder::name)
+}
+
 /// The search that was loaded last.
 #[must_use]
 pub fn latest() -> Option<Solver> {

@@ -2,9 +2,7 @@
 //! runs. A program that must end sets a [handler](set_handler), which says which search did not end,
 //! and may begin again without that search.
 
-use crate::folder;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::settings::Solver;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, OnceLock};
 use std::time::Duration;
@@ -98,16 +96,16 @@ pub fn check(name: &str) -> Result<()> {
     }
 }
 
-/// Draws a frame. If a folder's search draws it, the frame has a limit of time, and a device that
-/// is lost counts as a frame that does not end. The [handler](set_handler) hears of both.
+/// Draws a frame by the folder's search of this name, if it is drawn by one: the frame has a limit
+/// of time, and a device that is lost counts as a frame that does not end. The
+/// [handler](set_handler) hears of both.
 ///
 /// # Errors
 /// Those of `draw`; [`ErrorKind::Other`] for a frame that ended after the limit.
-pub fn watched<T>(solver: Option<Solver>, draw: impl FnOnce() -> Result<T>) -> Result<T> {
-    let Some(folder) = solver.and_then(folder::of) else {
+pub fn watched<T>(folder: Option<String>, draw: impl FnOnce() -> Result<T>) -> Result<T> {
+    let Some(name) = folder else {
         return draw();
     };
-    let name = folder.name();
     check(&name)?;
     limited(&name, limit(), draw)
 }

@@ -12,7 +12,7 @@ use revmap_bench::folder::write_text;
 use revmap_bench::names::number;
 use revmap_files::Picture;
 use revmap_offscreen::Offscreen;
-use revmap_searches::folder::{check_frame, check_scene};
+use revmap_searches::folder::{check_frame, check_scene, name_of};
 use revmap_searches::watchdog::watched;
 use std::collections::HashMap;
 use std::path::Path;
@@ -236,7 +236,7 @@ fn draw(
     check_scene(solver, scene)?;
     let mut offscreen = Offscreen::new(device, scene, &settings)?;
     for _ in 0..step.frame {
-        watched(Some(solver), || offscreen.draw())?;
+        watched(name_of(solver), || offscreen.draw())?;
     }
     let frame = offscreen.read()?;
     check_frame(solver, &frame)?;

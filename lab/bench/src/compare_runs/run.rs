@@ -1,7 +1,6 @@
 //! A run read back from its folder.
 
 use crate::columns::{CONTRACT, results as columns};
-use crate::machine;
 use crate::stats;
 use crate::surroundings;
 use crate::table::{Table, text_of};
@@ -76,7 +75,7 @@ impl Run {
         Ok(Self {
             results,
             samples,
-            processor: machine::field(&note, "processor", ':').unwrap_or_default(),
+            processor: surroundings::field(&note, "processor", ':').unwrap_or_default(),
             surroundings: surroundings::of_note(&note),
         })
     }

@@ -47,14 +47,14 @@ pub struct Lists {
 
 impl Lists {
     /// True if bounds on steps or maps are named.
-    pub(super) fn combines(&self) -> bool {
+    pub(crate) fn combines(&self) -> bool {
         !(self.max_steps.is_empty()
             && self.map_rows.is_empty()
             && self.map_sources.is_empty()
             && self.map_formats.is_empty())
     }
 
-    pub(super) fn replace(&self, measure: &mut Measure) {
+    pub(crate) fn replace(&self, measure: &mut Measure) {
         fn put<T: Clone>(given: &[T], own: &mut Vec<T>) {
             if !given.is_empty() {
                 own.clear();

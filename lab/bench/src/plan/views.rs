@@ -102,7 +102,7 @@ fn whole() -> f64 {
 
 impl Views {
     /// Applies what the command line names.
-    pub(super) fn apply(&mut self, given: &Overrides) {
+    pub(crate) fn apply(&mut self, given: &Overrides) {
         if let Some(solids) = &given.solids {
             self.solids = solids.clone();
         }
@@ -116,7 +116,7 @@ impl Views {
     }
 
     /// The views; `scenes` take the place of the program's own solids.
-    pub(super) fn views(&self, scenes: &[View]) -> Result<Vec<View>> {
+    pub(crate) fn views(&self, scenes: &[View]) -> Result<Vec<View>> {
         let mut all = Vec::new();
         for view in self.arranged(scenes)? {
             // Framings in their own order, whatever that of the list.

@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used)]
-use super::super::{Case, Lists, embedded, is_rbm_baseline, suite};
+use super::super::plan::{Case, Lists, is_rbm_baseline, suite};
 use super::*;
 use crate::method::{Method, MethodSettings};
 use crate::view::Framing;

@@ -1,11 +1,10 @@
-//! The file of a plan: its keys, its faults, and what the command line changes in it.
+//! The file of a plan: its keys, its faults, and what the command line changes in it. Those of the
+//! program's own are [`embedded`] in it.
 
-use super::cases::Plan;
-use super::entry::Measure;
-use super::overrides::Overrides;
-use super::time_budget::TimeBudget;
-use super::views::Views;
-use crate::exhibit::{self, Exhibit};
+pub mod embedded;
+
+use super::exhibit::{self, Exhibit};
+use super::plan::{Measure, Overrides, Plan, TimeBudget, Views};
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;
 
