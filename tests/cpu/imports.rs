@@ -16,6 +16,9 @@ const KNOWN: [&str; 3] = ["files: profile::svg", "revmap: gpu", "revmap: gpu::co
 
 type Module = Vec<String>;
 
+/// The imports from one module of a folder to another.
+type Arrows<'a> = BTreeMap<(&'a str, String), Vec<String>>;
+
 #[derive(Default)]
 struct Source {
     /// Paths that begin with `crate`, `super` or `self`, from the root.
@@ -87,9 +90,7 @@ impl Crate {
 
     /// Circles among the modules of each folder: the folder, the modules, and the imports.
     fn circles(&self) -> Vec<[String; 3]> {
-        // By folder, then from module to module: the imports.
-        let mut folders: BTreeMap<&[String], BTreeMap<(&str, String), Vec<String>>> =
-            BTreeMap::new();
+        let mut folders: BTreeMap<&[String], Arrows> = BTreeMap::new();
         for (at, source) in &self.0 {
             for path in &source.named {
                 let to = self.target(path, 0);
