@@ -2,7 +2,7 @@
 //! --example map_accuracy`
 
 use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap};
-use revmap_lab::map_accuracy::{Disc, MapErrors};
+use revmap_compare::map_accuracy::{Disc, MapErrors};
 
 fn main() -> Result<(), revmap::Error> {
     println!(

@@ -136,8 +136,8 @@
 //!
 //! `revmap-offscreen` draws a scene without a host and smooths silhouettes, a client of [`gpu`].
 //! `revmap-files` reads profiles from SVG drawings and pictures, and scenes from TOML; it writes
-//! frames as PNG and EXR. Ground truth is `revmap-reference`; comparison, benchmarks and reports
-//! are in `revmap-lab`; the program is `revmap-cli`.
+//! frames as PNG and EXR. The program is `revmap-cli`. Crates that measure are in `lab`:
+//! `revmap-reference` is ground truth, `revmap-compare` compares frames, `revmap-bench` measures.
 
 pub mod cast;
 pub mod error;

@@ -224,7 +224,7 @@ fn flip(truth: &[Vec4], picture: &[Vec4]) -> Fallible<f32> {
         frame.color = colors.iter().map(Vec4::to_array).collect();
         revmap::Result::Ok(frame)
     };
-    let map = revmap_lab::compare::flip_map(&frame(truth)?, &frame(picture)?, PIXELS_PER_DEGREE);
+    let map = revmap_compare::flip_map(&frame(truth)?, &frame(picture)?, PIXELS_PER_DEGREE);
     Ok(map.iter().sum::<f32>() / map.len() as f32)
 }
 

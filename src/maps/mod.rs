@@ -3,6 +3,7 @@
 mod arc;
 mod mips;
 mod nearest;
+mod rounding;
 mod shape_map;
 mod store;
 mod textures;
@@ -10,8 +11,9 @@ mod textures;
 pub use crate::profile::Bounds;
 pub use arc::{ArcLength, ArcTable};
 pub use mips::Level;
+pub use rounding::round_down;
 pub use shape_map::{BakeOptions, MapSource, Measured, ShapeMap};
-pub use store::{EncodedMap, round_down};
+pub use store::EncodedMap;
 pub use textures::{ColorMap, DisplacementMap, SlopeFilter};
 
 use crate::names::name_of;

@@ -2,7 +2,7 @@
 //! when the picture is drawn (Blinn 1978).
 
 use super::mips::{self, Level, check_count};
-use super::store::to_half;
+use super::rounding::to_half;
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::{linear_from_srgb, srgb_from_linear};
 use crate::host_memory::{collected, filled};

@@ -4,12 +4,13 @@
 //! The cache keeps nothing alive. Objects and frames in flight do; a value is dropped with the last
 //! of them.
 
-use crate::error::{Error, Result, lock};
+use crate::error::{Result, lock};
 use crate::profile::Profile;
 use crate::scene::{GrownProfiles, Offset};
 use crate::search::Search;
+use crate::solid::contour::{OffsetContour, OutlineSource};
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
-use crate::surface::{Contour, ContourSource, Cylinders};
+use crate::surface::Cylinders;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
@@ -83,8 +84,7 @@ impl SolidCache {
 
 /// A profile, and everything that is made from it.
 pub(crate) struct Solid {
-    profile: Arc<Profile>,
-    source: OnceLock<Result<ContourSource>>,
+    source: Arc<OutlineSource>,
     outer: OnceLock<Cylinders>,
     contours: Mutex<Kept<[u64; 3], OffsetContour>>,
     surfaces: Mutex<Kept<SurfaceKey, OffsetSurface>>,
@@ -96,8 +96,7 @@ type SurfaceKey = (Option<&'static Search>, [u64; 3], u32);
 impl Solid {
     pub fn new(profile: &Arc<Profile>) -> Self {
         Self {
-            profile: profile.clone(),
-            source: OnceLock::new(),
+            source: Arc::new(OutlineSource::new(profile)),
             outer: OnceLock::new(),
             contours: Mutex::default(),
             surfaces: Mutex::default(),
@@ -106,27 +105,19 @@ impl Solid {
 
     /// Cylinders that contain the solid without its offset.
     pub fn outer(&self) -> &Cylinders {
-        let make = || Cylinders::around_outline(&self.profile.outline);
+        let make = || Cylinders::around_outline(self.source.outline());
         self.outer.get_or_init(make)
     }
 
     /// The contour under an offset. A new contour is not made yet.
-    pub fn contour(self: &Arc<Self>, offset: &Offset) -> Result<Arc<OffsetContour>> {
+    pub fn contour(&self, offset: &Offset) -> Result<Arc<OffsetContour>> {
         lock(&self.contours)?.get(bits(offset), || {
-            Ok(OffsetContour {
-                solid: self.clone(),
-                offset: *offset,
-                made: OnceLock::new(),
-            })
+            Ok(OffsetContour::new(&self.source, offset))
         })
     }
 
     /// The surface of a recipe under an offset. A new surface is not made yet.
-    pub fn surface(
-        self: &Arc<Self>,
-        offset: &Offset,
-        recipe: Recipe,
-    ) -> Result<Arc<OffsetSurface>> {
+    pub fn surface(&self, offset: &Offset, recipe: Recipe) -> Result<Arc<OffsetSurface>> {
         let (search, part) = match recipe {
             Recipe::Patches { level, .. } => (None, level.into()),
             Recipe::Table { search, rows } => (Some(search), rows),
@@ -140,31 +131,4 @@ impl Solid {
 /// The bits of an offset; both zeros give the same bits.
 fn bits(offset: &Offset) -> [u64; 3] {
     [offset.extend, offset.bevel, offset.chamfer].map(|v| (v + 0.0).to_bits())
-}
-
-/// The contour of a solid under an offset, made on first use. Surfaces of all levels are made from
-/// it.
-pub(crate) struct OffsetContour {
-    solid: Arc<Solid>,
-    offset: Offset,
-    made: OnceLock<Result<Contour>>,
-}
-
-impl OffsetContour {
-    /// True if it was made, or if making it failed.
-    pub fn is_made(&self) -> bool {
-        self.made.get().is_some()
-    }
-
-    /// The contour. The reason why there is none: the profile has none, or it does not close.
-    pub fn get(&self) -> std::result::Result<&Contour, &Error> {
-        let make = || {
-            let Solid {
-                profile, source, ..
-            } = &*self.solid;
-            let source = source.get_or_init(|| ContourSource::new(&profile.outline));
-            source.as_ref().map_err(Clone::clone)?.contour(&self.offset)
-        };
-        self.made.get_or_init(make).as_ref()
-    }
 }

@@ -2,6 +2,7 @@
 //! module here records Vulkan commands.
 
 pub(crate) mod cache;
+pub(crate) mod contour;
 pub(crate) mod offset_surface;
 pub(crate) mod proxy_hull;
 pub(crate) mod tables;

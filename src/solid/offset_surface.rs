@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use crate::search::{Reads, Search, SearchTable};
-use crate::solid::cache::OffsetContour;
+use crate::solid::contour::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::tables;
 use crate::surface::{Cylinders, FitOptions, QuadricPatch, fit_patches};

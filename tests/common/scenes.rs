@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene};
-use revmap_lab::compare::{CompareOptions, Comparison, compare};
+use revmap_compare::{CompareOptions, Comparison, compare};
 use std::sync::Arc;
 
 /// Errors of a frame without FLIP; depths in texels of a map of `rows` rows.

@@ -8,6 +8,7 @@ mod antialias;
 mod cast;
 mod contours;
 mod hull_rays;
+mod imports;
 mod surface;
 
 /// The smallest scene and the smallest program stand in the documents as they are.

@@ -10,8 +10,8 @@ use revmap::frame::{Frame, linear_from_srgb};
 use revmap::gpu::{Device, Output, PassFormats};
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
-use revmap_lab::compare::flip_map;
-use revmap_lab::samples::averaged;
+use revmap_compare::flip_map;
+use revmap_offscreen::samples::averaged;
 use revmap_offscreen::{Offscreen, OffscreenOptions};
 
 /// Pixels of a degree of the visual field, as FLIP's default.

@@ -12,7 +12,7 @@ use revmap::maps::MapFormat;
 use revmap::profile::Profile;
 use revmap::scene::{Clip, Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_lab::compare::Spread;
+use revmap_compare::Spread;
 
 /// A search with its hulls and beams, and the equivalent search from the box.
 pub struct Search {

@@ -7,7 +7,7 @@ use crate::common::{
 use revmap::gpu::{Device, INSTANCE_BYTES};
 use revmap::scene::{Scene, Shadow};
 use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
-use revmap_lab::compare::pixel_errors;
+use revmap_compare::pixel_errors;
 use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage, pixels: f64) -> Settings {

@@ -95,7 +95,9 @@ typedef uint32_t RevmapAxis;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-/// The search for the first hit along a ray.
+/// The search for the first hit along a ray. Linear, relief, secant, circle, cone and relaxed are
+/// for comparison: a library that is built without the feature `searches` refuses them with
+/// REVMAP_RESULT_UNSUPPORTED.
 enum RevmapSolver
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t

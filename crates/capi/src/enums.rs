@@ -1,14 +1,13 @@
 //! The header's enumerations and the library's values for their numbers. Structures hold these
 //! numbers as `uint32_t`, since C may write any number.
 
-use crate::fault::{Fault, Outcome};
+use crate::fault::{Fault, Outcome, RevmapResult};
 use ash::vk::CompareOp;
 use revmap::gpu::DepthOrder;
 use revmap::maps::{MapFormat, MapSource, Projection, SlopeFilter};
 use revmap::scene::{BumpForm, Clip, Shadow};
 use revmap::settings::{DrawStage, Plane, PlaneList, Planes, Solver};
 use revmap_files::ProfileAxis;
-use revmap_searches::{CIRCLE, CONE, LINEAR, RELAXED, RELIEF, SECANT};
 
 /// The part of a picture or a drawing that is the half-plane to be turned.
 #[repr(u32)]
@@ -20,7 +19,9 @@ pub enum RevmapAxis {
     Left = 1,
 }
 
-/// The search for the first hit along a ray.
+/// The search for the first hit along a ray. Linear, relief, secant, circle, cone and relaxed are
+/// for comparison: a library that is built without the feature `searches` refuses them with
+/// REVMAP_RESULT_UNSUPPORTED.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapSolver {
@@ -263,11 +264,31 @@ macro_rules! numbers {
     };
 }
 
+/// A search for comparison; `None` without the feature `searches`.
+macro_rules! published {
+    ($name:ident) => {{
+        #[cfg(feature = "searches")]
+        let search = Some(revmap_searches::$name);
+        #[cfg(not(feature = "searches"))]
+        let search = None;
+        search
+    }};
+}
+
+pub(crate) fn solver(number: u32) -> Outcome<Solver> {
+    built_solver(number)?.ok_or_else(|| {
+        let text =
+            format!("solver {number}: this library was built without the feature `searches`");
+        Fault::new(RevmapResult::Unsupported, text)
+    })
+}
+
 numbers! {
-    solver: RevmapSolver => Solver {
-        Default => Solver::DEFAULT, Linear => LINEAR, Relief => RELIEF, Secant => SECANT,
-        Circle => CIRCLE, Live => Solver::Live, Cone => CONE, Relaxed => RELAXED,
-        Quadric => Solver::Quadric, Exact => Solver::Exact,
+    built_solver: RevmapSolver => Option<Solver> {
+        Default => Some(Solver::DEFAULT), Linear => published!(LINEAR),
+        Relief => published!(RELIEF), Secant => published!(SECANT), Circle => published!(CIRCLE),
+        Live => Some(Solver::Live), Cone => published!(CONE), Relaxed => published!(RELAXED),
+        Quadric => Some(Solver::Quadric), Exact => Some(Solver::Exact),
     }
     map_source: RevmapMapSource => Option<MapSource> {
         Default => None, Binary => Some(revmap_files::BINARY), Coverage => Some(revmap_files::COVERAGE),

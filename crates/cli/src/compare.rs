@@ -5,8 +5,8 @@ mod pictures;
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_compare::{CompareOptions, Comparison, compare, heat_sheet};
 use revmap_files::read_exr;
-use revmap_lab::compare::{CompareOptions, Comparison, compare, heat_sheet};
 use serde_json::json;
 use std::path::PathBuf;
 

@@ -6,12 +6,12 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{Tolerance, name_of};
+use revmap_bench::folder;
+use revmap_bench::method::Method;
+use revmap_bench::plan::suite::Extent;
+use revmap_bench::plan::{self, Overrides};
+use revmap_bench::view::{Framing, View};
 use revmap_files::SceneFile;
-use revmap_lab::method::Method;
-use revmap_lab::report::folder;
-use revmap_lab::report::plan::suite::Extent;
-use revmap_lab::report::plan::{self, Overrides};
-use revmap_lab::report::view::{Framing, View};
 use std::path::{Path, PathBuf};
 
 /// Names of parts of the suite.

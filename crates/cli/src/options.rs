@@ -8,8 +8,8 @@ use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
-use revmap_lab::method::{Edges, Method, MethodSettings};
-use revmap_lab::samples::averaged;
+use revmap_bench::method::{Edges, Method, MethodSettings};
+use revmap_offscreen::samples::averaged;
 use revmap_searches::{cache, folder};
 use std::path::PathBuf;
 

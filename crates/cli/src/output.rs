@@ -2,8 +2,8 @@
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::DeviceReport;
+use revmap_bench::machine::Machine;
 use revmap_files::{check_writable, destination};
-use revmap_lab::report::machine::Machine;
 use std::io::ErrorKind::BrokenPipe;
 use std::io::Write;
 use std::path::{Path, PathBuf};

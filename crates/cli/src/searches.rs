@@ -5,11 +5,11 @@ use clap::{Args, Subcommand};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::{DrawStage, Solver};
+use revmap_bench::glossary;
+use revmap_bench::method::MethodSettings;
+use revmap_bench::renderer::MethodDevice;
+use revmap_compare::{CompareOptions, compare};
 use revmap_files::SceneFile;
-use revmap_lab::compare::{CompareOptions, compare};
-use revmap_lab::method::MethodSettings;
-use revmap_lab::renderer::MethodDevice;
-use revmap_lab::report::glossary;
 use revmap_searches::ALL;
 use revmap_searches::folder::{self, Folder};
 use revmap_searches::manifest::Manifest;
@@ -203,7 +203,7 @@ fn draws(manifest: &Manifest) -> String {
 fn origin(folder: Option<&Folder>, published: bool) -> String {
     match folder {
         Some(f) => format!("the folder {}, files {:016x}", f.path.display(), f.hash),
-        None if published => "revmap, for comparison (crates/searches/published)".to_owned(),
+        None if published => "revmap, for comparison (lab/searches/published)".to_owned(),
         None => "revmap's own (docs/searches.md)".to_owned(),
     }
 }

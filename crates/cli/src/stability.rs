@@ -8,12 +8,12 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::Solver;
-use revmap_lab::method::Method;
-use revmap_lab::report::folder;
-use revmap_lab::stability::case::SOLVERS as USUAL;
-use revmap_lab::stability::run::{Plan, run};
-use revmap_lab::stability::{cases, random, report};
+use revmap_bench::folder;
+use revmap_bench::method::Method;
 use revmap_searches::CIRCLE;
+use revmap_stability::case::SOLVERS as USUAL;
+use revmap_stability::run::{Plan, run};
+use revmap_stability::{cases, random, report};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 

@@ -37,6 +37,7 @@
 
 mod atomic_file;
 mod exif;
+mod faults;
 mod jpeg_end;
 mod maps;
 mod openexr;

@@ -1,11 +1,25 @@
 //! One command buffer: recording, submitting, waiting, and two timestamps.
 
-use crate::draw::Times;
 use ash::vk;
 use revmap::error::{Error, Result};
 use revmap::gpu::{Device, vulkan_error};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
+
+/// The times of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    /// Milliseconds that the CPU took to apply changes and to record.
+    pub prepare_ms: f64,
+    /// Milliseconds between GPU timestamps around the work; `None` if the device has no timestamps.
+    pub gpu_ms: Option<f64>,
+    /// Milliseconds from submission to completion by the wall clock.
+    pub frame_ms: f64,
+    /// Submissions of the frame, each of some rows
+    /// ([`OffscreenOptions::submission_ms`](crate::OffscreenOptions::submission_ms)). The times are
+    /// sums.
+    pub submissions: u32,
+}
 
 /// A command buffer, the fence that signals its end, and the queries of its timestamps.
 pub(crate) struct Commands {

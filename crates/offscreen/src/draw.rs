@@ -1,25 +1,11 @@
 //! The draws of a frame off screen, and their times.
 
+use crate::commands::Times;
 use crate::offscreen::Offscreen;
 use ash::vk;
 use revmap::error::Result;
 use revmap::gpu::{PreparedFrame, Renderer, View};
 use std::ops::Range;
-
-/// The times of one frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Times {
-    /// Milliseconds that the CPU took to apply changes and to record.
-    pub prepare_ms: f64,
-    /// Milliseconds between GPU timestamps around the work; `None` if the device has no timestamps.
-    pub gpu_ms: Option<f64>,
-    /// Milliseconds from submission to completion by the wall clock.
-    pub frame_ms: f64,
-    /// Submissions of the frame, each of some rows
-    /// ([`OffscreenOptions::submission_ms`](crate::OffscreenOptions::submission_ms)). The times are
-    /// sums.
-    pub submissions: u32,
-}
 
 /// Other content that is drawn in an off-screen frame's passes, into the same depth buffer. A frame
 /// has one pass, or one for each of its submissions ([`Times::submissions`]).

@@ -1,5 +1,5 @@
 //! Scenes drawn without a host: [`Offscreen`] makes a target, submits, waits and reads frames back.
-//! [`antialias`] smooths the silhouettes of such a frame.
+//! [`antialias`] smooths the silhouettes of such a frame, [`samples`] takes several rays per pixel.
 //!
 //! The crate is a client of [`revmap::gpu`] and uses its public interface alone.
 //!
@@ -26,10 +26,12 @@ mod draw;
 #[allow(unsafe_code)]
 mod offscreen;
 mod read_back;
+pub mod samples;
 #[allow(unsafe_code)]
 mod target;
 
-pub use draw::{Guest, Times};
+pub use commands::Times;
+pub use draw::Guest;
 pub use offscreen::{Offscreen, OffscreenOptions};
 
 use revmap::error::Result;

@@ -1,6 +1,7 @@
 //! Executes the requests of the controls and the pointer.
 
 use super::app::App;
+use super::change::Change;
 use super::controls::Asked;
 use super::keys::Action;
 use super::picture::colors;
@@ -14,15 +15,6 @@ use std::path::{Path, PathBuf};
 
 /// The number of changes that can be undone.
 const UNDOS: usize = 100;
-
-/// A change that continues over several frames, and is undone at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
-    /// A drag with a button held: of a slider, or of the camera.
-    Held,
-    /// Turns of the wheel, until another value changes.
-    Wheel,
-}
 
 impl App {
     /// Executes the effect of a key.

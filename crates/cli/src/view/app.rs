@@ -1,6 +1,6 @@
 //! The window: its events, its controls and its frames.
 
-use super::actions::Change;
+use super::change::Change;
 use super::controls::{self, Asked, Told};
 use super::framing::Framing;
 use super::picture::Painter;

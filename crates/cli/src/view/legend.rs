@@ -1,7 +1,7 @@
 //! The scale beside a picture in false colours: the colours that the picture has, with numbers.
 
-use revmap_lab::compare::{EMPTY, GHOST, MISSED, Scale, ramp};
-use revmap_lab::report::pictures::STEPS;
+use revmap_bench::pictures::STEPS;
+use revmap_compare::{EMPTY, GHOST, MISSED, Scale, ramp};
 
 /// Colours with their values.
 pub struct Legend {

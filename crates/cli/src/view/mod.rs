@@ -2,6 +2,7 @@
 
 mod actions;
 mod app;
+mod change;
 mod controls;
 mod framing;
 mod keys;

@@ -10,10 +10,11 @@ use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath};
 use revmap::settings::Settings;
+use revmap_bench::pictures::steps;
+use revmap_compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_files::Picture;
-use revmap_lab::compare::{CompareOptions, Heat, compare, heat_map};
-use revmap_lab::report::pictures::steps;
 use revmap_offscreen::{Offscreen, Times};
+use revmap_searches::folder;
 use revmap_searches::watchdog::watched;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
@@ -169,7 +170,7 @@ impl Painter {
                 made
             }
         };
-        let times = watched(Some(settings.solver), || offscreen.draw())?;
+        let times = watched(folder::name_of(settings.solver), || offscreen.draw())?;
         self.draw_paths = offscreen.renderer().draw_paths();
         let (_, offscreen) = self.offscreen.insert((settings, offscreen));
         Ok((offscreen, times))

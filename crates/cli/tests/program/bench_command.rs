@@ -2,8 +2,8 @@
 //! a real device, small and brief.
 
 use crate::run::{Bench, lines};
-use revmap_lab::report::columns;
-use revmap_lab::report::table::Table;
+use revmap_bench::columns;
+use revmap_bench::table::Table;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 

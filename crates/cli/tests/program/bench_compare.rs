@@ -1,8 +1,8 @@
 //! `revmap bench --compare` with planted runs.
 
 use crate::run::{Bench, lines};
-use revmap_lab::report::columns;
-use revmap_lab::report::table::Table;
+use revmap_bench::columns;
+use revmap_bench::table::Table;
 
 /// A folder with a run of one row.
 fn run(bench: &Bench, folder: &str, driver: &str, processor: &str) {

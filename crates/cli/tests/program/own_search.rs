@@ -6,10 +6,10 @@ use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Solver};
+use revmap_bench::method::MethodSettings;
+use revmap_bench::renderer::MethodDevice;
+use revmap_compare::{CompareOptions, compare};
 use revmap_files::SceneFile;
-use revmap_lab::compare::{CompareOptions, compare};
-use revmap_lab::method::MethodSettings;
-use revmap_lab::renderer::MethodDevice;
 use revmap_searches::{CIRCLE, LINEAR, SECANT, folder};
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -294,7 +294,7 @@ fn the_example_with_a_table_draws_its_solid() {
 fn a_copy_of_a_built_in_search_draws_the_same_bits() {
     let device = Device::open_validated(None).unwrap();
     for (name, own) in [("circle", CIRCLE), ("linear", LINEAR), ("secant", SECANT)] {
-        let path = repository(&format!("crates/searches/published/{name}"));
+        let path = repository(&format!("lab/searches/published/{name}"));
         let copy = folder::load(&path).unwrap();
         assert_eq!(copy.name(), format!("{name} (folder)"));
         for (sets, stage) in [
@@ -336,7 +336,7 @@ fn a_new_folder_draws_and_is_listed() {
         "circle: ",
         "reads       table",
         "Dummer",
-        "crates/searches/published",
+        "lab/searches/published",
     ] {
         assert!(all.contains(word), "no {word}: {all}");
     }

@@ -10,8 +10,9 @@
 use super::form::{DRAWING, Silhouette};
 use super::paint::{Paint, Rgba, Tile, gradients, is_dark, lightened, over_white, overlap};
 use super::svg::{Band, Clip, Group, Node, Path, has_translucency};
-use super::{ProfileAxis, empty_fault, full_fault, half_empty_fault, svg};
+use super::{ProfileAxis, svg};
 use crate::content_fault;
+use crate::faults::{empty_fault, full_fault, half_empty_fault};
 use crate::pixels::luminance;
 use glam::{DVec2, Vec2Swizzles as _};
 use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};

@@ -1,8 +1,9 @@
 //! Profiles from pictures: dark is solid.
 
 use super::form::{Silhouette, is_shell};
-use super::{ProfileOptions, full_fault, half_empty_fault, options, transparency};
+use super::{ProfileOptions, options, transparency};
 use crate::content_fault;
+use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;
 use crate::pixels::{decode, luminance};
 use crate::trace::{trace, trace_split};

@@ -15,8 +15,8 @@ pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions};
 
 use crate::pixels::is_picture;
-use crate::{content_fault, file_fault, read_bytes};
-use revmap::error::{Error, Result};
+use crate::{file_fault, read_bytes};
+use revmap::error::Result;
 use revmap::profile::Profile;
 use std::path::Path;
 
@@ -83,35 +83,4 @@ fn is_drawing(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let first = text.iter().find(|b| !b.is_ascii_whitespace());
     first == Some(&b'<') || bytes.starts_with(&[0x1f, 0x8b])
-}
-
-/// The failure of a picture without anything dark.
-pub(crate) fn empty_fault(what: &str) -> Error {
-    content_fault(format!(
-        "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
-         white, or set {}",
-        tonal_keys(what, "profile_axis")
-    ))
-}
-
-/// The failure of a solid that is left of the axis, with its place.
-fn half_empty_fault(aside: &str) -> Error {
-    content_fault(format!("the half right of the axis is empty: {aside}"))
-}
-
-/// Keys that may help, with those of tones, which drawings do not have.
-fn tonal_keys(what: &str, or: &str) -> String {
-    match what {
-        "drawing" => or.to_owned(),
-        _ => format!("profile_threshold, profile_invert or {or}"),
-    }
-}
-
-/// The failure of a picture that is dark all over.
-fn full_fault(what: &str) -> Error {
-    content_fault(format!(
-        "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
-         or set {} (a plain cylinder: use a polygon)",
-        tonal_keys(what, "profile_axis")
-    ))
 }

@@ -1,7 +1,6 @@
 //! A table of a scene file: only known keys, each read as its required type. Every message has the
 //! key's full path.
 
-use super::reader::OBJECT;
 use crate::content_fault;
 use glam::DVec3;
 use revmap::error::{Error, Result};
@@ -311,6 +310,13 @@ pub fn decimal_comma(text: &str) -> Option<String> {
         false => format!("{point}"),
     })
 }
+
+/// Keys of `[[object]]`.
+pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
+    profile_smooth radius map_rows color color_map specular shininess roughness \
+    metalness height_map bump bump_form \
+    projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
+    instances";
 
 fn is_of_object(key: &str) -> bool {
     OBJECT.split_whitespace().any(|known| known == key)

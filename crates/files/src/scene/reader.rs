@@ -1,7 +1,7 @@
 //! Tables of a scene file into a scene, with all files that they name.
 
 use super::instances;
-use super::keys::Keys;
+use super::keys::{Keys, OBJECT};
 use super::polygon;
 use crate::profile::gap_hints;
 use crate::{
@@ -27,12 +27,6 @@ pub(super) const SCENE: &str = "background ambient shadow camera light object";
 pub(super) const CAMERA: &str = "eye target up fov_y";
 /// Keys of `[[light]]`.
 pub(super) const LIGHT: &str = "direction color radius";
-/// Keys of `[[object]]`.
-pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
-    profile_smooth radius map_rows color color_map specular shininess roughness \
-    metalness height_map bump bump_form \
-    projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
-    instances";
 /// Keys that place one copy.
 const PLACEMENT: [&str; 3] = ["position", "rotation", "scale"];
 /// `R` of a polygon's box unless the file gives another.

@@ -1,7 +1,8 @@
 //! Tests of the reader of scene files.
 
 #![allow(clippy::unwrap_used)]
-use super::reader::{CAMERA, LIGHT, OBJECT};
+use super::keys::OBJECT;
+use super::reader::{CAMERA, LIGHT};
 use super::*;
 use glam::DQuat;
 use revmap::maps::Projection;

@@ -23,7 +23,7 @@ mod smooth;
 pub(crate) use roughness::roughness;
 
 use crate::content_fault;
-use crate::profile::empty_fault;
+use crate::faults::empty_fault;
 use glam::DVec2;
 use rayon::prelude::*;
 use revmap::error::Result;

@@ -4,7 +4,7 @@ use crate::raster::{rasterize, with_levels};
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::scene::Offset;
 use revmap::surface::ContourSource;
-use revmap_lab::map_accuracy::Disc;
+use revmap_compare::map_accuracy::Disc;
 
 fn picture(columns: u32, rows: u32, coverage: impl Fn(f64, f64) -> f64) -> Raster {
     let at = |k: u32| coverage(f64::from(k % columns) + 0.5, f64::from(k / columns) + 0.5);

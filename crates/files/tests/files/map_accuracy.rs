@@ -2,8 +2,8 @@
 //! `docs/maps.md`.
 
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
+use revmap_compare::map_accuracy::{Disc, MapErrors};
 use revmap_files::{BINARY, COVERAGE};
-use revmap_lab::map_accuracy::{Disc, MapErrors};
 
 fn errors(source: MapSource, rows: u32) -> MapErrors {
     let e = Disc::default().errors(source, rows).unwrap();

@@ -51,6 +51,12 @@ fn renderers_and_objects() {
             Usage, "planes": revmap_renderer_create_compute(device, 4, null(), 2, &mut other);
             Usage, "RevmapSolver": revmap_renderer_create_compute(device, 0, &search, 2, &mut other);
         }
+        if cfg!(not(feature = "searches")) {
+            search.solver = RevmapSolver::Circle as u32;
+            fail! {
+                Unsupported, "`searches`": revmap_renderer_create_compute(device, 0, &search, 2, &mut other);
+            }
+        }
         ok! { revmap_renderer_create_compute(device, 0, null(), 2, &mut other); }
 
         fail! {

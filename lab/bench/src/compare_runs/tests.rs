@@ -1,0 +1,113 @@
+#![allow(clippy::unwrap_used)]
+use super::super::columns::tests::csv_of;
+use super::super::folder::{raw, write_text};
+use super::super::row::Row;
+use super::super::row::tests::row;
+use super::*;
+use crate::columns::results;
+use crate::plan::rbm_baseline;
+use crate::view::tests::spindle;
+use revmap::settings::DrawStage;
+
+/// The folder of a run of these rows.
+pub(super) fn folder_of(rows: &[Row], device: &str, driver: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let results = csv_of(rows, device, driver);
+    write_text(&folder.path().join("results.csv"), &results.csv()).unwrap();
+    write_text(&folder.path().join("raw.csv"), &raw(rows).csv()).unwrap();
+    folder
+}
+
+fn run(rows: &[Row]) -> tempfile::TempDir {
+    folder_of(rows, "device, with a comma", "driver")
+}
+
+fn verdicts(found: &Against) -> Vec<Verdict> {
+    found.pairs.iter().map(Pair::verdict).collect()
+}
+
+fn timed(times: [f64; 4], stage: DrawStage) -> Row {
+    let pass = |t: f64| [(0.99 * t, t), (t, 1.01 * t), (0.98 * t, t)];
+    let passes = times.map(|t| pass(t).map(|(gpu, frame)| (Some(gpu), frame)));
+    let mut row = row(&passes.each_ref().map(|p| p.as_slice()));
+    row.settings.stage = stage;
+    row
+}
+
+#[test]
+fn planted_changes_are_found() {
+    let old = run(&[
+        timed([10.0, 10.2, 9.9, 10.1], DrawStage::Fragment),
+        timed([20.0, 21.0, 19.0, 20.5], DrawStage::Compute),
+    ]);
+    let mut slow = timed([12.0, 12.2, 11.9, 12.1], DrawStage::Fragment);
+    slow.errors.missed = 40;
+    let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
+    let found = compare(old.path(), new.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Slower, Verdict::Even]);
+    assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
+    assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
+    let text = as_text(&found);
+    assert!(text.contains("1 slower, 0 faster, 1 within"), "{text}");
+    let worse = "less exact: fragment: missed 0 to 40";
+    assert!(text.contains(worse), "{text}");
+    let back = compare(new.path(), old.path()).unwrap();
+    assert_eq!(back.pairs[0].verdict(), Verdict::Faster);
+    assert_eq!(back.pairs[0].better.len(), 1);
+}
+
+/// One run had a machine of half the speed: the RBM baseline tells so.
+#[test]
+fn a_slower_machine_is_told_from_a_slower_search() {
+    let papers = |times| {
+        let mut row = timed(times, DrawStage::Fragment);
+        row.settings = rbm_baseline(&spindle(), &row.settings);
+        row.source = row.settings.map_source;
+        row
+    };
+    let search = |times, steps| {
+        let mut row = timed(times, DrawStage::Fragment);
+        row.settings.max_steps = Some(steps);
+        row
+    };
+    let old = run(&[
+        papers([10.0, 10.2, 9.9, 10.1]),
+        search([5.0, 5.1, 4.9, 5.0], 30),
+        search([5.0, 5.1, 4.9, 5.0], 40),
+    ]);
+    let new = run(&[
+        papers([20.0, 20.4, 19.8, 20.2]),
+        search([10.0, 10.2, 9.8, 10.0], 30),
+        search([15.0, 15.2, 14.8, 15.0], 40),
+    ]);
+    let found = compare(old.path(), new.path()).unwrap();
+    let wanted = [Verdict::Slower, Verdict::Even, Verdict::Slower];
+    assert_eq!(verdicts(&found), wanted);
+    assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
+    assert!(as_text(&found).contains("the RBM baseline itself differs"));
+}
+
+#[test]
+fn a_rejected_clock_gives_no_verdict() {
+    let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let mut lies = timed([10.0; 4], DrawStage::Fragment);
+    let samples = lies.passes.iter_mut().flatten();
+    samples.for_each(|s| s.gpu_ms = Some(0.036));
+    let lies = run(&[lies]);
+    let found = compare(fine.path(), lies.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Unresolved]);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
+    let refused = || compare(a.path(), b.path()).unwrap_err().to_string();
+    assert!(refused().contains("in common"));
+    let empty = tempfile::tempdir().unwrap();
+    let error = compare(a.path(), empty.path()).unwrap_err();
+    assert!(error.file.unwrap().ends_with("results.csv"));
+    std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
+    assert!(refused().contains("other columns"));
+    assert_eq!(results().nth(KEY - 1), Some("objects"));
+}

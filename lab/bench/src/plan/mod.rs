@@ -1,0 +1,18 @@
+//! A plan says what a benchmark measures. Its file is [`plan_file`](crate::plan_file).
+
+mod arrange;
+mod cases;
+mod entry;
+mod overrides;
+pub mod suite;
+mod time_budget;
+mod values;
+mod views;
+
+pub use arrange::{army, flight_camera};
+pub(crate) use cases::grouped;
+pub use cases::{Case, Plan, RBM_BASELINE, is_rbm_baseline, rbm_baseline, variant};
+pub use entry::{Measure, Pick};
+pub use overrides::{Lists, Overrides};
+pub use time_budget::TimeBudget;
+pub use views::{Form, Views};

@@ -1,0 +1,171 @@
+//! The table of all outputs: of files, of standard output and of pages.
+
+use revmap::error::{Error, ErrorKind, Result};
+use std::path::Path;
+
+/// A table of text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Records, each as long as the header.
+    pub records: Vec<Vec<String>>,
+}
+
+/// A column's name, and its text for what a record is of.
+pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
+impl Table {
+    /// A table with these columns.
+    pub fn new(
+        header: impl IntoIterator<Item = impl Into<String>>,
+        records: Vec<Vec<String>>,
+    ) -> Self {
+        Self {
+            header: header.into_iter().map(Into::into).collect(),
+            records,
+        }
+    }
+
+    /// A record for each of these.
+    pub fn of<T>(all: &[T], columns: &[Column<T>]) -> Self {
+        let record = |one| columns.iter().map(|(_, text)| text(one)).collect();
+        Self::new(
+            columns.iter().map(|c| c.0),
+            all.iter().map(record).collect(),
+        )
+    }
+
+    /// The header, then the records.
+    fn lines(&self) -> impl Iterator<Item = &Vec<String>> {
+        std::iter::once(&self.header).chain(&self.records)
+    }
+
+    /// Its text as comma-separated values (RFC 4180), lines ended by a line feed.
+    pub fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let written = self.lines().try_for_each(|line| writer.write_record(line));
+        // Memory takes whatever is written, and records are as long as the header.
+        let bytes = written.ok().and_then(|()| writer.into_inner().ok());
+        String::from_utf8(bytes.unwrap_or_default()).unwrap_or_default()
+    }
+
+    /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
+    pub fn aligned(&self) -> String {
+        let width = |column: usize| {
+            let fields = self.lines().filter_map(|line| line.get(column));
+            fields.map(|f| f.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        let pad = |(column, (field, &width)): (usize, (&String, &usize))| match column {
+            0 => format!("{field:width$}"),
+            _ => format!("{field:>width$}"),
+        };
+        let mut out = String::new();
+        for line in self.lines() {
+            let fields = line.iter().zip(&widths).enumerate();
+            let padded: Vec<String> = fields.map(pad).collect();
+            out += padded.join("  ").trim_end();
+            out.push('\n');
+        }
+        out
+    }
+
+    /// Reads comma-separated values.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`]: no header, a quote that is not closed, a record of another length than
+    /// the header.
+    pub fn parse(text: &str) -> Result<Self> {
+        let fault = |message: String| {
+            let message = format!("{message}; write the file again with `revmap bench`");
+            Err(Error::new(ErrorKind::File, message))
+        };
+        if text.matches('"').count() % 2 == 1 {
+            return fault("a quoted field has no end".into());
+        }
+        // Spreadsheets begin a file with a byte order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let header = match reader.headers() {
+            Ok(header) if !header.is_empty() => header.iter().map(str::to_owned).collect(),
+            _ => return fault("is empty".into()),
+        };
+        let owned = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let records = reader.records().map(|record| record.map(owned));
+        match records.collect() {
+            Ok(records) => Ok(Self { header, records }),
+            Err(e) => fault(e.to_string()),
+        }
+    }
+
+    /// Reads a file of comma-separated values.
+    pub fn load(file: &Path) -> Result<Self> {
+        Self::parse(&text_of(file)?).map_err(|e| e.in_file(file))
+    }
+
+    /// The place of a column.
+    pub fn column(&self, name: &str) -> Result<usize> {
+        self.header.iter().position(|n| n == name).ok_or_else(|| {
+            let message = format!("has no column `{name}`; write it again with `revmap bench`");
+            Error::new(ErrorKind::File, message)
+        })
+    }
+}
+
+/// The text of a run's file.
+pub(super) fn text_of(file: &Path) -> Result<String> {
+    std::fs::read_to_string(file).map_err(|e| {
+        let message = format!("cannot be read ({e}); give a folder that `revmap bench` wrote");
+        Error::new(ErrorKind::File, message).in_file(file)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn table(header: &[&str], records: &[&[&str]]) -> Table {
+        let owned = |record: &&[&str]| record.iter().map(ToString::to_string).collect();
+        Table::new(header.iter().copied(), records.iter().map(owned).collect())
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let quoted: &[&str] = &["\"q\"", "l1\nl2", "a,b"];
+        let records = [&["1", "", "x y"], quoted, &["", "", ""]];
+        let written = table(&["a", "b,c", "d"], &records);
+        let text = written.csv();
+        let start = "a,\"b,c\",d\n1,,x y\n\"\"\"q\"\"\",";
+        assert!(text.starts_with(start), "{text}");
+        let windows = text.replace('\n', "\r\n").replace("l1\r\n", "l1\n");
+        let marked = format!("\u{feff}{windows}");
+        for text in [text, windows, marked] {
+            assert_eq!(Table::parse(&text).unwrap(), written);
+        }
+        assert_eq!(written.column("d").unwrap(), 2);
+        assert!(written.column("e").is_err());
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let text = table(&["name", "ms"], &[&["a", "10.5"], &["long name", "1"]]).aligned();
+        assert_eq!(text, "name         ms\na          10.5\nlong name     1\n");
+    }
+
+    #[test]
+    fn damaged_tables_are_refused() {
+        for (text, wanted) in [
+            ("", "is empty"),
+            ("a,b\n1\n", "1 field"),
+            ("a,b\n1,2,3\n", "3 fields"),
+            ("a,b\n1,\"2\n", "no end"),
+        ] {
+            let error = Table::parse(text).unwrap_err();
+            assert!(error.to_string().contains(wanted), "{error}");
+        }
+        // The last line may lack its end.
+        assert_eq!(Table::parse("a,b\n1,2").unwrap().records, [["1", "2"]]);
+    }
+}

@@ -1,0 +1,435 @@
+//! Random scenes, held to the reference, and reduced to the smallest that still fail.
+
+use super::case::Step;
+use super::cases::on_half_turn;
+use super::judge::Truth;
+use super::run::both_stages;
+use revmap::error::Result;
+use revmap::gpu::Device;
+use revmap::settings::Solver;
+use revmap_bench::folder::write_text;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Pixels of a random scene.
+const SIZE: (u32, u32) = (96, 72);
+
+/// A scene in the making: parts that can be left out one by one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draft {
+    seed: u64,
+    camera: String,
+    /// Lines of the scene and lights.
+    lines: Vec<String>,
+    lights: Vec<[f64; 3]>,
+    objects: Vec<DraftObject>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct DraftObject {
+    polygon: Vec<[f64; 2]>,
+    keys: Vec<String>,
+    /// Rows of its file of instances.
+    copies: Vec<[f64; 10]>,
+}
+
+/// A camera in the making.
+struct DraftCamera {
+    eye: [f64; 3],
+    target: [f64; 3],
+    fov: f64,
+}
+
+/// A random scene that failed.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The seed that gave it.
+    pub seed: u64,
+    /// What failed, in the smallest scene.
+    pub what: String,
+    /// The file that holds the smallest scene.
+    pub file: String,
+}
+
+/// Numbers by SplitMix64.
+struct Random(u64);
+
+impl Random {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    /// True once in so many times.
+    fn once_in(&mut self, times: f64) -> bool {
+        self.next() * times < 1.0
+    }
+
+    /// What `other` gives, once in so many times.
+    fn maybe<T>(&mut self, times: f64, usual: T, other: impl FnOnce(&mut Self) -> T) -> T {
+        if self.once_in(times) {
+            other(self)
+        } else {
+            usual
+        }
+    }
+
+    /// Evenly among the logarithms.
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        (self.within(low.ln(), high.ln())).exp()
+    }
+
+    fn direction(&mut self) -> [f64; 3] {
+        let z = self.within(-1.0, 1.0);
+        let angle = self.within(0.0, TAU);
+        let r = (1.0 - z * z).sqrt();
+        [r * angle.cos(), r * angle.sin(), z]
+    }
+
+    fn rotation(&mut self) -> [f64; 4] {
+        let [x, y, z] = self.direction();
+        let (s, c) = self.within(0.0, PI).sin_cos();
+        [x * s, y * s, z * s, c]
+    }
+
+    fn polygon(&mut self) -> Vec<[f64; 2]> {
+        let count = 3 + (9.0 * self.next()) as usize;
+        let last = count as f64;
+        match (4.0 * self.next()) as u32 {
+            // Half a star, both ends on the axis.
+            0 => (0..=count)
+                .map(|k| on_half_turn(k, count, self.within(0.15, 0.48)))
+                .collect(),
+            // A whole star off the axis: a ring.
+            1 => (0..count)
+                .map(|k| {
+                    let angle = TAU * k as f64 / last;
+                    let radius = self.within(0.05, 0.22);
+                    [0.26 + radius * angle.cos(), 0.5 + radius * angle.sin()]
+                })
+                .collect(),
+            // Discs, cones and cylinders on top of each other.
+            2 => {
+                let mut points = vec![[0.0, 0.04]];
+                for k in 0..count {
+                    let z = 0.04 + 0.9 * k as f64 / last;
+                    let (low, high) = (self.within(0.08, 0.46), self.within(0.08, 0.46));
+                    points.push([low, z]);
+                    points.push([if self.once_in(2.0) { low } else { high }, z + 0.9 / last]);
+                }
+                points.push([0.0, 0.94]);
+                points
+            }
+            // Anything, its edges crossing.
+            _ => (0..count.min(6))
+                .map(|_| [self.within(0.0, 0.48), self.within(0.02, 0.98)])
+                .collect(),
+        }
+    }
+
+    /// Makes the first object or the view extreme in one way.
+    fn extreme(&mut self, objects: &mut [DraftObject], scale: f64, camera: &mut DraftCamera) {
+        let object = &mut objects[0];
+        let polygon = &mut object.polygon;
+        let away = |camera: &mut DraftCamera, by: f64| {
+            for (eye, target) in camera.eye.iter_mut().zip(camera.target) {
+                *eye = target + by * (*eye - target);
+            }
+        };
+        match (9.0 * self.next()) as u32 {
+            // Very long along one or two axes.
+            0 => {
+                let by = self.log(1e2, 1e5);
+                let long = [(); 3].map(|()| scale * self.maybe(2.0, 1.0, |_| by));
+                object.keys.retain(|key| !key.starts_with("scale"));
+                object.keys.push(format!("scale = {long:?}"));
+                away(camera, by);
+            }
+            // Small in its box, as lengths in the wrong unit.
+            1 => {
+                let by = self.log(1e-5, 0.1);
+                polygon.iter_mut().for_each(|p| *p = p.map(|v| by * v));
+                camera.target[2] -= 0.5 * scale;
+                camera.eye[2] -= 0.5 * scale;
+                away(camera, by);
+            }
+            // Much wider than high.
+            2 => {
+                let by = self.log(10.0, 1e3);
+                polygon.iter_mut().for_each(|p| p[0] *= by);
+                away(camera, by);
+            }
+            // Nearly level: lids, thin rings.
+            3 => {
+                let by = self.log(1e-4, 0.1);
+                let level = self.within(0.1, 0.9);
+                let squeezed = |z: f64| level + by * (z - 0.5);
+                polygon.iter_mut().for_each(|p| p[1] = squeezed(p[1]));
+            }
+            // A section without thickness: out and back along a line.
+            4 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                let (root, tip) = (polygon[n], [self.within(0.0, 0.5), self.within(0.0, 1.0)]);
+                polygon.splice(n..n, [root, tip]);
+            }
+            // A corner twice, or nearly.
+            5 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                let by = self.maybe(2.0, 0.0, |r| r.log(1e-12, 1e-4));
+                let [r, z] = polygon[n];
+                polygon.insert(n, [r + by, z]);
+            }
+            // Along the axis, from above or below.
+            6 => {
+                let up = if self.once_in(2.0) { 1.0 } else { -1.0 };
+                let far = self.log(1.0, 1e3);
+                let aside = self.maybe(2.0, 0.0, |r| r.log(1e-9, 1e-2));
+                camera.eye = camera.target;
+                camera.eye[0] += aside * scale;
+                camera.eye[2] += up * far * scale;
+                camera.fov = (2.0 * (0.8 / far).atan().to_degrees()).min(80.0);
+            }
+            // Along a level face.
+            7 => {
+                let n = (self.next() * polygon.len() as f64) as usize;
+                camera.eye[2] = camera.target[2] + scale * (polygon[n][1] - 0.5);
+                camera.target[2] = camera.eye[2];
+            }
+            // A very wide field of view.
+            _ => camera.fov = self.within(90.0, 170.0),
+        }
+    }
+
+    fn object(&mut self, scale: f64, at: [f64; 3]) -> DraftObject {
+        let mut keys = Vec::new();
+        let mut copies = Vec::new();
+        let sides = [(); 3].map(|()| scale * self.maybe(3.0, 1.0, |r| r.log(0.25, 4.0)));
+        let turn = self.maybe(3.0, [0.0, 0.0, 0.0, 1.0], Self::rotation);
+        keys.push(format!("position = {at:?}"));
+        keys.push(format!("scale = {sides:?}"));
+        keys.push(format!("rotation = {turn:?}"));
+        keys.push(format!("color = {:?}", [(); 3].map(|()| self.next())));
+        if self.once_in(3.0) {
+            keys.push(format!("extend = {:?}", self.within(-0.05, 0.1)));
+        }
+        if self.once_in(3.0) {
+            keys.push(format!("bevel = {:?}", self.log(0.05, 2.0)));
+            keys.push(format!("chamfer = {:?}", self.within(0.05, 0.3)));
+        }
+        if self.once_in(6.0) {
+            keys.push(format!("axis = {:?}", [self.next(), self.next()]));
+        }
+        if self.once_in(6.0) {
+            let n = [(); 3].map(|()| 1 + (3.0 * self.next()) as u32);
+            keys.push(format!("repeat = {n:?}"));
+            let mirror = [(); 3].map(|()| self.once_in(2.0));
+            keys.push(format!("mirror = {mirror:?}"));
+        }
+        if self.once_in(6.0) {
+            for _ in 0..3 {
+                let [x, y, z] = self.direction().map(|d| 0.6 * scale * d);
+                let [a, b, c, d] = self.rotation();
+                let s = scale * self.within(0.3, 1.0);
+                copies.push([at[0] + x, at[1] + y, at[2] + z, a, b, c, d, s, s, s]);
+            }
+        }
+        DraftObject {
+            polygon: self.polygon(),
+            keys,
+            copies,
+        }
+    }
+}
+
+impl Draft {
+    /// The scene of a seed.
+    pub fn new(seed: u64) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
+        let r = &mut random;
+        let scale = r.maybe(3.0, 1.0, |r| r.log(1e-4, 1e4));
+        let middle = r.maybe(4.0, [0.0; 3], |r| {
+            let far = r.log(1.0, 1e5);
+            r.direction().map(|d| far * d)
+        });
+        let count = 1 + (2.0 * r.next() * r.next() * 2.0) as usize;
+        let objects = (0..count)
+            .map(|k| {
+                let aside = r
+                    .direction()
+                    .map(|d| if k == 0 { 0.0 } else { 0.5 * scale * d });
+                r.object(scale, [0, 1, 2].map(|c| middle[c] + aside[c]))
+            })
+            .collect();
+        let away = if r.once_in(8.0) {
+            r.within(0.05, 0.8)
+        } else {
+            r.log(1.2, 1e3)
+        };
+        let way = r.direction();
+        let target = [0, 1, 2].map(|c| middle[c] + if c == 2 { 0.5 * scale } else { 0.0 });
+        let eye = [0, 1, 2].map(|c| target[c] + away * scale * way[c]);
+        let fov = (2.0 * (0.8 / away).atan().to_degrees()).min(80.0);
+        let mut camera = DraftCamera { eye, target, fov };
+        let lines = r.maybe(6.0, Vec::new(), |_| vec!["shadow = \"hard\"".to_owned()]);
+        let lights = (0..1 + (2.0 * r.next()) as usize)
+            .map(|_| r.direction())
+            .collect();
+        let mut objects: Vec<DraftObject> = objects;
+        if r.once_in(2.0) {
+            r.extreme(&mut objects, scale, &mut camera);
+        }
+        let DraftCamera { eye, target, fov } = camera;
+        Self {
+            seed,
+            camera: format!(
+                "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
+            ),
+            lines,
+            lights,
+            objects,
+        }
+    }
+
+    fn file(&self, object: usize) -> String {
+        format!("random-{}-{object}.csv", self.seed)
+    }
+
+    /// The scene as TOML.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        for line in &self.lines {
+            let _ = writeln!(out, "{line}");
+        }
+        let _ = writeln!(out, "{}", self.camera);
+        for light in &self.lights {
+            let _ = writeln!(out, "[[light]]\ndirection = {light:?}");
+        }
+        for (k, object) in self.objects.iter().enumerate() {
+            let _ = writeln!(out, "[[object]]\npolygon = {:?}", object.polygon);
+            for key in &object.keys {
+                let _ = writeln!(out, "{key}");
+            }
+            if !object.copies.is_empty() {
+                let _ = writeln!(out, "instances = {:?}", self.file(k));
+            }
+        }
+        out
+    }
+
+    /// The files that the text names, and what they hold.
+    fn instance_files(&self) -> impl Iterator<Item = (String, String)> {
+        let objects = self.objects.iter().enumerate();
+        let row = |row: &[f64; 10]| row.map(|v| format!("{v:?}")).join(",") + "\n";
+        let with_copies = objects.filter(|(_, object)| !object.copies.is_empty());
+        with_copies.map(move |(k, object)| (self.file(k), object.copies.iter().map(row).collect()))
+    }
+
+    /// The same with one part less, in every way there is.
+    fn smaller(&self) -> Vec<Self> {
+        let mut all = Vec::new();
+        let mut without = |count: usize, remove: &dyn Fn(&mut Self, usize)| {
+            for k in 0..count {
+                let mut one = self.clone();
+                remove(&mut one, k);
+                all.push(one);
+            }
+        };
+        if self.objects.len() > 1 {
+            without(self.objects.len(), &|d, k| drop(d.objects.remove(k)));
+        }
+        without(self.lines.len(), &|d, k| drop(d.lines.remove(k)));
+        without(self.lights.len(), &|d, k| _ = d.lights.remove(k));
+        for (n, object) in self.objects.iter().enumerate() {
+            let keys = |d: &mut Self, k| drop(d.objects[n].keys.remove(k));
+            without(object.keys.len(), &keys);
+            let copies = |d: &mut Self, k| _ = d.objects[n].copies.remove(k);
+            without(object.copies.len(), &copies);
+            let corners = |d: &mut Self, k| _ = d.objects[n].polygon.remove(k);
+            without(object.polygon.len(), &corners);
+        }
+        all
+    }
+
+    /// What the default fails in this scene; `None` where it passes, or the scene is refused.
+    pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
+        for (name, rows) in self.instance_files() {
+            write_text(&folder.join(name), &rows)?;
+        }
+        let step = Step::new(self.text()).sized(SIZE.0, SIZE.1);
+        // A part less may be a scene that is refused, as a polygon of two points.
+        let Ok(scene) = step.read(folder) else {
+            return Ok(None);
+        };
+        let Ok(truth) = Truth::new(&scene, &step) else {
+            return Ok(None);
+        };
+        for one in both_stages(device, &step, &scene, &truth, Solver::DEFAULT)? {
+            let what = match one.result {
+                Ok((.., judged)) if judged.passes(truth.limit) => continue,
+                Ok((.., judged)) => judged.to_string(),
+                Err(error) => {
+                    device.check()?;
+                    error.to_string()
+                }
+            };
+            return Ok(Some(format!("{:?}: {what}", one.stage)));
+        }
+        Ok(None)
+    }
+
+    /// The smallest scene that still fails, taking away one part at a time.
+    pub fn reduced(&self, device: &Device, folder: &Path) -> Result<Self> {
+        let mut now = self.clone();
+        'again: loop {
+            for smaller in now.smaller() {
+                if smaller.fails(device, folder)?.is_some() {
+                    now = smaller;
+                    continue 'again;
+                }
+            }
+            return Ok(now);
+        }
+    }
+}
+
+/// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
+/// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
+pub fn run(
+    device: &Device,
+    (seed, count): (u64, u64),
+    folder: &Path,
+    progress: &mut dyn FnMut(u64) -> bool,
+) -> Result<Vec<Failure>> {
+    let mut failures = Vec::new();
+    for done in 0..count {
+        if !progress(done) {
+            break;
+        }
+        let draft = Draft::new(seed.wrapping_add(done));
+        if draft.fails(device, folder)?.is_none() {
+            for file in draft.instance_files() {
+                let _ = std::fs::remove_file(folder.join(file.0));
+            }
+            continue;
+        }
+        let least = draft.reduced(device, folder)?;
+        let what = least.fails(device, folder)?.unwrap_or_default();
+        let file = format!("random-{}.toml", draft.seed);
+        write_text(&folder.join(&file), &least.text())?;
+        failures.push(Failure {
+            seed: draft.seed,
+            what,
+            file,
+        });
+    }
+    Ok(failures)
+}
