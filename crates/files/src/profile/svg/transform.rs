@@ -1,6 +1,6 @@
 //! Transforms of attributes (`rotate(90 5 5)`) and of CSS (`rotate(90deg)`).
 
-use super::value::{Fonts, Value, length, list, number, split_number};
+use super::value::{Fonts, NUMBER, Value, length, list, number, radians, split_number};
 use kurbo::{Affine, Vec2};
 
 /// What the lengths of a transform refer to.
@@ -21,19 +21,11 @@ impl Base {
     /// An angle in radians.
     pub fn angle(&self, text: &str) -> Value<f64> {
         let Some((v, unit)) = split_number(text) else {
-            return match text.contains('(') {
-                true => Value::Unread("write a number"),
-                false => Value::Wrong,
-            };
+            return Value::none(text, NUMBER);
         };
-        match unit {
-            "" if !self.css || v == 0.0 => Value::Is(v.to_radians()),
-            "deg" if self.css => Value::Is(v.to_radians()),
-            "rad" if self.css => Value::Is(v),
-            "grad" if self.css => Value::Is((0.9 * v).to_radians()),
-            "turn" if self.css => Value::Is(v * std::f64::consts::TAU),
-            _ => Value::Wrong,
-        }
+        let of_unit = radians(v, unit).filter(|_| self.css);
+        let plain = unit.is_empty() && (!self.css || v == 0.0);
+        Value::from_option(of_unit.or(plain.then(|| v.to_radians())))
     }
 }
 
@@ -78,6 +70,9 @@ pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
     }
 }
 
+/// The remedy for transforms in space.
+const MATRIX: &str = "write the transform with matrix(a, b, c, d, e, f)";
+
 /// Functions of the attribute `transform`.
 const ATTRIBUTE_FUNCTIONS: [&str; 6] = ["matrix", "translate", "scale", "rotate", "skewX", "skewY"];
 
@@ -109,7 +104,7 @@ macro_rules! read {
 fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
     let (width, height) = base.size;
     if arguments.iter().any(|a| a.contains('(')) {
-        return Value::Unread("write a number");
+        return Value::Unread(NUMBER);
     }
     let name = match base.css {
         true => name.to_ascii_lowercase(),
@@ -145,7 +140,7 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
             Affine::skew(read!(base.angle(x)).tan(), read!(base.angle(y)).tan())
         }
         (name, _) if base.css && is_spatial(name) => {
-            return Value::Unread("write the transform with matrix(a, b, c, d, e, f)");
+            return Value::Unread(MATRIX);
         }
         _ => return Value::Wrong,
     })
@@ -166,28 +161,12 @@ fn factor(text: &str) -> Value<f64> {
     }
 }
 
-/// The property `translate`.
-pub(super) fn translate(text: &str, base: Base) -> Value<Affine> {
-    property(text, "translate", base)
-}
-
-/// The property `scale`.
-pub(super) fn scale(text: &str, base: Base) -> Value<Affine> {
-    property(text, "scale", base)
-}
-
-/// The property `rotate`.
-pub(super) fn rotate(text: &str, base: Base) -> Value<Affine> {
-    property(text, "rotate", base)
-}
-
-fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
+/// The property `translate`, `rotate` or `scale`.
+pub(super) fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
     let arguments = list(text);
     match arguments.as_slice() {
         ["none"] => Value::Is(Affine::IDENTITY),
-        &[_, _, _] | &[_, _, _, _] => {
-            Value::Unread("write the transform with matrix(a, b, c, d, e, f)")
-        }
+        &[_, _, _] | &[_, _, _, _] => Value::Unread(MATRIX),
         arguments => function(name, arguments, base),
     }
 }
@@ -232,42 +211,37 @@ mod tests {
         }
     }
 
-    #[track_caller]
-    fn maps(text: &str, css: bool, wanted: (f64, f64)) {
-        let affine = transform(text, base(css)).ok().unwrap();
-        let got = affine * Point::new(10.0, 20.0);
-        assert!(got.distance(wanted.into()) < 1e-9, "{text}: {got:?}");
-    }
-
     #[test]
     fn attributes_and_css() {
-        maps("translate(5)", false, (15.0, 20.0));
-        maps("translate(5,-5) scale(2)", false, (25.0, 35.0));
-        maps("rotate(90 10 10)", false, (0.0, 10.0));
-        maps("matrix(1 0 0 1 3 4)", false, (13.0, 24.0));
-        maps("skewX(45)", false, (30.0, 20.0));
-        maps("translate(50%, 10px)", true, (110.0, 30.0));
-        maps("rotate(0.25turn)", true, (-20.0, 10.0));
-        maps("scaleY(50%)", true, (10.0, 10.0));
-        maps("translate(5-5)rotate(0),scale(2.0.5)", false, (25.0, 5.0));
-        maps("none", true, (10.0, 20.0));
-        maps("", false, (10.0, 20.0));
-        for (text, css) in [
-            ("rotate(90deg)", false),
-            ("rotate(90)", true),
-            ("translate(5, 5)", true),
-            ("translate(5px 5px)", true),
-            ("translate (5px)", true),
-            ("translate(5,,5)", false),
-            ("translate(5,)", false),
-            ("scale(50%)", false),
-            ("translateX(5)", false),
-            ("scale(2),", false),
-            ("translate(a)", false),
-            ("spin(5)", true),
-            ("rotate(5", false),
+        for (text, css, wanted) in [
+            ("translate(5)", false, (15.0, 20.0)),
+            ("translate(5,-5) scale(2)", false, (25.0, 35.0)),
+            ("rotate(90 10 10)", false, (0.0, 10.0)),
+            ("matrix(1 0 0 1 3 4)", false, (13.0, 24.0)),
+            ("skewX(45)", false, (30.0, 20.0)),
+            ("translate(50%, 10px)", true, (110.0, 30.0)),
+            ("rotate(0.25turn)", true, (-20.0, 10.0)),
+            ("scaleY(50%)", true, (10.0, 10.0)),
+            ("translate(5-5)rotate(0),scale(2.0.5)", false, (25.0, 5.0)),
+            ("none", true, (10.0, 20.0)),
+            ("", false, (10.0, 20.0)),
         ] {
-            assert_eq!(transform(text, base(css)), Value::Wrong, "{text}");
+            let got = transform(text, base(css)).ok().unwrap() * Point::new(10.0, 20.0);
+            assert!(got.distance(wanted.into()) < 1e-9, "{text}: {got:?}");
+        }
+        for (css, texts) in [
+            (
+                false,
+                "rotate(90deg)|translate(5,,5)|translate(5,)|scale(50%)|translateX(5)|scale(2),|translate(a)|rotate(5",
+            ),
+            (
+                true,
+                "rotate(90)|translate(5, 5)|translate(5px 5px)|translate (5px)|spin(5)",
+            ),
+        ] {
+            for text in texts.split('|') {
+                assert_eq!(transform(text, base(css)), Value::Wrong, "{text}");
+            }
         }
         for text in ["rotate3d(1, 1, 1, 5deg)", "translateX(calc(1px + 2px))"] {
             assert!(
@@ -275,14 +249,13 @@ mod tests {
                 "{text}"
             );
         }
-    }
-
-    #[test]
-    fn origins() {
-        let at = |text| origin(text, base(true)).ok().unwrap();
-        assert_eq!(at("center"), Vec2::new(100.0, 50.0));
-        assert_eq!(at("bottom right"), Vec2::new(200.0, 100.0));
-        assert_eq!(at("10px 50%"), Vec2::new(10.0, 50.0));
-        assert_eq!(at("left"), Vec2::new(0.0, 50.0));
+        for (text, wanted) in [
+            ("center", (100.0, 50.0)),
+            ("bottom right", (200.0, 100.0)),
+            ("10px 50%", (10.0, 50.0)),
+            ("left", (0.0, 50.0)),
+        ] {
+            assert_eq!(origin(text, base(true)).ok().unwrap(), wanted.into());
+        }
     }
 }
