@@ -3,6 +3,7 @@
 //! them compile. Until then the former shaders stay in use.
 #![allow(unsafe_code)] // pipelines of other shaders
 
+use super::search_reload::watched;
 use super::shown::Shown;
 use crate::output;
 use eframe::egui::Context;
@@ -12,7 +13,7 @@ use revmap_offscreen::Offscreen;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
@@ -50,22 +51,12 @@ pub struct Reload {
 impl Reload {
     /// Watches a folder, and wakes the window after a change.
     pub fn new(folder: &Path, context: Context) -> Self {
-        let (send, changed) = channel();
-        let (folder, wake) = (folder.to_owned(), context.clone());
-        std::thread::spawn(move || {
-            let mut before = None;
-            loop {
-                let now = stamps(&folder);
-                if before.as_ref() != Some(&now) {
-                    before = Some(now);
-                    let sources = Sources::read(&folder);
-                    if send.send(sources).is_err() {
-                        return; // the window is closed
-                    }
-                    wake.request_repaint();
-                }
-                std::thread::sleep(PAUSE);
-            }
+        let (folder, mut before) = (folder.to_owned(), None);
+        let changed = watched(PAUSE, context.clone(), move || {
+            let now = stamps(&folder);
+            let is_new = before.as_ref() != Some(&now);
+            before = Some(now);
+            is_new.then(|| Sources::read(&folder))
         });
         Self {
             changed,
