@@ -342,74 +342,53 @@ mod tests {
     use super::*;
 
     const KNOWN: &str = "bevel chamfer map_rows repeat mirror name points";
+    const SLIPS: &str = "
+bevle => object.0.bevle: unknown key; did you mean `bevel`?
+map-rows => object.0.map-rows: unknown key; did you mean `map_rows`?
+Chamfer => object.0.Chamfer: unknown key; did you mean `chamfer`?
+xyzzy => object.0.xyzzy: unknown key; known here: bevel, chamfer, ";
+    const TYPES: &str = r#"
+"much" => expected a number, found the text "much"
+"-,05" => expected a number, found the text "-,05"; write -0.05
+-1 => expected a whole number that is not negative, found -1
+[1, 2] => expected 3 whole numbers that are not negative in brackets, found 2 values
+[true, 1, false] => expected 3 of true or false in brackets, found 1
+3 => expected text in quotes, found 3
+[[1, 2], [3]] => .1: expected a pair of numbers [r, z], found a list of 1 values"#;
+
+    fn cases(table: &str) -> impl Iterator<Item = (&str, &str)> {
+        table.lines().filter_map(|line| line.split_once(" => "))
+    }
 
     #[test]
     fn a_slip_is_met_with_the_nearest_key_and_nonsense_with_all() {
-        for (slip, path, wanted) in [
-            (
-                "bevle",
-                "object.0",
-                "object.0.bevle: unknown key; did you mean `bevel`?",
-            ),
-            (
-                "map-rows",
-                "",
-                "map-rows: unknown key; did you mean `map_rows`?",
-            ),
-            (
-                "Chamfer",
-                "",
-                "Chamfer: unknown key; did you mean `chamfer`?",
-            ),
-            (
-                "xyzzy",
-                "",
-                "xyzzy: unknown key; known here: bevel, chamfer, ",
-            ),
-        ] {
+        for (slip, wanted) in cases(SLIPS) {
             let table = format!("{slip} = 1").parse().unwrap();
-            let refused = Keys::new(&table, path, KNOWN).err().unwrap().to_string();
+            let refused = Keys::new(&table, "object.0", KNOWN)
+                .err()
+                .unwrap()
+                .to_string();
             assert!(refused.starts_with(wanted), "{refused}");
         }
     }
 
     #[test]
     fn wrong_types_say_what_was_found() {
-        let text = "bevel = \"much\"\nchamfer = \"-,05\"\nmap_rows = -1\nrepeat = [1, 2]\n\
-             mirror = [true, 1, false]\nname = 3\npoints = [[1, 2], [3]]";
-        let table = text.parse().unwrap();
-        let keys = Keys::new(&table, "object.2", KNOWN).unwrap();
-        for (found, wanted) in [
-            (
-                keys.get::<f64>("bevel").err(),
-                "bevel: expected a number, found the text \"much\"",
-            ),
-            (
-                keys.get::<f64>("chamfer").err(),
-                "chamfer: expected a number, found the text \"-,05\"; write -0.05",
-            ),
-            (
-                keys.get::<u32>("map_rows").err(),
-                "map_rows: expected a whole number that is not negative, found -1",
-            ),
-            (
-                keys.get::<[u32; 3]>("repeat").err(),
-                "repeat: expected 3 whole numbers that are not negative in brackets, found 2 values",
-            ),
-            (
-                keys.get::<[bool; 3]>("mirror").err(),
-                "mirror: expected 3 of true or false in brackets, found 1",
-            ),
-            (
-                keys.text("name").err(),
-                "name: expected text in quotes, found 3",
-            ),
-            (
-                keys.pairs("points").err(),
-                "points.1: expected a pair of numbers [r, z], found a list of 1 values",
-            ),
-        ] {
-            assert_eq!(found.unwrap().to_string(), format!("object.2.{wanted}"));
+        for (number, (value, wanted)) in cases(TYPES).enumerate() {
+            let table = format!("bevel = {value}").parse().unwrap();
+            let keys = Keys::new(&table, "", KNOWN).unwrap();
+            let found = match number {
+                0 | 1 => keys.get::<f64>("bevel").err(),
+                2 => keys.get::<u32>("bevel").err(),
+                3 => keys.get::<[u32; 3]>("bevel").err(),
+                4 => keys.get::<[bool; 3]>("bevel").err(),
+                5 => keys.text("bevel").err(),
+                _ => keys.pairs("bevel").err(),
+            };
+            let wanted = wanted
+                .strip_prefix(".1: ")
+                .map_or(format!("bevel: {wanted}"), |w| format!("bevel.1: {w}"));
+            assert_eq!(found.unwrap().to_string(), wanted);
         }
     }
 

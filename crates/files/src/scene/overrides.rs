@@ -144,23 +144,9 @@ mod tests {
     #[test]
     fn values_are_toml_or_text() {
         // What is written, and how TOML spells it.
-        for (text, wanted) in [
-            ("0.4", "0.4"),
-            (".05", "0.05"),
-            ("-.05", "-0.05"),
-            ("+5", "5"),
-            ("5.", "5.0"),
-            ("07", "7"),
-            ("-007.50", "-7.5"),
-            ("1.e3", "1000.0"),
-            ("[.5,+.5, 05]", "[0.5, 0.5, 5]"),
-            ("[[.5, 0],[1.,1]]", "[[0.5, 0], [1.0, 1]]"),
-            ("True", "true"),
-            ("7", "7"),
-            ("true", "true"),
-            ("[1, 2]", "[1, 2]"),
-            ("\"a b\"", "\"a b\""),
-        ] {
+        let spelled = "0.4|0.4 .05|0.05 -.05|-0.05 +5|5 5.|5.0 07|7 -007.50|-7.5 1.e3|1000.0 True|true 7|7 \
+            [.5,+.5,05]|[0.5,0.5,5] [[.5,0],[1.,1]]|[[0.5,0],[1.0,1]] true|true [1,2]|[1,2] \"ab\"|\"ab\"";
+        for (text, wanted) in spelled.split(' ').filter_map(|case| case.split_once('|')) {
             let wanted: Table = format!("value = {wanted}").parse().unwrap();
             assert_eq!(parse(text), wanted["value"], "{text}");
         }
@@ -180,55 +166,36 @@ mod tests {
     #[test]
     fn keys_are_found_in_lists_and_made_in_tables() {
         let mut root = scene();
-        for assignment in [
-            "object.1.bevel=0.5",
-            "camera.eye = [1, 2, 3]",
-            "camera.eye.2 = 4.5",
-            "background=[0,0,0,1]",
-            "new.key=x=y",
-        ] {
-            apply(&mut root, assignment).unwrap();
-        }
+        let sets = "object.1.bevel=0.5|camera.eye = [1, 2, 3]|camera.eye.2 = 4.5|background=[0,0,0,1]|new.key=x=y";
+        sets.split('|')
+            .for_each(|set| apply(&mut root, set).unwrap());
         let wanted = "camera = {fov_y = 40, eye = [1, 2, 4.5]}\nobject = [{bevel = 0}, {bevel = 0.5}]\n\
              background = [0, 0, 0, 1]\nnew = {key = \"x=y\"}";
         assert_eq!(root, wanted.parse().unwrap());
-    }
-
-    #[test]
-    fn wrong_paths_are_usage_errors() {
-        for (assignment, wanted) in [
-            ("bevel", "sets: \"bevel\" assigns nothing"),
-            (
-                "object.2.bevel=1",
-                "object.2.bevel: there is no object.2: the scene has 2",
-            ),
-            (
-                "object.bevel=1",
-                "object.bevel: `object` is a list; say which: object.0.bevel",
-            ),
-            ("object.0=1", "object.0: is a table; name a key of it"),
-            (
-                "camera.eye.3=1",
-                "no `eye` to change; set the whole list first",
-            ),
-            (
-                "camera.up.2=1",
-                "no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]",
-            ),
-            ("light.0.radius=1", "no [[light]] to change; add one"),
-            ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),
-            ("camera..x=1", "a part of the key is empty"),
-            ("=1", "a part of the key is empty"),
-        ] {
-            let error = apply(&mut scene(), assignment).unwrap_err();
-            assert_eq!(error.kind, ErrorKind::Usage);
-            assert!(error.to_string().contains(wanted), "{error}");
-        }
-        let mut list: Table = "eye = [1, 2, 3]".parse().unwrap();
-        let refused = apply(&mut list, "eye.3=1").unwrap_err().to_string();
+        let refused = apply(&mut root, "camera.eye.3=1").unwrap_err().to_string();
         assert!(
             refused.ends_with("`eye` has 3, counted from 0"),
             "{refused}"
         );
+    }
+
+    const WRONG: &str = r#"
+bevel => sets: "bevel" assigns nothing
+object.2.bevel=1 => object.2.bevel: there is no object.2: the scene has 2
+object.bevel=1 => object.bevel: `object` is a list; say which: object.0.bevel
+object.0=1 => object.0: is a table; name a key of it
+camera.up.2=1 => no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]
+light.0.radius=1 => no [[light]] to change; add one
+camera.fov_y.x=1 => camera.fov_y.x: `fov_y` is a value
+camera..x=1 => a part of the key is empty
+=1 => a part of the key is empty"#;
+
+    #[test]
+    fn wrong_paths_are_usage_errors() {
+        for (assignment, wanted) in WRONG.lines().filter_map(|line| line.split_once(" => ")) {
+            let error = apply(&mut scene(), assignment).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::Usage);
+            assert!(error.to_string().contains(wanted), "{error}");
+        }
     }
 }

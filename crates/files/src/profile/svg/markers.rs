@@ -1,7 +1,7 @@
 //! Markers: the content that is repeated at the corners of a line.
 
 use super::notes::misled;
-use super::reader::{Place, Reader};
+use super::reader::{Place, Reader, Shown};
 use super::shapes::Curve;
 use super::style::Style;
 use super::tree::{Clip, Group, Node as Drawn};
@@ -40,14 +40,14 @@ impl<'a> Reader<'a> {
         place: Place,
         curve: &Curve,
         width: f64,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Shown {
+        let mut out = Vec::new();
         let marked = matches!(
             node.tag_name().name(),
             "path" | "line" | "polyline" | "polygon"
         );
         if !marked || style.markers.iter().all(Option::is_none) {
-            return Ok(());
+            return Ok(out);
         }
         let corners = corners(curve);
         let last = corners.len().saturating_sub(1);
@@ -67,14 +67,14 @@ impl<'a> Reader<'a> {
                     _ => i == last,
                 };
                 if here {
-                    self.marker_at(marker, corner, k == 0, style, place, width, out)?;
+                    let drawn = self.marker_at(marker, corner, k == 0, style, place, width)?;
+                    out.extend(drawn.map(Drawn::Group));
                 }
             }
         }
-        Ok(())
+        Ok(out)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one corner of one shape")]
     fn marker_at(
         &mut self,
         marker: Node<'a, 'a>,
@@ -83,8 +83,7 @@ impl<'a> Reader<'a> {
         of_shape: &Style,
         place: Place,
         width: f64,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Result<Option<Group>> {
         if self.open.contains(&marker.id()) {
             let what = "a marker that contains itself";
             return Err(misled(marker, what, "without an end; remove the inner one"));
@@ -106,7 +105,7 @@ impl<'a> Reader<'a> {
             || inner.is_some_and(|i| i.area() <= 0.0)
             || (width <= 0.0 && attribute(marker, "markerUnits").is_none())
         {
-            return Ok(());
+            return Ok(None);
         }
         let (fit, whole) = fitted(marker, inner, own);
         let reference = fit * Point::new(size("refX", whole.0, 0.0), size("refY", whole.1, 0.0));
@@ -129,25 +128,23 @@ impl<'a> Reader<'a> {
             * Affine::scale(scale)
             * Affine::translate(-reference.to_vec2());
         self.open.push(marker.id());
-        let mut content = Vec::new();
         let within = Place {
             viewport: whole,
             ..place.deeper()
         };
-        self.children(marker, &style, within, &mut content)?;
+        let content = self.children(marker, &style, within)?;
         self.open.pop();
         if content.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         let clip = (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, own.0, own.1)));
         style.own.check()?;
-        out.push(Drawn::Group(Group {
+        Ok(Some(Group {
             opacity: style.own.opacity,
             clip,
             is_marker: true,
             ..Group::moved(transform, vec![Drawn::Group(Group::moved(fit, content))])
-        }));
-        Ok(())
+        }))
     }
 }
 

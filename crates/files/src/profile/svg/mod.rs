@@ -72,13 +72,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
     let inner = viewport::view_box(root, &mut reader.notes);
     let size = viewport::page(&style, inner)?;
     let (fit, viewport) = viewport::fitted(root, inner, size);
-    let mut content = Vec::new();
-    if style.own.display && style.own.opacity > 0.0 {
-        reader.children(root, &style, Place::within(viewport), &mut content)?;
-    }
+    let content = match style.own.display && style.own.opacity > 0.0 {
+        true => reader.children(root, &style, Place::within(viewport))?,
+        false => Vec::new(),
+    };
     let children = vec![Node::Group(Group::moved(fit, content))];
-    let mut content = Vec::new();
-    reader.wrap(root, &style, Place::within(size), children, &mut content)?;
+    let mut content = reader.wrap(root, &style, Place::within(size), children)?;
     tree::prune(&mut content);
     if let Paint::Color(color) = style.resolved(&style.own.background) {
         let color = premultiplied(*color, 1.0);

@@ -39,6 +39,9 @@ const UNSEEN: &str = "defs symbol clipPath mask linearGradient radialGradient pa
 /// The remedy for text.
 const TO_PATHS: &str = "convert it to paths, or hide a label by display=\"none\"";
 
+/// What elements show.
+pub(super) type Shown = Result<Vec<Drawn>>;
+
 /// Where an element is: what percentages refer to, and how deep.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
@@ -133,28 +136,17 @@ impl<'a> Reader<'a> {
         Style::of(node, parent, &self.sheets, &mut self.notes).map(Box::new)
     }
 
-    pub fn children(
-        &mut self,
-        node: Node<'a, 'a>,
-        style: &Style,
-        place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    pub fn children(&mut self, node: Node<'a, 'a>, style: &Style, place: Place) -> Shown {
+        let mut all = Vec::new();
         for child in node.children().filter(Node::is_element) {
-            self.element(child, style, place.deeper(), out)?;
+            all.append(&mut self.element(child, style, place.deeper())?);
         }
-        Ok(())
+        Ok(all)
     }
 
-    pub fn element(
-        &mut self,
-        node: Node<'a, 'a>,
-        parent: &Style,
-        place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    pub fn element(&mut self, node: Node<'a, 'a>, parent: &Style, place: Place) -> Shown {
         if !is_svg(node) || !self.is_seen(node) {
-            return Ok(());
+            return Ok(Vec::new());
         }
         self.counted()?;
         if place.depth > MOST_NESTED {
@@ -163,7 +155,7 @@ impl<'a> Reader<'a> {
         }
         let style = self.styled(node, parent)?;
         if !style.own.display {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let hidden = style.own.opacity <= 0.0 || self.vanishes(node, &style, place)?;
         let place = Place {
@@ -171,10 +163,10 @@ impl<'a> Reader<'a> {
             ..place
         };
         let open = self.open.len();
-        match self.shown(node, &style, place, out) {
+        match self.shown(node, &style, place) {
             Err(_) if !place.shown => {
                 self.open.truncate(open);
-                Ok(())
+                Ok(Vec::new())
             }
             other => other,
         }
@@ -203,29 +195,23 @@ impl<'a> Reader<'a> {
         )
     }
 
-    /// Adds an element that is displayed.
-    fn shown(
-        &mut self,
-        node: Node<'a, 'a>,
-        style: &Style,
-        place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
-        let mut content = Vec::new();
-        match node.tag_name().name() {
-            "g" | "a" => self.children(node, style, place, &mut content)?,
-            "svg" => self.viewport(node, node, style, place, &mut content)?,
-            "use" => self.reference(node, style, place, &mut content)?,
-            "switch" => {
-                let first = node.children().find(|n| is_svg(*n) && passes(*n));
-                if let Some(child) = first {
-                    self.element(child, style, place.deeper(), &mut content)?;
-                }
+    /// An element that is displayed.
+    fn shown(&mut self, node: Node<'a, 'a>, style: &Style, place: Place) -> Shown {
+        let content = match node.tag_name().name() {
+            "g" | "a" => self.children(node, style, place)?,
+            "svg" => self.viewport(node, node, style, place)?,
+            "use" => self.reference(node, style, place)?,
+            "switch" => match node.children().find(|n| is_svg(*n) && passes(*n)) {
+                Some(child) => self.element(child, style, place.deeper())?,
+                None => Vec::new(),
+            },
+            name if SHAPES.contains(&name) => self.shape(node, style, place)?,
+            name => {
+                self.without_outline(node, name, style, place)?;
+                return Ok(Vec::new());
             }
-            name if SHAPES.contains(&name) => self.shape(node, style, place, &mut content)?,
-            name => return self.without_outline(node, name, style, place),
-        }
-        self.wrap(node, style, place, content, out)
+        };
+        self.wrap(node, style, place, content)
     }
 
     /// Returns false for elements that show nothing, with a warning if something may be missing.
@@ -304,25 +290,20 @@ impl<'a> Reader<'a> {
     }
 
     #[inline(never)]
-    fn shape(
-        &mut self,
-        node: Node<'a, 'a>,
-        style: &Style,
-        place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    fn shape(&mut self, node: Node<'a, 'a>, style: &Style, place: Place) -> Shown {
         let plain = |curve: &BezPath| Path::plain(curve.clone(), style.fill_rule);
+        let mut out = Vec::new();
         if !style.visible || !place.shown {
             let curve = curve(node, style, place.viewport).path;
             if curve.is_finite() {
                 out.push(Drawn::Path(plain(&curve)));
             }
-            return Ok(());
+            return Ok(out);
         }
         style.own.check()?;
         let curve = self.curve(node, style, place)?;
         if curve.path.elements().len() < 2 {
-            return Ok(());
+            return Ok(out);
         }
         let bounds = curve.path.bounding_box();
         let has_inside = bounds.area() > 0.0 && node.tag_name().name() != "line";
@@ -336,7 +317,7 @@ impl<'a> Reader<'a> {
                 1 if thickness > 0.0 => (&style.stroke, style.stroke_opacity),
                 0 | 1 => continue,
                 _ => {
-                    self.markers(node, style, place, &curve, thickness, out)?;
+                    out.append(&mut self.markers(node, style, place, &curve, thickness)?);
                     continue;
                 }
             };
@@ -357,7 +338,7 @@ impl<'a> Reader<'a> {
         if !painted {
             out.push(Drawn::Path(plain(&curve.path)));
         }
-        Ok(())
+        Ok(out)
     }
 
     pub fn curve(&mut self, node: Node, style: &Style, place: Place) -> Result<Curve> {
@@ -381,7 +362,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Adds an element's content under its transform, clip and opacity.
+    /// An element's content under its transform, clip and opacity.
     #[inline(never)]
     pub fn wrap(
         &mut self,
@@ -389,10 +370,9 @@ impl<'a> Reader<'a> {
         style: &Style,
         place: Place,
         content: Vec<Drawn>,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Shown {
         if content.is_empty() {
-            return Ok(());
+            return Ok(content);
         }
         let is_painted = place.shown && is_painted(&content);
         if is_painted {
@@ -401,7 +381,7 @@ impl<'a> Reader<'a> {
         }
         let transform = self.transform(node, style, place, &content)?;
         if transform.determinant() == 0.0 {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let mut clip = match style.own.clip_path.as_ref().filter(|_| is_painted) {
             Some(target) => self.clip(target, node, place, bounds(&content, Affine::IDENTITY))?,
@@ -412,15 +392,13 @@ impl<'a> Reader<'a> {
             self.count += clip.size();
         }
         if transform == Affine::IDENTITY && clip.is_none() && style.own.opacity >= 1.0 {
-            out.extend(content);
-        } else {
-            out.push(Drawn::Group(Group {
-                opacity: style.own.opacity,
-                clip,
-                ..Group::moved(transform, content)
-            }));
+            return Ok(content);
         }
-        Ok(())
+        Ok(vec![Drawn::Group(Group {
+            opacity: style.own.opacity,
+            clip,
+            ..Group::moved(transform, content)
+        })])
     }
 
     /// Refuses masks and filters. Browsers ignore those that are missing.

@@ -1,7 +1,7 @@
 //! Content that is elsewhere or has a viewport of its own: `use`, `symbol`, nested `svg`.
 
 use super::notes::misled;
-use super::reader::{Place, Reader, href, passes};
+use super::reader::{Place, Reader, Shown, href, passes};
 use super::style::Style;
 use super::tree::{Clip, Group, Node as Drawn};
 use super::viewport::{fitted, view_box};
@@ -17,8 +17,7 @@ impl<'a> Reader<'a> {
         frame: Node<'a, 'a>,
         style: &Style,
         place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Shown {
         let of_frame = match frame == node {
             true => Box::new(style.clone()),
             false => self.style_of(frame)?,
@@ -27,12 +26,12 @@ impl<'a> Reader<'a> {
             let given = of_frame.geometry(name).or_else(|| style.geometry(name));
             given.map_or(whole, |l| l.of(whole))
         };
-        let size = (
+        let (w, h) = (
             side("width", place.viewport.0),
             side("height", place.viewport.1),
         );
-        if !(size.0 > 0.0 && size.1 > 0.0) {
-            return Ok(());
+        if !(w > 0.0 && h > 0.0) {
+            return Ok(Vec::new());
         }
         let at = match node.tag_name().name() == "svg" {
             true => place.corner(style),
@@ -40,57 +39,44 @@ impl<'a> Reader<'a> {
         };
         let inner = view_box(node, &mut self.notes);
         if inner.is_some_and(|i| i.area() <= 0.0) {
-            return Ok(());
+            return Ok(Vec::new());
         }
-        let (fit, viewport) = fitted(node, inner, size);
-        let mut children = Vec::new();
-        let within = Place { viewport, ..place };
-        self.children(node, style, within, &mut children)?;
+        let (fit, viewport) = fitted(node, inner, (w, h));
+        let children = self.children(node, style, Place { viewport, ..place })?;
         if children.is_empty() {
-            return Ok(());
+            return Ok(children);
         }
-        let clip =
-            (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, size.0, size.1)));
+        let clip = (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, w, h)));
         let inner = Drawn::Group(Group::moved(fit, children));
-        out.push(Drawn::Group(Group {
-            clip,
-            ..Group::moved(Affine::translate(at), vec![inner])
-        }));
-        Ok(())
+        let moved = Group::moved(Affine::translate(at), vec![inner]);
+        Ok(vec![Drawn::Group(Group { clip, ..moved })])
     }
 
     /// The content of a `use`.
-    pub fn reference(
-        &mut self,
-        node: Node<'a, 'a>,
-        style: &Style,
-        place: Place,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    pub fn reference(&mut self, node: Node<'a, 'a>, style: &Style, place: Place) -> Shown {
         let Some(target) = self.used(node)? else {
-            return Ok(());
+            return Ok(Vec::new());
         };
         let mut inherited = Box::new(style.clone());
         inherited.context = style.as_context();
-        let mut children = Vec::new();
         self.open.push(target.id());
-        match target.tag_name().name() {
+        let children = match target.tag_name().name() {
             "symbol" | "svg" => {
                 let own = self.styled(target, &inherited)?;
-                if own.own.display && passes(target) {
-                    let mut content = Vec::new();
-                    self.viewport(target, node, &own, place.deeper(), &mut content)?;
-                    self.wrap(target, &own, place, content, &mut children)?;
-                }
+                let content = match own.own.display && passes(target) {
+                    true => self.viewport(target, node, &own, place.deeper())?,
+                    false => Vec::new(),
+                };
+                self.wrap(target, &own, place, content)?
             }
-            _ => self.element(target, &inherited, place.deeper(), &mut children)?,
-        }
+            _ => self.element(target, &inherited, place.deeper())?,
+        };
         self.open.pop();
-        if !children.is_empty() {
-            let moved = Affine::translate(place.corner(style));
-            out.push(Drawn::Group(Group::moved(moved, children)));
+        if children.is_empty() {
+            return Ok(children);
         }
-        Ok(())
+        let moved = Affine::translate(place.corner(style));
+        Ok(vec![Drawn::Group(Group::moved(moved, children))])
     }
 
     /// The element that a `use` refers to.

@@ -230,17 +230,17 @@ impl<'a> Cursor<'a> {
         };
         let place = name.strip_suffix("-child");
         let place = place.or_else(|| name.strip_suffix("-of-type"));
-        Some(match (place.unwrap_or(&name), arguments) {
-            ("first", None) => vec![nth((0, 1), false)],
-            ("last", None) => vec![nth((0, 1), true)],
-            ("only", None) => vec![nth((0, 1), false), nth((0, 1), true)],
-            ("nth", Some(text)) => vec![nth(an_plus_b(text)?, false)],
-            ("nth-last", Some(text)) => vec![nth(an_plus_b(text)?, true)],
-            ("root", None) => vec![Test::Root],
-            ("empty", None) => vec![Test::Empty],
-            ("link" | "any-link", None) => vec![Test::Link],
-            ("defined", None) => Vec::new(),
-            (_, None) if is_in(NEVER) => vec![Test::Never],
+        Some(match (place, name.as_str(), arguments) {
+            (Some("first"), _, None) => vec![nth((0, 1), false)],
+            (Some("last"), _, None) => vec![nth((0, 1), true)],
+            (Some("only"), _, None) => vec![nth((0, 1), false), nth((0, 1), true)],
+            (Some("nth"), _, Some(text)) => vec![nth(an_plus_b(text)?, false)],
+            (Some("nth-last"), _, Some(text)) => vec![nth(an_plus_b(text)?, true)],
+            (None, "root", None) => vec![Test::Root],
+            (None, "empty", None) => vec![Test::Empty],
+            (None, "link" | "any-link", None) => vec![Test::Link],
+            (None, "defined", None) => Vec::new(),
+            (None, _, None) if is_in(NEVER) => vec![Test::Never],
             _ => return None,
         })
     }
