@@ -2,13 +2,13 @@
 //! every frame.
 
 use super::options::{Drawing, Samples, Tracing};
-use super::output;
+use super::output::{self, usage};
 use super::progress::Progress;
 use clap::Args;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
-use revmap::scene::Scene;
+use revmap::scene::{Camera, Scene};
 use revmap::settings::Planes;
 use revmap_bench::method::Edges;
 use revmap_bench::renderer::{MethodDevice, MethodRenderer};
@@ -86,14 +86,10 @@ impl Animate {
         }
         let moving = ["gif", "webp", "apng", "png", "mp4", "webm", "avi"];
         let ending = self.output.as_ref().and_then(|path| path.extension());
-        if moving
-            .iter()
-            .any(|name| ending.is_some_and(|e| e.eq_ignore_ascii_case(name)))
-        {
-            return Err(usage(
-                "--output",
-                "is no folder; give one for frame-0000.png and so on, and join these with another program",
-            ));
+        let mut moving = moving.iter();
+        if ending.is_some_and(|ending| moving.any(|name| ending.eq_ignore_ascii_case(name))) {
+            let message = "is no folder; give one for frame-0000.png and so on, and join these with another program";
+            return Err(usage("--output", message));
         }
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         let varied: Vec<_> = (self.vary.iter())
@@ -225,9 +221,7 @@ impl Animate {
         if let Some(turn) = self.turn {
             // The last frame is one step before the first is repeated.
             let angle = (turn * f64::from(n) / f64::from(self.frames)).to_radians();
-            let camera = &mut scene.camera;
-            let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
-            camera.eye = camera.target + about * (camera.eye - camera.target);
+            turn_about_target(&mut scene.camera, angle);
         }
         Ok(scene)
     }
@@ -246,12 +240,13 @@ impl Animate {
         let late: u64 = settled.iter().map(|r| r.compiled).sum();
         let compiled = device.pipelines_compiled();
         let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
-        let mut words = ("", String::new());
-        if !settled.is_empty() {
-            words.0 = " after the tenth";
-            words.1 = format!(", {late} of them after the tenth");
-        }
-        let (after, of_them) = words;
+        let (after, of_them) = match settled {
+            [] => ("", String::new()),
+            _ => (
+                " after the tenth",
+                format!(", {late} of them after the tenth"),
+            ),
+        };
         let kept = match self.output {
             Some(_) => "",
             None => "; no pictures are kept (--output DIR keeps them)",
@@ -262,6 +257,12 @@ impl Animate {
             most / median,
         ));
     }
+}
+
+/// Turns a camera about its target by an angle in radians.
+pub fn turn_about_target(camera: &mut Camera, angle: f64) {
+    let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
+    camera.eye = camera.target + about * (camera.eye - camera.target);
 }
 
 /// Frames in a folder, `frame-` and a number of four digits or more, in order.
@@ -287,7 +288,7 @@ fn claim(folder: &Path, old: &[PathBuf], overwrite: bool) -> Result<()> {
             "holds {} frames of an earlier run; choose another folder, or give --overwrite to replace them",
             old.len()
         );
-        return Err(usage("--output", &message).in_file(folder));
+        return Err(usage("--output", message).in_file(folder));
     }
     std::fs::create_dir_all(folder)
         .map_err(|e| fail(format!("cannot be made ({e}); choose another folder")))?;
@@ -302,10 +303,8 @@ fn claim(folder: &Path, old: &[PathBuf], overwrite: bool) -> Result<()> {
 impl Vary {
     fn parse(text: &str) -> Result<Self> {
         let wrong = |what: &str| {
-            usage(
-                "--vary",
-                &format!("{text:?} {what}; write KEY=FROM:TO, as in object.0.extend=0:0.1"),
-            )
+            let example = "write KEY=FROM:TO, as in object.0.extend=0:0.1";
+            usage("--vary", format!("{text:?} {what}; {example}"))
         };
         let parts = text.split_once('=');
         let (key, range) = parts.ok_or_else(|| wrong("names no values"))?;
@@ -364,10 +363,6 @@ fn write_times(path: &Path, rows: &[Row]) -> Result<()> {
     revmap_files::write_bytes(path, text.as_bytes())
 }
 
-fn usage(option: &str, message: &str) -> Error {
-    Error::new(ErrorKind::Usage, message).at_key(option)
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -379,7 +374,7 @@ mod tests {
         assert_eq!(one.at(0.5), "object.0.extend=0.05");
         let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
         assert_eq!(three.at(0.0), "camera.eye=[1, 2, -3]");
-        let bad = [
+        for bad in [
             "a",
             "a=1",
             "a=1:b",
@@ -387,8 +382,7 @@ mod tests {
             "a=nan:1",
             "a=0,1:0,2",
             "a=0:0,2",
-        ];
-        for bad in bad {
+        ] {
             let error = Vary::parse(bad).err().unwrap();
             assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
         }

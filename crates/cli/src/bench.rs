@@ -3,20 +3,19 @@
 
 use super::lists::Lists;
 use super::options::named;
-use super::progress::{Progress, interrupt, interrupted};
-use super::{output, overrun};
+use super::output;
+use super::progress::{Progress, interrupted};
+use super::run::{Results, Run};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::gpu::Device;
 use revmap::settings::DrawStage;
 use revmap_bench::flight::{self, FlightTimes};
-use revmap_bench::machine::Machine;
 use revmap_bench::measure::{Measured, Observer, measure};
 use revmap_bench::pictures::{Album, Sheets};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan_file::{PlanFile, embedded};
 use revmap_bench::renderer::MethodDevice;
-use revmap_bench::report::Run;
+use revmap_bench::report;
 use revmap_bench::series_style::SeriesStyles;
 use revmap_bench::{DeviceBench, compare_runs, folder, submission};
 use revmap_searches::folder::of as of_folder;
@@ -205,8 +204,7 @@ fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
 /// Puts submissions side by side.
 fn gather(files: &[PathBuf], lists: &Lists) -> Result<()> {
     let all = submission::gather::load(files)?;
-    let inputs = files.iter().map(PathBuf::as_path);
-    let out = lists.folder_beside("submitted", inputs)?;
+    let out = lists.results.folder("submitted", files)?;
     print(&submission::gather::write(&all, &out)?);
     let (report, count) = (out.join("report.html"), all.len());
     output::result(&format!("{}: {count} submissions", report.display()));
@@ -230,15 +228,18 @@ fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
     let given = lists.overrides(quick)?;
     file.apply(&given);
     let plan = file.plan(&given)?;
-    let session = Session::open(lists)?;
+    let session = Session {
+        run: lists.results.begin(|| lists.files())?,
+        results: &lists.results,
+    };
     let (measured, mut album) = session.measure(&file, &plan)?;
-    let (out, machine) = (&session.out, &session.machine);
+    let (out, machine) = (&session.run.out, &session.run.machine);
     folder::write(out, &plan, &measured, machine, file.time.resolved)?;
     let flights = session.flights(&file, &given.lists.stages)?;
     album
         .shots
         .retain(|_| file.show.iter().any(|name| name == "shots"));
-    let report = Run {
+    let report = report::Run {
         file: &file,
         plan: &plan,
         measured: &measured,
@@ -259,52 +260,22 @@ fn print(text: &str) {
     text.lines().for_each(output::result);
 }
 
-/// A device, a folder and a note on the machine.
-struct Session {
-    device: Device,
-    machine: Machine,
-    out: PathBuf,
-    /// True if `out` was not there before.
-    made: bool,
-    /// True if the command line names `out`.
-    named: bool,
-    quiet: bool,
+/// A run and the options of its results.
+struct Session<'a> {
+    run: Run,
+    results: &'a Results,
 }
 
-impl Session {
-    /// Opens the device and makes the folder before any work.
-    fn open(lists: &Lists) -> Result<Self> {
-        let device = Device::open(lists.device.as_deref())?;
-        let report = device.report();
-        let machine = output::machine(report, &Lists::command());
-        // From here on an early end leaves no empty folder.
-        interrupt()?;
-        let made = !lists.out.as_ref().is_some_and(|out| out.exists());
-        let out = lists.folder(&machine.folder())?;
-        overrun::keep_folder(&out);
-        overrun::try_out(lists.device.as_deref());
-        if !lists.quiet {
-            output::device(report);
-        }
-        Ok(Self {
-            device,
-            machine,
-            out,
-            made,
-            named: lists.out.is_some(),
-            quiet: lists.quiet,
-        })
-    }
-
+impl Session<'_> {
     /// Measures with a progress bar; an interrupt ends early and keeps what there is.
     fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album)> {
         let styles = SeriesStyles::new(plan.cases.iter().map(|c| &c.settings));
-        let mut album = Album::new(&self.out, styles, file.heat_maps)?;
-        let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.out));
-        let progress = Progress::start("measuring", self.quiet);
-        let mut bench = DeviceBench::new(self.device.clone(), !file.wall_clock)?;
+        let mut album = Album::new(&self.run.out, styles, file.heat_maps)?;
+        let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.run.out));
+        let progress = Progress::start("measuring", self.results.quiet);
+        let mut bench = DeviceBench::new(self.run.device.clone(), !file.wall_clock)?;
         let mut observer = Observer {
-            stop: interrupt()?,
+            stop: self.run.stop,
             progress: &|what, gone, all| {
                 progress.say(what);
                 progress.report(gone as usize, all as usize);
@@ -317,12 +288,18 @@ impl Session {
             },
             passed: &mut |rows| match rows {
                 [] => Ok(()),
-                _ => folder::write_rows(&self.out, rows, plan, &self.machine, file.time.resolved),
+                _ => folder::write_rows(
+                    &self.run.out,
+                    rows,
+                    plan,
+                    &self.run.machine,
+                    file.time.resolved,
+                ),
             },
         };
         let measured = measure(plan, &mut bench, &file.time, &mut observer);
-        if measured.is_err() && !self.out.join("results.csv").exists() {
-            folder::discard(&self.out, self.made)?;
+        if measured.is_err() && !self.run.out.join("results.csv").exists() {
+            folder::discard(&self.run.out, self.run.made)?;
         }
         let measured = measured?;
         if let Some(sheets) = &mut sheets {
@@ -336,7 +313,7 @@ impl Session {
         if file.flights.is_empty() {
             return Ok(Vec::new());
         }
-        let device = MethodDevice::new(self.device.clone())?;
+        let device = MethodDevice::new(self.run.device.clone())?;
         let stages = match stages {
             [] => &[DrawStage::Fragment, DrawStage::Compute],
             stages => stages,
@@ -347,7 +324,7 @@ impl Session {
                 let settings = flight::settings(stage);
                 let own = flight::fly(&device, &settings, plan)?;
                 let name = format!("{}.csv", own.name());
-                folder::write_text(&self.out.join(name), &own.table().csv())?;
+                folder::write_text(&self.run.out.join(name), &own.table().csv())?;
                 all.push(own);
             }
         }
@@ -357,7 +334,7 @@ impl Session {
     /// Prints where the results are. A run that was ended early has failed, though its results are
     /// kept.
     fn finish(&self, plan: &Plan, measured: &Measured) -> Result<()> {
-        if !self.quiet {
+        if !self.results.quiet {
             let first = plan.cases.first().map(|c| c.settings);
             let size = first.map(|s| (s.width, s.height));
             let (width, height) = size.unwrap_or((800, 600));
@@ -380,11 +357,11 @@ impl Session {
         if let Some(warning) = folder::clock_warning(&measured.rows) {
             output::warn(&warning);
         }
-        let (report, rows) = (self.out.join("report.html"), measured.rows.len());
+        let (report, rows) = (self.run.out.join("report.html"), measured.rows.len());
         output::result(&format!("{}: {rows} rows", report.display()));
         if !measured.interrupted {
             return Ok(());
         }
-        Err(interrupted(&self.out, self.named))
+        Err(interrupted(&self.run.out, self.results.out.is_some()))
     }
 }

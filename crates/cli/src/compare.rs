@@ -55,11 +55,9 @@ impl Compare {
         }
         for file in [&self.a, &self.b] {
             if !output::has_ending(file, "exr") {
-                return Err(Error::new(
-                    ErrorKind::Usage,
-                    "holds no depth and no normals; give an .exr file that `revmap render` wrote",
-                )
-                .in_file(file));
+                let message =
+                    "holds no depth and no normals; give an .exr file that `revmap render` wrote";
+                return Err(Error::new(ErrorKind::Usage, message).in_file(file));
             }
         }
         output::check(&self.heat, "--heat", &["png"], &[&self.a, &self.b])?;

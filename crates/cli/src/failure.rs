@@ -138,27 +138,28 @@ mod tests {
             assert_eq!(exit_code(kind), code);
             assert_eq!(text(Error::new(kind, "no").at_key(key)), wanted);
         }
-        let of_file = Error::new(ErrorKind::Content, "unknown key")
-            .at_key("size")
-            .in_file("a");
+        let of_file = Error::new(ErrorKind::Content, "unknown key").at_key("size");
         let wanted = "a: size: unknown key; it is the option --size of the command line";
-        assert_eq!(text(of_file), wanted);
+        assert_eq!(text(of_file.in_file("a")), wanted);
         let lost = text(Error::new(ErrorKind::DeviceLost, "lost"));
         assert_eq!(lost, "lost; see --size, --max-steps");
     }
 
     #[test]
     fn a_fault_of_clap_is_one_line() {
-        let text = "error: unexpected argument '--siez' found\n\n  tip: a similar argument exists: '--size'\n\n\
-                    Usage: revmap render <SCENE>\n\nFor more information, try '--help'.\n";
-        assert_eq!(
-            one_line(text),
-            "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap render --help`"
-        );
-        let text = "error: the following required arguments were not provided:\n  --output <FILE>\n\nUsage: revmap bake [OPTIONS]\n";
-        assert_eq!(
-            one_line(text),
-            "the following required arguments were not provided: --output <FILE>; see `revmap bake --help`"
-        );
+        for (text, wanted) in [
+            (
+                "error: unexpected argument '--siez' found\n\n  tip: a similar argument exists: '--size'\n\n\
+                 Usage: revmap render <SCENE>\n\nFor more information, try '--help'.\n",
+                "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap render --help`",
+            ),
+            (
+                "error: the following required arguments were not provided:\n  --output <FILE>\n\n\
+                 Usage: revmap bake [OPTIONS]\n",
+                "the following required arguments were not provided: --output <FILE>; see `revmap bake --help`",
+            ),
+        ] {
+            assert_eq!(one_line(text), wanted);
+        }
     }
 }

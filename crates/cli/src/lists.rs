@@ -1,12 +1,12 @@
 //! Options that take several values, of which every combination is measured.
 
 use super::options::{MethodParser, STAGES, Tracing, named, size, tolerance};
-use super::overrun;
+use super::output::usage;
+use super::run::Results;
 use clap::Args;
-use revmap::error::{Error, ErrorKind, Result};
+use revmap::error::Result;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{Tolerance, name_of};
-use revmap_bench::folder;
 use revmap_bench::method::Method;
 use revmap_bench::plan::suite::Extent;
 use revmap_bench::plan::{self, Overrides};
@@ -80,19 +80,8 @@ pub struct Lists {
     /// Any key of the scenes, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE", requires = "scenes")]
     pub set: Vec<String>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    pub device: Option<String>,
-    /// The folder for results [default: results/DATE-DEVICE, made anew]
-    #[arg(long, short, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace the run that the folder of --out holds
-    #[arg(long, requires = "out")]
-    pub overwrite: bool,
-    /// Say nothing but results and failures
-    #[arg(long, short)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub results: Results,
 }
 
 impl Lists {
@@ -127,36 +116,16 @@ impl Lists {
         })
     }
 
-    /// The folder of results, or that of one made for them below `results/`.
-    ///
-    /// # Errors
-    /// See [`folder::claim`].
-    pub fn folder(&self, name: &str) -> Result<PathBuf> {
+    /// The files of the scenes, over which no results are written.
+    pub fn files(&self) -> Result<Vec<PathBuf>> {
         let mut inputs = Vec::new();
-        // A pipe was read already, and no results are written over it.
-        let files = self.scenes.iter().filter(|scene| scene.is_file());
-        for scene in files.filter(|_| self.out.is_some()) {
+        // A pipe was read already.
+        for scene in self.scenes.iter().filter(|scene| scene.is_file()) {
             let mut file = SceneFile::open(scene)?;
             file.scene(&self.set)?;
             inputs.extend(file.files().map(Path::to_path_buf));
         }
-        self.folder_beside(name, inputs.iter().map(PathBuf::as_path))
-    }
-
-    /// The folder of results of which none may be written over these inputs.
-    ///
-    /// # Errors
-    /// See [`folder::claim`].
-    pub fn folder_beside<'a>(
-        &self,
-        name: &str,
-        inputs: impl Iterator<Item = &'a Path>,
-    ) -> Result<PathBuf> {
-        let Some(out) = &self.out else {
-            return folder::fresh(Path::new("results"), name);
-        };
-        folder::claim(out, self.overwrite || overrun::is_again(), inputs)?;
-        Ok(out.clone())
+        Ok(inputs)
     }
 
     /// The scenes named, as their cameras are.
@@ -176,31 +145,16 @@ impl Lists {
         Ok(views)
     }
 
-    /// A command that measures the same again, told by its words.
-    pub fn command() -> String {
-        let quote = |word: String| {
-            let plain = |c: char| c.is_ascii_alphanumeric() || "-_=.,/:@+%".contains(c);
-            match !word.is_empty() && word.chars().all(plain) {
-                true => word,
-                false => format!("'{}'", word.replace('\'', "'\\''")),
-            }
-        };
-        let mut words = vec!["revmap".to_owned()];
-        let given = std::env::args_os().skip(1);
-        words.extend(given.map(|w| quote(w.to_string_lossy().into_owned())));
-        words.join(" ")
-    }
-
     /// Refuses the reference as a stage beside a picture that it would be compared with.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`].
+    /// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage).
     pub fn check(&self) -> Result<()> {
         if self.stage.contains(&Tracing::Reference) {
             let name = name_of(&STAGES, &Tracing::Reference);
             let message =
                 format!("{name} is what all others are compared with; give fragment or compute");
-            return Err(Error::new(ErrorKind::Usage, message).at_key("--stage"));
+            return Err(usage("--stage", message));
         }
         Ok(())
     }

@@ -17,6 +17,7 @@ mod output;
 mod overrun;
 mod progress;
 mod render;
+mod run;
 mod searches;
 mod shaders;
 mod shading;
@@ -50,45 +51,40 @@ const AFTER_HELP: &str = "Examples:\n  \
     Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
 feature; 128 + N ended by the signal N. A failure is one line on standard error.";
 
-#[derive(Subcommand)]
-enum Command {
-    Render(render::Render),
-    Animate(animate::Animate),
-    Bake(bake::Bake),
-    Bench(bench::Bench),
-    Chart(bench::Chart),
-    Stability(stability::Stability),
-    Submit(submit::Submit),
-    Shaders(shaders::Shaders),
-    Searches(searches::Searches),
-    Shading(shading::Shading),
-    Devices(devices::Devices),
-    Compare(compare::Compare),
-    View(view::View),
-    Completions(shell::Completions),
-    Man(shell::Man),
-}
-
-impl Command {
-    fn run(self) -> revmap::Result<()> {
-        match self {
-            Self::Render(command) => command.run(),
-            Self::Animate(command) => command.run(),
-            Self::Bake(command) => command.run(),
-            Self::Bench(command) => command.run(),
-            Self::Chart(command) => command.run(),
-            Self::Stability(command) => command.run(),
-            Self::Submit(command) => command.run(),
-            Self::Shaders(command) => command.run(),
-            Self::Searches(command) => command.run(),
-            Self::Shading(command) => command.run(),
-            Self::Devices(command) => command.run(),
-            Self::Compare(command) => command.run(),
-            Self::View(command) => command.run(),
-            Self::Completions(command) => command.run(Program::command()),
-            Self::Man(command) => command.run(Program::command()),
+macro_rules! commands {
+    ($($name:ident: $type:ty,)*) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($name($type),)*
+            Completions(shell::Completions),
+            Man(shell::Man),
         }
-    }
+
+        impl Command {
+            fn run(self) -> revmap::Result<()> {
+                match self {
+                    $(Self::$name(command) => command.run(),)*
+                    Self::Completions(command) => command.run(Program::command()),
+                    Self::Man(command) => command.run(Program::command()),
+                }
+            }
+        }
+    };
+}
+commands! {
+    Render: render::Render,
+    Animate: animate::Animate,
+    Bake: bake::Bake,
+    Bench: bench::Bench,
+    Chart: bench::Chart,
+    Stability: stability::Stability,
+    Submit: submit::Submit,
+    Shaders: shaders::Shaders,
+    Searches: searches::Searches,
+    Shading: shading::Shading,
+    Devices: devices::Devices,
+    Compare: compare::Compare,
+    View: view::View,
 }
 
 /// A panic is a bug of the program, reported in one line like every failure.

@@ -1,8 +1,9 @@
 //! Options of every drawing command.
 
+use super::output::usage;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use revmap::error::{Error, ErrorKind, Result};
+use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
@@ -47,6 +48,25 @@ pub const SOLVERS: [(&str, Method); Method::ALL.len() + 2] = {
     all
 };
 
+/// The device that draws
+#[derive(Args, Clone, Debug)]
+pub struct DeviceChoice {
+    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
+    /// before virtual before CPU]
+    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
+    device: Option<String>,
+}
+
+impl DeviceChoice {
+    pub fn name(&self) -> Option<&str> {
+        self.device.as_deref()
+    }
+
+    pub fn open(&self) -> Result<Device> {
+        Device::open(self.name())
+    }
+}
+
 /// Options of a drawing and of its messages.
 #[derive(Args, Clone, Debug)]
 pub struct Drawing {
@@ -77,10 +97,8 @@ pub struct Drawing {
     /// .exr is written]
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    pub device: Option<String>,
+    #[command(flatten)]
+    pub device: DeviceChoice,
     /// The most memory that buffers and pictures may take on the device, MiB [default: as much as
     /// it has]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
@@ -119,7 +137,7 @@ impl Drawing {
 
     /// Opens the device with the pipelines of earlier runs and the memory limit.
     pub fn open(&self) -> Result<(Device, Kept)> {
-        let (device, kept) = open(self.device.as_deref())?;
+        let (device, kept) = open(&self.device)?;
         device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
         Ok((device, kept))
     }
@@ -134,7 +152,7 @@ impl Drawing {
             ("--map-format", self.map_format != MapFormat::R32),
             ("--solver", self.solver != Method::DEFAULT),
             ("--tolerance", self.tolerance.is_some()),
-            ("--device", self.device.is_some()),
+            ("--device", self.device.name().is_some()),
         ];
         let (who, reads): (String, &[&str]) = match self.stage {
             Tracing::Reference => ("--stage reference".to_owned(), &[]),
@@ -187,8 +205,8 @@ pub struct Kept {
 
 /// Opens a device, with the pipelines of earlier runs: one file per driver in the user's cache folder.
 /// Errors with this file are no failures, since pipelines are compiled again.
-fn open(choice: Option<&str>) -> Result<(Device, Kept)> {
-    let device = Device::open(choice)?;
+fn open(choice: &DeviceChoice) -> Result<(Device, Kept)> {
+    let device = choice.open()?;
     let report = device.report();
     let name: String = format!("{} {}", report.name, report.driver)
         .chars()
@@ -223,22 +241,20 @@ impl Kept {
 
 /// The options that a method reads.
 fn read_by(method: Method) -> &'static [&'static str] {
+    const OF_MAPS: [&str; 6] = [
+        "--solver",
+        "--device",
+        "--map-rows",
+        "--max-steps",
+        "--map-source",
+        "--map-format",
+    ];
     match method {
-        _ if method.reads_map() => &[
-            "--solver",
-            "--device",
-            "--max-steps",
-            "--map-rows",
-            "--map-source",
-            "--map-format",
-        ],
-        _ if method.reads_own_table() && method.default_steps(false) > 1 => {
-            &["--solver", "--device", "--max-steps", "--map-rows"]
-        }
-        _ if method.reads_own_table() => &["--solver", "--device", "--map-rows"],
-        Method::Search(_) => &["--solver", "--device", "--tolerance"],
-        Method::Floor => &["--solver", "--device", "--tolerance"],
-        Method::Mesh { .. } | Method::MeshLevels => &["--solver", "--device"],
+        _ if method.reads_map() => &OF_MAPS,
+        _ if method.reads_own_table() && method.default_steps(false) > 1 => &OF_MAPS[..4],
+        _ if method.reads_own_table() => &OF_MAPS[..3],
+        Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance"],
+        Method::Mesh { .. } | Method::MeshLevels => &OF_MAPS[..2],
     }
 }
 
@@ -292,13 +308,12 @@ impl TypedValueParser for MethodParser {
 /// The searches among methods.
 ///
 /// # Errors
-/// [`ErrorKind::Usage`] for a mesh and for the floor.
+/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) for a mesh and for the floor.
 pub fn searches(methods: &[Method]) -> Result<Vec<Solver>> {
     let search = |method: &Method| {
-        method.solver().ok_or_else(|| {
-            let message = format!("{method} is no search; give searches");
-            Error::new(ErrorKind::Usage, message).at_key("--solver")
-        })
+        method
+            .solver()
+            .ok_or_else(|| usage("--solver", format!("{method} is no search; give searches")))
     };
     methods.iter().map(search).collect()
 }

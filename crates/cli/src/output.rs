@@ -79,6 +79,11 @@ fn flat(text: &str) -> String {
         .collect()
 }
 
+/// Wrong usage of an option.
+pub fn usage(option: &str, message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Usage, message).at_key(option)
+}
+
 /// Checks the output files of `option` before any work. Their endings must be among `endings`, none
 /// may be named twice, none may be one of the `inputs`, and each must be writable.
 ///
@@ -92,21 +97,14 @@ pub fn check<'a>(
 ) -> Result<()> {
     let files: Vec<_> = files.into_iter().collect();
     for (i, file) in files.iter().enumerate() {
-        let usage = |message: String| {
-            Error::new(ErrorKind::Usage, message)
-                .in_file(file)
-                .at_key(option)
-        };
         if !endings.iter().any(|ending| has_ending(file, ending)) {
-            let all: Vec<_> = endings.iter().map(|e| format!(".{e}")).collect();
-            return Err(usage(format!(
-                "ends in none of {}; name it so",
-                all.join(", ")
-            )));
+            let message = format!("ends in none of .{}; name it so", endings.join(", ."));
+            return Err(usage(option, message).in_file(file));
         }
         let real = destination(file);
         if files[..i].iter().any(|other| destination(other) == real) {
-            return Err(usage("is named twice; name each file once".to_owned()));
+            let message = "is named twice; name each file once";
+            return Err(usage(option, message).in_file(file));
         }
         check_writable(file).map_err(|e| e.at_key(option).in_file(file))?;
     }
@@ -126,11 +124,7 @@ pub fn spare<'a>(
     let over = |file: &&PathBuf| inputs.contains(&destination(file));
     match files.into_iter().find(over) {
         None => Ok(()),
-        Some(file) => Err(
-            Error::new(ErrorKind::Usage, "is read as well; write to another file")
-                .in_file(file)
-                .at_key(option),
-        ),
+        Some(file) => Err(usage(option, "is read as well; write to another file").in_file(file)),
     }
 }
 

@@ -5,7 +5,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use revmap::error::{Error, ErrorKind, Result};
 use std::io::IsTerminal;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -69,27 +70,50 @@ impl Drop for Progress {
     }
 }
 
+/// True if a command reads the flag.
+static HANDLED: AtomicBool = AtomicBool::new(false);
+/// The flag that the first signal sets.
+static STOP: AtomicBool = AtomicBool::new(false);
+/// The exit code that shells give to a program ended by the last signal; 0 without one.
+static CODE: AtomicU8 = AtomicU8::new(0);
+static WATCHED: LazyLock<std::result::Result<(), String>> = LazyLock::new(signals::watch);
+
 /// Watches for Ctrl-C and the signals TERM and HUP from now on: each removes unfinished files and ends
 /// the program, but the first one leaves that to a command that called [`interrupt`].
 pub fn watch() {
     // A command that needs it reports a failure.
-    let _ = interrupt::flag();
+    let _ = &*WATCHED;
 }
 
 /// The flag that the first of these signals sets after this call: long work ends early but cleanly.
 pub fn interrupt() -> Result<&'static AtomicBool> {
-    let set = interrupt::flag().as_ref().copied();
-    let set = set.map_err(|why| {
+    let set = WATCHED.as_ref().map_err(|why| {
         let message = format!("interrupts cannot be watched for ({why}); run it again");
         Error::new(ErrorKind::Other, message)
     });
-    interrupt::HANDLED.store(true, Ordering::SeqCst);
-    set
+    HANDLED.store(true, Ordering::SeqCst);
+    set.map(|()| &STOP)
 }
 
 /// The exit code that shells give to a program ended by a signal, if one came.
 pub fn ended_by_signal() -> Option<u8> {
-    interrupt::code()
+    Some(CODE.load(Ordering::SeqCst)).filter(|code| *code != 0)
+}
+
+/// Notes a signal. Returns true if the program is to end at once.
+fn ends(code: u8) -> bool {
+    CODE.store(code, Ordering::SeqCst);
+    let handled = HANDLED.load(Ordering::SeqCst);
+    if !STOP.swap(true, Ordering::SeqCst) && handled {
+        return false;
+    }
+    revmap_files::remove_unfinished();
+    if handled {
+        crate::output::complain(
+            "ended at once by a second signal; its results are not complete, run the command again",
+        );
+    }
+    true
 }
 
 /// The failure of a run that was ended early but keeps its results in the folder `out`, which the
@@ -102,58 +126,33 @@ pub fn interrupted(out: &Path, named: bool) -> Error {
     Error::new(ErrorKind::Other, message).in_file(out)
 }
 
-/// What a second signal costs.
-const ENDED_AT_ONCE: &str =
-    "ended at once by a second signal; its results are not complete, run the command again";
-
 #[cfg(unix)]
-mod interrupt {
+mod signals {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
-    use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
-    use std::sync::{Arc, LazyLock};
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
 
     /// Shells add this to the number of a signal.
     const SIGNALLED: i32 = 128;
 
-    /// True if a command reads the flag.
-    pub static HANDLED: AtomicBool = AtomicBool::new(false);
-    static STOP: AtomicBool = AtomicBool::new(false);
-    /// The last of the signals.
-    static SIGNAL: AtomicI32 = AtomicI32::new(0);
-    static SET: LazyLock<Result<&'static AtomicBool, String>> =
-        LazyLock::new(|| watch().map(|()| &STOP).map_err(|e| e.to_string()));
-
-    pub fn flag() -> &'static Result<&'static AtomicBool, String> {
-        &SET
-    }
-
-    pub fn code() -> Option<u8> {
-        let signal = Some(SIGNAL.load(Ordering::SeqCst)).filter(|s| *s != 0)?;
-        u8::try_from(SIGNALLED + signal).ok()
-    }
-
-    fn watch() -> std::io::Result<()> {
-        // A file above the process's limit is an error of the write that passes it.
-        signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
-        let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
-        let mut signals = Signals::new(watched.filter(|signal| !is_ignored(*signal)))?;
-        let wait = move || {
-            for signal in signals.forever() {
-                SIGNAL.store(signal, Ordering::SeqCst);
-                let handled = HANDLED.load(Ordering::SeqCst);
-                if !STOP.swap(true, Ordering::SeqCst) && handled {
-                    continue;
+    pub fn watch() -> Result<(), String> {
+        let begin = || {
+            // A file above the process's limit is an error of the write that passes it.
+            signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
+            let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
+            let mut signals = Signals::new(watched.filter(|signal| !is_ignored(*signal)))?;
+            let wait = move || {
+                for signal in signals.forever() {
+                    if super::ends(u8::try_from(SIGNALLED + signal).unwrap_or(0)) {
+                        let _ = emulate_default_handler(signal);
+                    }
                 }
-                revmap_files::remove_unfinished();
-                if handled {
-                    crate::output::complain(super::ENDED_AT_ONCE);
-                }
-                let _ = emulate_default_handler(signal);
-            }
+            };
+            std::thread::Builder::new().spawn(wait)
         };
-        std::thread::Builder::new().spawn(wait).map(drop)
+        begin().map(drop).map_err(|e| e.to_string())
     }
 
     /// Returns true for HUP under `nohup`, which is meant to be without effect.
@@ -167,37 +166,16 @@ mod interrupt {
 }
 
 #[cfg(not(unix))]
-mod interrupt {
-    use std::sync::LazyLock;
-    use std::sync::atomic::{AtomicBool, Ordering};
-
+mod signals {
     /// The exit code that shells give to a program ended by an interrupt.
     const INTERRUPTED: u8 = 130;
 
-    /// True if a command reads the flag.
-    pub static HANDLED: AtomicBool = AtomicBool::new(false);
-    static STOP: AtomicBool = AtomicBool::new(false);
-    static SET: LazyLock<Result<&'static AtomicBool, String>> = LazyLock::new(|| {
+    pub fn watch() -> Result<(), String> {
         let stop = || {
-            let handled = HANDLED.load(Ordering::SeqCst);
-            if !STOP.swap(true, Ordering::SeqCst) && handled {
-                return;
+            if super::ends(INTERRUPTED) {
+                std::process::exit(INTERRUPTED.into());
             }
-            revmap_files::remove_unfinished();
-            if handled {
-                crate::output::complain(super::ENDED_AT_ONCE);
-            }
-            std::process::exit(INTERRUPTED.into());
         };
-        ctrlc::set_handler(stop).map_err(|e| e.to_string())?;
-        Ok(&STOP)
-    });
-
-    pub fn flag() -> &'static Result<&'static AtomicBool, String> {
-        &SET
-    }
-
-    pub fn code() -> Option<u8> {
-        STOP.load(Ordering::SeqCst).then_some(INTERRUPTED)
+        ctrlc::set_handler(stop).map_err(|e| e.to_string())
     }
 }

@@ -211,28 +211,21 @@ fn origin(folder: Option<&Folder>, published: bool) -> String {
 /// Writes a folder to start from.
 fn new(path: &Path) -> Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let error = |kind, message: String| Err(Error::new(kind, message).in_file(path));
+    let error = |kind, message: &str| Err(Error::new(kind, message).in_file(path));
     let files = TEMPLATE.map(|(file, text)| (file, text.replace("NAME", &name)));
     if let Err(message) = Manifest::parse(&files[0].1, false) {
-        return error(ErrorKind::Usage, message);
+        return error(ErrorKind::Usage, &message);
     }
     if ALL.iter().any(|solver| solver.name() == name) {
-        return error(
-            ErrorKind::Usage,
-            format!("{name} is a search of revmap; take another name"),
-        );
+        let message = format!("{name} is a search of revmap; take another name");
+        return error(ErrorKind::Usage, &message);
     }
     if path.exists() {
-        return error(
-            ErrorKind::Usage,
-            "exists already; take another name".to_owned(),
-        );
+        return error(ErrorKind::Usage, "exists already; take another name");
     }
     if let Err(e) = std::fs::create_dir_all(path) {
-        return error(
-            ErrorKind::File,
-            format!("cannot be made ({e}); choose another place"),
-        );
+        let message = format!("cannot be made ({e}); choose another place");
+        return error(ErrorKind::File, &message);
     }
     for (file, text) in files {
         revmap_files::write_bytes(&path.join(file), text.as_bytes())?;

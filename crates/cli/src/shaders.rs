@@ -2,7 +2,7 @@
 
 mod techniques;
 
-use super::options::{MethodParser, named, searches};
+use super::options::{DeviceChoice, MethodParser, named, searches};
 use super::output;
 use clap::Args;
 use revmap::gpu::DeviceReport;
@@ -10,6 +10,7 @@ use revmap::gpu::compiler::{Executable, Look, PipelineCompiler};
 use revmap::settings::{DrawStage, Solver};
 use revmap_bench::method::Method;
 use revmap_bench::submission::OneShader;
+use revmap_bench::table::Table;
 use revmap_searches::{CIRCLE, folder};
 use serde_json::{Map, Value, json};
 use techniques::techniques;
@@ -32,10 +33,8 @@ pub struct Shaders {
     /// The searches, and folders of other searches [default: all of revmap]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = MethodParser)]
     solver: Vec<Method>,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceChoice,
     /// Print one JSON value on standard output in place of a table
     #[arg(long)]
     json: bool,
@@ -43,6 +42,9 @@ pub struct Shaders {
     #[arg(long, conflicts_with = "json")]
     csv: bool,
 }
+
+/// The words of a shader.
+const WORDS: [&str; 6] = ["technique", "stage", "solver", "path", "shader", "module"];
 
 /// The statistics that the table shows if the driver has them; all statistics if it has none of
 /// these.
@@ -77,7 +79,7 @@ impl Shaders {
         if solvers.is_empty() {
             return failed;
         }
-        let compiler = PipelineCompiler::open(self.device.as_deref())?;
+        let compiler = PipelineCompiler::open(self.device.name())?;
         let shaders = compiled(&compiler, techniques()?, &self.stage, &solvers)?;
         let device = &compiler.report;
         if self.json {
@@ -90,36 +92,28 @@ impl Shaders {
                 said.push(name);
             }
         }
+        let table = |names: &[&str], shown: &[&str], of_device: &[&str]| {
+            let row = |shader: &CompiledShader| {
+                let words = words(shader);
+                let words = words[..shown.len()].iter().chain(of_device);
+                let mut row: Vec<String> = words.map(|word| (*word).to_owned()).collect();
+                row.splice(shown.len()..shown.len(), values(shader, names));
+                row
+            };
+            let head = shown.iter().chain(names).copied();
+            Table::new(head, shaders.iter().map(row).collect())
+        };
         if self.csv {
-            let names = said.join(",");
-            output::result(&format!(
-                "technique,stage,solver,path,shader,module,{names},device,driver"
-            ));
-            for shader in &shaders {
-                let of_device = [quoted(&device.name), quoted(&device.driver)];
-                let words = [
-                    words(shader).map(quoted).to_vec(),
-                    values(shader, &said),
-                    of_device.to_vec(),
-                ];
-                output::result(&words.concat().join(","));
-            }
+            let mut table = table(&said, &WORDS, &[&device.name, &device.driver]);
+            table.header.extend(["device", "driver"].map(String::from));
+            table.csv().lines().for_each(output::result);
             return Ok(());
         }
         let known = SHOWN.into_iter().filter(|name| said.contains(name));
         let known: Vec<&str> = known.collect();
         let shown = if known.is_empty() { said } else { known };
         output::result(&format!("{}, {}\n", device.name, device.driver));
-        let head = ["technique", "stage", "solver", "path", "shader"]
-            .iter()
-            .chain(&shown);
-        let head: Vec<String> = head.map(|name| (*name).to_owned()).collect();
-        let rows = shaders.iter().map(|shader| {
-            let [technique, stage, solver, path, name, _] = words(shader);
-            let words = [technique, stage, solver, path, name].map(str::to_owned);
-            [words.to_vec(), values(shader, &shown)].concat()
-        });
-        table(&head, &rows.collect::<Vec<_>>());
+        markdown(&table(&shown, &WORDS[..5], &[]));
         Ok(())
     }
 }
@@ -209,26 +203,17 @@ fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
     names.iter().map(text).collect()
 }
 
-/// A field of comma-separated values.
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
-}
-
-/// A table in Markdown, each column as wide as its widest cell.
-fn table(head: &[String], rows: &[Vec<String>]) {
-    let lines = || std::iter::once(head).chain(rows.iter().map(Vec::as_slice));
-    let widest = |column: usize| lines().map(|line| line[column].len()).max();
-    let widths: Vec<usize> = (0..head.len()).map(|c| widest(c).unwrap_or(0)).collect();
+/// Prints a table in Markdown, each column as wide as its widest cell.
+fn markdown(table: &Table) {
+    let lines = || std::iter::once(&table.header).chain(&table.records);
+    let widest = |column: usize| lines().map(|line| line[column].len()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..table.header.len()).map(widest).collect();
     for (number, line) in lines().enumerate() {
-        let cells: Vec<_> = (line.iter().zip(&widths))
-            .map(|(cell, &width)| match cell.parse::<f64>() {
-                Ok(_) => format!("{cell:>width$}"),
-                Err(_) => format!("{cell:width$}"),
-            })
-            .collect();
+        let cell = |(cell, &width): (&String, &usize)| match cell.parse::<f64>() {
+            Ok(_) => format!("{cell:>width$}"),
+            Err(_) => format!("{cell:width$}"),
+        };
+        let cells: Vec<_> = line.iter().zip(&widths).map(cell).collect();
         output::result(&format!("| {} |", cells.join(" | ")));
         if number == 0 {
             let rules: Vec<_> = widths.iter().map(|&width| "-".repeat(width + 2)).collect();
@@ -239,19 +224,18 @@ fn table(head: &[String], rows: &[Vec<String>]) {
 
 fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {
     let shader = |shader: &CompiledShader| {
-        let [technique, stage, solver, path, name, module] = words(shader);
         let said = shader.executable.statistics.iter();
         let said = said.map(|(name, value)| (name.clone(), json!(value)));
-        json!({
-            "technique": technique,
-            "stage": stage,
-            "solver": solver,
-            "path": path,
-            "shader": name,
-            "module": module,
-            "subgroup_size": shader.executable.subgroup_size,
-            "statistics": said.collect::<Map<_, _>>(),
-        })
+        let named = WORDS.iter().zip(words(shader));
+        let mut all: Map<_, _> = named
+            .map(|(name, word)| ((*name).to_owned(), json!(word)))
+            .collect();
+        all.insert(
+            "subgroup_size".to_owned(),
+            json!(shader.executable.subgroup_size),
+        );
+        all.insert("statistics".to_owned(), said.collect());
+        Value::Object(all)
     };
     json!({
         "device": device.name,

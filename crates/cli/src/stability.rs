@@ -1,9 +1,9 @@
 //! `revmap stability`: the cases in which methods fail.
 
-use super::lists::Lists;
 use super::options::{MethodParser, searches};
+use super::output;
 use super::progress::{Progress, interrupt, interrupted};
-use super::{output, overrun};
+use super::run::Results;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
@@ -14,7 +14,7 @@ use revmap_searches::CIRCLE;
 use revmap_stability::case::SOLVERS as USUAL;
 use revmap_stability::run::{Plan, run};
 use revmap_stability::{cases, random, report};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
 /// Draws the cases in which methods fail and holds every search to the reference; fails if the
@@ -40,65 +40,38 @@ pub struct Stability {
     /// The first random scene's seed
     #[arg(long, value_name = "S", default_value_t = 1, requires = "random")]
     seed: u64,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    device: Option<String>,
-    /// The folder for results [default: results/DATE-DEVICE, made anew]
-    #[arg(long, short, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Replace the run that the folder of --out holds
-    #[arg(long, requires = "out")]
-    overwrite: bool,
-    /// Say nothing but results and failures
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
 impl Stability {
     pub fn run(self) -> Result<()> {
         let chosen = cases::named(&self.cases)?;
         let solvers = self.solvers()?;
-        let device = Device::open(self.device.as_deref())?;
-        let about = device.report();
-        let machine = output::machine(about, &Lists::command());
-        // From here on an early end leaves no empty folder.
-        let stop = interrupt()?;
-        let made = !self.out.as_ref().is_some_and(|out| out.exists());
-        let out = match &self.out {
-            Some(out) => {
-                folder::claim(out, self.overwrite || overrun::is_again(), [])?;
-                out.clone()
-            }
-            None => folder::fresh(Path::new("results"), &machine.folder())?,
-        };
-        overrun::keep_folder(&out);
-        overrun::try_out(self.device.as_deref());
-        if !self.quiet {
-            output::device(about);
-        }
+        let begun = self.results.begin(|| Ok(Vec::new()))?;
+        let (out, stop) = (begun.out, begun.stop);
         if let Some(count) = self.random {
-            return self.random(&device, count, &out);
+            return self.random(&begun.device, count, &out);
         }
-        let progress = Progress::start("stability", self.quiet);
+        let progress = Progress::start("stability", self.results.quiet);
         let plan = Plan {
             cases: &chosen,
             solvers: &solvers,
             quick: self.quick,
             folder: &out.join("scenes"),
         };
-        let outcome = run(&device, &plan, &mut |what, done, all| {
+        let outcome = run(&begun.device, &plan, &mut |what, done, all| {
             progress.say(what);
             progress.report(done, all);
             !stop.load(Ordering::Relaxed)
         })?;
         drop(progress);
         if outcome.trials.is_empty() && stop.load(Ordering::Relaxed) {
-            folder::discard(&out, made)?;
+            folder::discard(&out, begun.made)?;
             let message = "interrupted before the first picture; nothing was kept";
             return Err(Error::new(ErrorKind::Other, message).in_file(out));
         }
-        report::write(&out, &chosen, &solvers, &outcome, &machine)?;
+        report::write(&out, &chosen, &solvers, &outcome, &begun.machine)?;
         let tables = [
             Some(report::table(&chosen, &solvers, &outcome)),
             report::flicker(&chosen, &solvers, &outcome),
@@ -117,7 +90,7 @@ impl Stability {
             output::result(line);
         }
         if stop.load(Ordering::Relaxed) {
-            return Err(interrupted(&out, self.out.is_some()));
+            return Err(interrupted(&out, self.results.out.is_some()));
         }
         if !failures.is_empty() {
             let message = format!(
@@ -130,7 +103,7 @@ impl Stability {
     }
 
     fn random(&self, device: &Device, count: u64, out: &Path) -> Result<()> {
-        let progress = Progress::start("random scenes", self.quiet);
+        let progress = Progress::start("random scenes", self.results.quiet);
         let stop = interrupt()?;
         let mut drawn = 0;
         let failures = random::run(device, (self.seed, count), out, &mut |done| {

@@ -1,6 +1,6 @@
 //! `revmap submit`: the figures of this device in a small file, for others to gather.
 
-use super::options::size;
+use super::options::{DeviceChoice, size};
 use super::progress::{Progress, interrupt};
 use super::{output, shaders};
 use clap::Args;
@@ -39,10 +39,8 @@ pub struct Submit {
     /// A quick look at one solid, to try the command; send a file that was made without it
     #[arg(long)]
     quick: bool,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: DeviceChoice,
     /// Say nothing but results and failures
     #[arg(long, short)]
     quiet: bool,
@@ -51,7 +49,7 @@ pub struct Submit {
 impl Submit {
     pub fn run(self) -> Result<()> {
         output::check([&self.output], "--output", &["toml"], &[])?;
-        let device = Device::open(self.device.as_deref())?;
+        let device = self.device.open()?;
         let report = device.report().clone();
         if !self.quiet {
             output::device(&report);
@@ -121,7 +119,7 @@ impl Submit {
 
     /// What the driver's compiler says; nothing if it has no words for it.
     fn shaders(&self) -> Result<Vec<OneShader>> {
-        match shaders::plain(self.device.as_deref()) {
+        match shaders::plain(self.device.name()) {
             Err(error) if error.kind == ErrorKind::Unsupported => Ok(Vec::new()),
             said => said,
         }

@@ -190,69 +190,50 @@ fn one_line(error: &exr::error::Error) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use std::path::PathBuf;
 
-    fn sample() -> Frame {
+    fn saved(frame: &Frame) -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        write_exr(frame, &path).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn colours_are_multiplied_by_alpha_in_the_file_alone() {
+        let mut frame = Frame::new(3, 1, [0.2, 0.4, 0.6, 0.0]).unwrap();
+        frame.color[1] = [0.9, 3.0, 0.5, 0.25];
+        frame.color[2] = [0.9, 3.0, 0.5, 1.0];
+        let (_folder, path) = saved(&frame);
+        let layer = first_layer(BufReader::new(File::open(&path).unwrap())).unwrap();
+        let channels = &layer.channel_data.list;
+        for (name, wanted) in [
+            ("R", [0.0, 0.225, 0.9]),
+            ("G", [0.0, 0.75, 3.0]),
+            ("A", [0.0, 0.25, 1.0]),
+        ] {
+            let channel = channels.iter().find(|c| c.name.eq(name)).unwrap();
+            assert!(channel.sample_data.values_as_f32().eq(wanted), "{name}");
+        }
+        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+        let mut expected = CHANNELS.map(String::from).to_vec();
+        expected.sort();
+        assert_eq!(names, expected);
+        // A colour that nothing shows is lost.
+        let read = read_exr(&path).unwrap();
+        assert_eq!(read.color, [[0.0; 4], frame.color[1], frame.color[2]]);
+    }
+
+    #[test]
+    fn every_bit_comes_back_and_damage_is_named() {
         let mut frame = Frame::new(37, 21, [0.0; 4]).unwrap();
         for index in (0..frame.pixels()).step_by(3) {
             let mut pixel = std::array::from_fn(|c| (index * 17 + c) as f32 * 0.731 - 40.0);
             pixel[ALPHA] = 1.0;
             frame.set_pixel(index, pixel);
         }
-        frame
-    }
-
-    #[test]
-    fn colours_are_multiplied_by_alpha_in_the_file_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.exr");
-        let mut frame = Frame::new(3, 1, [0.2, 0.4, 0.6, 0.0]).unwrap();
-        frame.color[1] = [0.9, 3.0, 0.5, 0.25];
-        frame.color[2] = [0.9, 3.0, 0.5, 1.0];
-        write_exr(&frame, &path).unwrap();
-        let file = BufReader::new(File::open(&path).unwrap());
-        let layer = first_layer(file).unwrap();
-        let plane = |name: &str| -> Vec<f32> {
-            let mut channels = layer.channel_data.list.iter();
-            let channel = channels.find(|c| c.name.eq(name)).unwrap();
-            channel.sample_data.values_as_f32().collect()
-        };
-        assert_eq!(plane("R"), [0.0, 0.225, 0.9]);
-        assert_eq!(plane("G"), [0.0, 0.75, 3.0]);
-        assert_eq!(plane("A"), [0.0, 0.25, 1.0]);
-        // A colour that nothing shows is lost.
-        let read = read_exr(&path).unwrap();
-        assert_eq!(read.color, [[0.0; 4], frame.color[1], frame.color[2]]);
-    }
-
-    fn saved() -> (tempfile::TempDir, PathBuf) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.exr");
-        write_exr(&sample(), &path).unwrap();
-        (folder, path)
-    }
-
-    #[test]
-    fn every_bit_comes_back() {
-        let (folder, path) = saved();
-        assert_eq!(read_exr(&path).unwrap().first_difference(&sample()), None);
+        let (folder, good) = saved(&frame);
+        assert_eq!(read_exr(&good).unwrap().first_difference(&frame), None);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn the_channels_have_the_promised_names() {
-        let (_folder, path) = saved();
-        let meta = MetaData::read_from_file(&path, true).unwrap();
-        let channels = meta.headers[0].channels.list.iter();
-        let names: Vec<String> = channels.map(|c| c.name.to_string()).collect();
-        let mut expected = CHANNELS.map(String::from).to_vec();
-        expected.sort();
-        assert_eq!(names, expected);
-    }
-
-    #[test]
-    fn damaged_and_foreign_files_are_refused() {
-        let (folder, good) = saved();
         let bytes = std::fs::read(&good).unwrap();
         let bad = folder.path().join("bad.exr");
         for cut in [0, 3, 100, bytes.len() / 2, bytes.len() - 1] {
@@ -270,12 +251,18 @@ mod tests {
     #[test]
     fn a_full_disk_is_one_line_that_names_the_file() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.exr");
-        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
-        let text = write_exr(&sample(), &path).unwrap_err().to_string();
-        assert!(
-            text.contains("a.exr") && text.contains("full") && !text.contains('\n'),
-            "{text}"
-        );
+        let frame = Frame::new(300, 200, [0.3; 4]).unwrap();
+        type Writer<'a> = &'a dyn Fn(&Path) -> Result<()>;
+        let writers: [(&str, Writer); 2] = [
+            ("a.exr", &|path| write_exr(&frame, path)),
+            ("a.png", &|path| crate::write_png(&frame, path)),
+        ];
+        for (name, write) in writers {
+            let path = folder.path().join(name);
+            std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+            let text = write(&path).unwrap_err().to_string();
+            let said = text.contains(name) && text.contains("full") && !text.contains('\n');
+            assert!(said, "{text}");
+        }
     }
 }

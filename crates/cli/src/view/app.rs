@@ -68,7 +68,7 @@ impl App {
         let mut times = Times::default();
         times.kept = options.times.is_some().then(Vec::new);
         Ok(Self {
-            painter: Painter::open(options.device.as_deref(), &shown, options.size)?,
+            painter: Painter::open(options.device.name(), &shown, options.size)?,
             source: options.scene.clone(),
             framing: Framing::new(options.size, 0),
             options,

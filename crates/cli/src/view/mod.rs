@@ -47,10 +47,8 @@ pub struct View {
     /// Allowed error of silhouettes and depths in pixels; 0 is exact
     #[arg(long, value_name = "PIXELS", default_value = "0.25", value_parser = super::options::tolerance)]
     tolerance: Tolerance,
-    /// The Vulkan device [default: the variable REVMAP_DEVICE, else discrete before integrated
-    /// before virtual before CPU]
-    #[arg(long, value_name = "INDEX_OR_PART_OF_NAME")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: super::options::DeviceChoice,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,

@@ -2,7 +2,7 @@
 
 use super::shown::Shown;
 use super::times::Cost;
-use glam::{DQuat, DVec3};
+use crate::animate::turn_about_target;
 use revmap::error::Result;
 use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
 use revmap::settings::name_of;
@@ -43,10 +43,8 @@ pub fn write_scene(
 /// The camera of frame `n` of a turntable.
 pub fn turned(shown: &Shown, n: u32) -> Shown {
     let mut turned = shown.clone();
-    let camera = &mut turned.scene.camera;
     let angle = std::f64::consts::TAU * f64::from(n) / f64::from(TURNTABLE);
-    let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
-    camera.eye = camera.target + about * (camera.eye - camera.target);
+    turn_about_target(&mut turned.scene.camera, angle);
     turned
 }
 
@@ -111,6 +109,7 @@ fn of_object(object: &Object, mut set: impl FnMut(&str, &dyn Debug)) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use glam::DVec3;
 
     const TEXT: &str = "[camera]\neye = [2, 0, 1]\ntarget = [0, 0, 0.5]\n\
                         [[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\n";

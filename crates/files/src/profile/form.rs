@@ -4,12 +4,13 @@
 //! Drawings and pictures share these rules. Both give rows of solid spans and the outline of the
 //! half right of the axis.
 
+use super::ends::Ends;
 use super::{ProfileAxis, gaps};
 use glam::DVec2;
 use revmap::profile::{FillRule, Grid, Outline, Region, Segment, loop_area};
 
 /// The solid parts of one row, `[from, to]` in ascending order, pixels from the left edge.
-type Row = Vec<[f64; 2]>;
+pub(super) type Row = Vec<[f64; 2]>;
 
 /// Most rows that are looked at.
 const ROWS: usize = 512;
@@ -19,14 +20,8 @@ pub(super) const DRAWING: f64 = 1024.0;
 const LEAST_ROWS: usize = 8;
 /// Fewer solid pixels side by side are noise.
 const RUN: usize = 3;
-/// The part of the rows that an edge must follow to be straight.
-const MOST: f64 = 0.8;
-/// Distances below this part of the solid's half width are left over from drawing and scanning.
-const SLACK: f64 = 0.02;
 /// Halves that differ by less than this part of the solid's width are alike.
-const ALIKE: f64 = 0.05;
-/// Bands of rows whose halves are compared.
-const BANDS: usize = 16;
+pub(super) const ALIKE: f64 = 0.05;
 /// A solid lower than this part of the picture may be a ring beside the axis.
 const LOW: f64 = 0.5;
 /// A wall below this part of the height is thin.
@@ -43,8 +38,8 @@ const DASHES: usize = 8;
 /// A silhouette, pixels.
 pub(super) struct Silhouette<'a> {
     /// Rows from the top, `step` pixels apart.
-    rows: Vec<Row>,
-    step: f64,
+    pub rows: Vec<Row>,
+    pub step: f64,
     width: f64,
     /// The axis, from the left edge.
     axis: f64,
@@ -250,134 +245,6 @@ fn runs(line: &[bool]) -> Row {
         (part[0] && part.len() >= RUN).then(|| [(from - part.len()) as f64, from as f64])
     });
     parts.flatten().collect()
-}
-
-/// The outer ends of the rows.
-struct Ends {
-    /// Place of the row from the top, left end and right end, of each row with some solid.
-    rows: Vec<[f64; 3]>,
-    step: f64,
-}
-
-impl Ends {
-    fn of(form: &Silhouette) -> Self {
-        let ends =
-            |(i, row): (usize, &Row)| Some([i as f64 * form.step, row.first()?[0], row.last()?[1]]);
-        Self {
-            rows: form.rows.iter().enumerate().filter_map(ends).collect(),
-            step: form.step,
-        }
-    }
-
-    fn left(row: &[f64; 3]) -> f64 {
-        row[1]
-    }
-
-    fn right(row: &[f64; 3]) -> f64 {
-        row[2]
-    }
-
-    fn height(&self) -> f64 {
-        self.step * self.rows.len() as f64
-    }
-
-    fn median(&self, value: impl Fn(&[f64; 3]) -> f64) -> f64 {
-        median(self.rows.iter().map(value).collect())
-    }
-
-    /// A length that cannot be told from none: a part of the half width of the widest row.
-    fn slack(&self) -> f64 {
-        let halves = self
-            .rows
-            .iter()
-            .map(|[_, left, right]| 0.5 * (right - left));
-        (SLACK * halves.fold(0.0, f64::max)).max(1.0)
-    }
-
-    /// Returns true if an end is at its median in most rows.
-    fn is_straight(&self, end: impl Fn(&[f64; 3]) -> f64) -> bool {
-        let at = self.median(&end);
-        let near = self.rows.iter().filter(|row| (end(row) - at).abs() <= 1.0);
-        near.count() as f64 >= MOST * self.rows.len() as f64
-    }
-
-    /// The part of the width that has no mirror image about `axis`. Within a band of rows, noise
-    /// evens out.
-    fn one_sided(&self, axis: impl Fn(f64) -> f64) -> f64 {
-        let bands = self.rows.chunks(self.rows.len().div_ceil(BANDS));
-        let beside = |rows: &[[f64; 3]]| {
-            let aside = rows
-                .iter()
-                .map(|[row, left, right]| right + left - 2.0 * axis(*row));
-            let width: f64 = rows.iter().map(|[_, left, right]| right - left).sum();
-            (rows.len() as f64 * median(aside.collect()))
-                .abs()
-                .min(width)
-        };
-        bands.map(beside).sum::<f64>() / self.area()
-    }
-
-    fn area(&self) -> f64 {
-        let widths = self.rows.iter().map(|[_, left, right]| right - left);
-        widths.sum::<f64>().max(1.0)
-    }
-
-    /// Advice for a solid whose upper and lower half are alike.
-    fn or_turn_it(&self) -> &'static str {
-        let pairs = self.rows.iter().zip(self.rows.iter().rev());
-        let apart = pairs.map(|(a, b)| 0.5 * ((a[1] - b[1]).abs() + (a[2] - b[2]).abs()));
-        match apart.sum::<f64>() / self.area() {
-            ..ALIKE => "; if the solid lies on its side, turn it upright",
-            _ => "",
-        }
-    }
-
-    /// The line that the middles of most rows follow: medians, since handles and shadows bring rows
-    /// of their own.
-    fn middle_line(&self) -> MiddleLine {
-        let middle = |s: &[f64; 3]| 0.5 * (s[1] + s[2]);
-        let third = self.rows.len() / 3;
-        let of = |rows: &[[f64; 3]], value: &dyn Fn(&[f64; 3]) -> f64| {
-            median(rows.iter().map(value).collect())
-        };
-        let (top, bottom) = (&self.rows[..third], &self.rows[self.rows.len() - third..]);
-        let rise = of(bottom, &middle) - of(top, &middle);
-        let run = of(bottom, &|s| s[0]) - of(top, &|s| s[0]);
-        let slope = rise / run.max(1.0);
-        let straightened = |s: &[f64; 3]| middle(s) - slope * s[0];
-        let from = self.median(straightened);
-        MiddleLine {
-            from,
-            slope,
-            middle: from + slope * self.median(|s| s[0]),
-            drift: slope * self.height(),
-            residual: self.median(|s| (straightened(s) - from).abs()),
-        }
-    }
-}
-
-/// A line through the middles of the rows, pixels.
-struct MiddleLine {
-    /// Its place at the top of the page.
-    from: f64,
-    slope: f64,
-    /// Its place half way down.
-    middle: f64,
-    /// Its way aside from the first row to the last.
-    drift: f64,
-    /// The median distance of a middle from it.
-    residual: f64,
-}
-
-impl MiddleLine {
-    fn at(&self, row: f64) -> f64 {
-        self.from + self.slope * row
-    }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Returns true for the outline of a shape: thin walls all round a closed hollow, which is larger

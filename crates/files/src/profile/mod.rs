@@ -1,9 +1,12 @@
 //! Profiles from drawings and pictures.
 
+mod canvas;
 mod drawing;
+mod ends;
 mod form;
 mod gaps;
 mod image;
+mod layer;
 mod noise;
 mod options;
 mod paint;

@@ -234,35 +234,34 @@ mod tests {
         assert!(load(&file).unwrap_err().to_string().contains("UTF-8"));
     }
 
+    /// Texts, their lines parted by `/`, and words of their refusal.
+    const FAULTS: &str = r#"
+ => holds no copies
+1,2,3 => line 1: has 3 values
+/1,2,3,0,0,0,1,1,1,one => line 2: "one" is not a number
+1,2,3,0,0,0,1,1,1,1,1 => line 1: has more than 10
+1,2,3,0,0,0,0,1,1,1 => line 1: the rotation
+1,2,3,0,nan,0,1,1,1,1 => line 1: the rotation
+/1,2,3,0,0,0,1,1,0,1 => line 2, scale: has 0
+inf,2,3,0,0,0,1,1,1,1 => line 1, position: has inf
+x,y,z,qx,qy,qz,qw,sx,sy/ => line 1: the heading lacks sz
+x,y,z/ => lacks qx, qy, qz, qw, sx, sy, sz
+x,y,z,qx,qy,qz,w,sx,sy,sz => a column "w"
+tx,ty,tz,qx,qy,qz,qw,sx,sy,sz => a column "tx"
+,x,y,z,qx,qy,qz,qw,sx,sy,sz => a column ""
+x,x,y,z,qx,qy,qz,qw,sx,sy,sz => a column "x"
+id,pos_x/1,2 => a column "id"
+#x,y,z,w,qx,qy,qz,sx,sy,sz => line 1: the heading has a column "w"
+#x,y,z,qw,qx,qy,qz => line 1: the heading lacks sx, sy, sz
+# qw,qx => line 1: the heading lacks x, y, z
+x;y;z;qx/ => line 1: holds no values with commas
+0,5;1;0;0;0;0;1;1;1;1 => write points in numbers
+1 2 3 0 0 0 1 1 1 1 => line 1: holds no values with commas"#;
+
     #[test]
     fn faults_name_the_line() {
-        for (text, wanted) in [
-            ("", "holds no copies"),
-            ("1,2,3", "line 1: has 3 values"),
-            ("\n1,2,3,0,0,0,1,1,1,one", "line 2: \"one\" is not a number"),
-            ("1,2,3,0,0,0,1,1,1,1,1", "line 1: has more than 10"),
-            ("1,2,3,0,0,0,0,1,1,1", "line 1: the rotation"),
-            ("1,2,3,0,nan,0,1,1,1,1", "line 1: the rotation"),
-            ("\n1,2,3,0,0,0,1,1,0,1", "line 2, scale: has 0"),
-            ("inf,2,3,0,0,0,1,1,1,1", "line 1, position: has inf"),
-            ("x,y,z,qx,qy,qz,qw,sx,sy\n", "line 1: the heading lacks sz"),
-            ("x,y,z\n", "lacks qx, qy, qz, qw, sx, sy, sz"),
-            ("x,y,z,qx,qy,qz,w,sx,sy,sz", "a column \"w\""),
-            ("tx,ty,tz,qx,qy,qz,qw,sx,sy,sz", "a column \"tx\""),
-            (",x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"\""),
-            ("x,x,y,z,qx,qy,qz,qw,sx,sy,sz", "a column \"x\""),
-            ("id,pos_x\n1,2", "a column \"id\""),
-            (
-                "#x,y,z,w,qx,qy,qz,sx,sy,sz",
-                "line 1: the heading has a column \"w\"",
-            ),
-            ("#x,y,z,qw,qx,qy,qz", "line 1: the heading lacks sx, sy, sz"),
-            ("# qw,qx", "line 1: the heading lacks x, y, z"),
-            ("x;y;z;qx\n", "line 1: holds no values with commas"),
-            ("0,5;1;0;0;0;0;1;1;1;1", "write points in numbers"),
-            ("1 2 3 0 0 0 1 1 1 1", "line 1: holds no values with commas"),
-        ] {
-            let message = parse(text).unwrap_err().to_string();
+        for (text, wanted) in FAULTS.lines().filter_map(|line| line.split_once(" => ")) {
+            let message = parse(&text.replace('/', "\n")).unwrap_err().to_string();
             assert!(message.contains(wanted), "{message}");
         }
     }

@@ -348,79 +348,59 @@ mod tests {
     use super::*;
 
     const KNOWN: &str = "bevel chamfer map_rows repeat mirror name points";
+    const SLIPS: &str = "
+bevle => object.0.bevle: unknown key; did you mean `bevel`?
+map-rows => object.0.map-rows: unknown key; did you mean `map_rows`?
+Chamfer => object.0.Chamfer: unknown key; did you mean `chamfer`?
+xyzzy => object.0.xyzzy: unknown key; known here: bevel, chamfer, ";
+    const TYPES: &str = r#"
+"much" => expected a number, found the text "much"
+"-,05" => expected a number, found the text "-,05"; write -0.05
+-1 => expected a whole number that is not negative, found -1
+[1, 2] => expected 3 whole numbers that are not negative in brackets, found 2 values
+[true, 1, false] => expected 3 of true or false in brackets, found 1
+3 => expected text in quotes, found 3
+[[1, 2], [3]] => .1: expected a pair of numbers [r, z], found a list of 1 values"#;
 
-    fn read(text: &str) -> Table {
-        text.parse().unwrap()
+    fn cases(table: &str) -> impl Iterator<Item = (&str, &str)> {
+        table.lines().filter_map(|line| line.split_once(" => "))
     }
 
     #[test]
     fn a_slip_is_met_with_the_nearest_key_and_nonsense_with_all() {
-        let words: Vec<&str> = KNOWN.split(' ').collect();
-        for (slip, meant) in [
-            ("bevle", Some("bevel")),
-            ("map-rows", Some("map_rows")),
-            ("Chamfer", Some("chamfer")),
-            ("xyzzy", None),
-        ] {
-            assert_eq!(nearest(slip, &words), meant);
+        for (slip, wanted) in cases(SLIPS) {
+            let table = format!("{slip} = 1").parse().unwrap();
+            let refused = Keys::new(&table, "object.0", KNOWN)
+                .err()
+                .unwrap()
+                .to_string();
+            assert!(refused.starts_with(wanted), "{refused}");
         }
-        let message = |text: &str, path: &str| {
-            let refused = Keys::new(&read(text), path, KNOWN).err();
-            refused.unwrap().to_string()
-        };
-        assert_eq!(
-            message("bevle = 1", "object.0"),
-            "object.0.bevle: unknown key; did you mean `bevel`?"
-        );
-        let all = message("xyzzy = 1", "");
-        let start = "xyzzy: unknown key; known here: bevel, chamfer";
-        assert!(all.starts_with(start), "{all}");
     }
 
     #[test]
     fn wrong_types_say_what_was_found() {
-        let table = read(
-            "bevel = \"much\"\nchamfer = \"-,05\"\nmap_rows = -1\nrepeat = [1, 2]\nmirror = [true, 1, false]\nname = 3\npoints = [[1, 2], [3]]",
-        );
-        let keys = Keys::new(&table, "object.2", KNOWN).unwrap();
-        let cases = [
-            (
-                keys.get::<f64>("bevel").err(),
-                "object.2.bevel: expected a number, found the text \"much\"",
-            ),
-            (
-                keys.get::<f64>("chamfer").err(),
-                "object.2.chamfer: expected a number, found the text \"-,05\"; write -0.05",
-            ),
-            (
-                keys.get::<u32>("map_rows").err(),
-                "object.2.map_rows: expected a whole number that is not negative, found -1",
-            ),
-            (
-                keys.get::<[u32; 3]>("repeat").err(),
-                "object.2.repeat: expected 3 whole numbers that are not negative in brackets, found 2 values",
-            ),
-            (
-                keys.get::<[bool; 3]>("mirror").err(),
-                "object.2.mirror: expected 3 of true or false in brackets, found 1",
-            ),
-            (
-                keys.text("name").err(),
-                "object.2.name: expected text in quotes, found 3",
-            ),
-            (
-                keys.pairs("points").err(),
-                "object.2.points.1: expected a pair of numbers [r, z], found a list of 1 values",
-            ),
-        ];
-        for (found, wanted) in cases {
+        for (number, (value, wanted)) in cases(TYPES).enumerate() {
+            let table = format!("bevel = {value}").parse().unwrap();
+            let keys = Keys::new(&table, "", KNOWN).unwrap();
+            let found = match number {
+                0 | 1 => keys.get::<f64>("bevel").err(),
+                2 => keys.get::<u32>("bevel").err(),
+                3 => keys.get::<[u32; 3]>("bevel").err(),
+                4 => keys.get::<[bool; 3]>("bevel").err(),
+                5 => keys.text("bevel").err(),
+                _ => keys.pairs("bevel").err(),
+            };
+            let wanted = wanted
+                .strip_prefix(".1: ")
+                .map_or(format!("bevel: {wanted}"), |w| format!("bevel.1: {w}"));
             assert_eq!(found.unwrap().to_string(), wanted);
         }
     }
 
     #[test]
     fn whole_numbers_serve_as_numbers() {
-        let table = read("bevel = 2\nrepeat = [1, 2.5, 3]");
+        let table = "bevel = 2\nrepeat = [1, 2.5, 3]".parse().unwrap();
         let keys = Keys::new(&table, "", KNOWN).unwrap();
         assert_eq!(keys.get("bevel").unwrap(), Some(2.0));
         assert_eq!(keys.get("repeat").unwrap(), Some([1.0, 2.5, 3.0]));

@@ -137,104 +137,62 @@ mod tests {
     use super::*;
 
     fn scene() -> Table {
-        "[camera]\nfov_y = 40\n[[object]]\nbevel = 0\n[[object]]\nbevel = 1"
-            .parse()
-            .unwrap()
+        let text = "[camera]\nfov_y = 40\n[[object]]\nbevel = 0\n[[object]]\nbevel = 1";
+        text.parse().unwrap()
     }
 
     #[test]
     fn values_are_toml_or_text() {
-        for (text, wanted) in [
-            ("0.4", Value::Float(0.4)),
-            (".05", Value::Float(0.05)),
-            ("-.05", Value::Float(-0.05)),
-            ("+5", Value::Integer(5)),
-            ("5.", Value::Float(5.0)),
-            ("07", Value::Integer(7)),
-            ("-007.50", Value::Float(-7.5)),
-            ("1.e3", Value::Float(1000.0)),
-            (
-                "[.5,+.5, 05]",
-                Value::Array(vec![
-                    Value::Float(0.5),
-                    Value::Float(0.5),
-                    Value::Integer(5),
-                ]),
-            ),
-            (
-                "[[.5, 0],[1.,1]]",
-                Value::Array(vec![
-                    Value::Array(vec![Value::Float(0.5), Value::Integer(0)]),
-                    Value::Array(vec![Value::Float(1.0), Value::Integer(1)]),
-                ]),
-            ),
-            ("True", Value::Boolean(true)),
-            ("07.png", Value::String("07.png".into())),
-            ("./.5", Value::String("./.5".into())),
-            ("1 .5", Value::String("1 .5".into())),
-            ("7", Value::Integer(7)),
-            ("true", Value::Boolean(true)),
-            (
-                "[1, 2]",
-                Value::Array(vec![Value::Integer(1), Value::Integer(2)]),
-            ),
-            ("\"a b\"", Value::String("a b".into())),
-            ("pawn.svg", Value::String("pawn.svg".into())),
-            ("0,4", Value::String("0,4".into())),
-            ("1\nother = 2", Value::String("1\nother = 2".into())),
-            ("", Value::String(String::new())),
+        // What is written, and how TOML spells it.
+        let spelled = "0.4|0.4 .05|0.05 -.05|-0.05 +5|5 5.|5.0 07|7 -007.50|-7.5 1.e3|1000.0 True|true 7|7 \
+            [.5,+.5,05]|[0.5,0.5,5] [[.5,0],[1.,1]]|[[0.5,0],[1.0,1]] true|true [1,2]|[1,2] \"ab\"|\"ab\"";
+        for (text, wanted) in spelled.split(' ').filter_map(|case| case.split_once('|')) {
+            let wanted: Table = format!("value = {wanted}").parse().unwrap();
+            assert_eq!(parse(text), wanted["value"], "{text}");
+        }
+        for text in [
+            "07.png",
+            "./.5",
+            "1 .5",
+            "pawn.svg",
+            "0,4",
+            "1\nother = 2",
+            "",
         ] {
-            assert_eq!(parse(text), wanted, "{text}");
+            assert_eq!(parse(text), Value::String(text.into()));
         }
     }
 
     #[test]
     fn keys_are_found_in_lists_and_made_in_tables() {
         let mut root = scene();
-        for assignment in [
-            "object.1.bevel=0.5",
-            "camera.eye = [1, 2, 3]",
-            "camera.eye.2 = 4.5",
-            "background=[0,0,0,1]",
-            "new.key=x=y",
-        ] {
-            apply(&mut root, assignment).unwrap();
-        }
+        let sets = "object.1.bevel=0.5|camera.eye = [1, 2, 3]|camera.eye.2 = 4.5|background=[0,0,0,1]|new.key=x=y";
+        sets.split('|')
+            .for_each(|set| apply(&mut root, set).unwrap());
+        let wanted = "camera = {fov_y = 40, eye = [1, 2, 4.5]}\nobject = [{bevel = 0}, {bevel = 0.5}]\n\
+             background = [0, 0, 0, 1]\nnew = {key = \"x=y\"}";
+        assert_eq!(root, wanted.parse().unwrap());
         let refused = apply(&mut root, "camera.eye.3=1").unwrap_err().to_string();
         assert!(
             refused.ends_with("`eye` has 3, counted from 0"),
             "{refused}"
         );
-        assert_eq!(root["object"][0]["bevel"], Value::Integer(0));
-        assert_eq!(root["object"][1]["bevel"], Value::Float(0.5));
-        assert_eq!(root["camera"]["eye"].as_array().unwrap().len(), 3);
-        assert_eq!(root["camera"]["eye"][2], Value::Float(4.5));
-        assert_eq!(root["camera"]["fov_y"], Value::Integer(40));
-        assert_eq!(root["new"]["key"], Value::String("x=y".into()));
     }
+
+    const WRONG: &str = r#"
+bevel => sets: "bevel" assigns nothing
+object.2.bevel=1 => object.2.bevel: there is no object.2: the scene has 2
+object.bevel=1 => object.bevel: `object` is a list; say which: object.0.bevel
+object.0=1 => object.0: is a table; name a key of it
+camera.up.2=1 => no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]
+light.0.radius=1 => no [[light]] to change; add one
+camera.fov_y.x=1 => camera.fov_y.x: `fov_y` is a value
+camera..x=1 => a part of the key is empty
+=1 => a part of the key is empty"#;
 
     #[test]
     fn wrong_paths_are_usage_errors() {
-        for (assignment, wanted) in [
-            ("bevel", "sets: \"bevel\" assigns nothing"),
-            (
-                "object.2.bevel=1",
-                "object.2.bevel: there is no object.2: the scene has 2",
-            ),
-            (
-                "object.bevel=1",
-                "object.bevel: `object` is a list; say which: object.0.bevel",
-            ),
-            ("object.0=1", "object.0: is a table; name a key of it"),
-            (
-                "camera.up.2=1",
-                "no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]",
-            ),
-            ("light.0.radius=1", "no [[light]] to change; add one"),
-            ("camera.fov_y.x=1", "camera.fov_y.x: `fov_y` is a value"),
-            ("camera..x=1", "a part of the key is empty"),
-            ("=1", "a part of the key is empty"),
-        ] {
+        for (assignment, wanted) in WRONG.lines().filter_map(|line| line.split_once(" => ")) {
             let error = apply(&mut scene(), assignment).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Usage);
             assert!(error.to_string().contains(wanted), "{error}");

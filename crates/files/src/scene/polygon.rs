@@ -42,12 +42,11 @@ pub(super) fn cut_off(points: &[[f64; 2]], radius: f64) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::cut_off;
 
     #[test]
     fn points_that_are_cut_off_are_named_with_what_would_fit() {
-        let wanted = [
+        for (points, radius, words) in [
             (
                 [[50.0, -10.0], [65.0, 6.0], [44.5, 88.0]],
                 65.0,
@@ -73,9 +72,8 @@ mod tests {
                 0.5,
                 "r goes to 0.8, the box to 0.5: give radius = 0.8",
             ),
-        ];
-        for (points, radius, words) in wanted {
-            let text = cut_off(&points, radius).unwrap();
+        ] {
+            let text = cut_off(&points, radius).unwrap_or_default();
             assert!(text.contains(words), "{text}");
         }
         let within = [[0.0, 0.0], [0.5 + 1e-9, -1e-9], [0.0, 1.0]];

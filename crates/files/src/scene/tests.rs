@@ -55,13 +55,8 @@ macro_rules! equal {
 fn what_is_not_said_has_the_documented_default() {
     let scene = cone("").unwrap();
     let object = &scene.objects[0];
-    let Texturing {
-        bump,
-        bump_form,
-        projection,
-        repeat,
-        ..
-    } = object.texturing;
+    #[rustfmt::skip]
+    let Texturing { bump, bump_form, projection, repeat, .. } = object.texturing;
     equal! {
         scene.background => [0.0; 4];
         scene.camera.up => DVec3::Z;
@@ -133,13 +128,8 @@ instances = "copies.csv"
         radius: 3.5,
     };
     let object = &scene.objects[0];
-    let Texturing {
-        bump,
-        bump_form,
-        projection,
-        repeat,
-        ..
-    } = object.texturing;
+    #[rustfmt::skip]
+    let Texturing { bump, bump_form, projection, repeat, .. } = object.texturing;
     let color = object.texturing.color_map.as_ref().unwrap();
     let slopes = object.texturing.displacement_map.as_ref().unwrap();
     equal! {
@@ -232,64 +222,81 @@ fn sets_come_before_what_the_file_says() {
         "camera.fov_y=20",
         "shadow=hard",
         "background=[1, 1, 1, 1]",
-    ]
-    .map(String::from);
-    let scene = parse(&format!("{CAMERA_LINES}{CONE}bevel = 1\n"), "", &sets).unwrap();
-    assert_eq!(scene.objects[0].offset.bevel, 0.4);
-    assert_eq!(scene.camera.fov_y, 20.0);
-    assert_eq!(scene.shadow, Shadow::Hard);
-    assert_eq!(scene.background, [1.0; 4]);
-    let set = |text: &str| parse(&format!("{CAMERA_LINES}{CONE}"), "", &[text.to_owned()]);
-    fault(
-        set("object.0.bevle=0.4"),
-        "object.0.bevle: unknown key; did you mean `bevel`?",
-    );
-    fault(
-        set("object.0.bevel=much"),
-        "object.0.bevel: expected a number, found the text \"much\"",
-    );
-    fault(set("object.0.bevel=-1"), "object.0.bevel: is -1.0");
+    ];
+    let text = format!("{CAMERA_LINES}{CONE}bevel = 1\n");
+    let scene = parse(&text, "", &sets.map(String::from)).unwrap();
+    equal! {
+        scene.objects[0].offset.bevel => 0.4;
+        scene.camera.fov_y => 20.0;
+        scene.shadow => Shadow::Hard;
+        scene.background => [1.0; 4];
+    }
+    for (set, wanted) in [
+        (
+            "object.0.bevle=0.4",
+            "object.0.bevle: unknown key; did you mean `bevel`?",
+        ),
+        (
+            "object.0.bevel=much",
+            "object.0.bevel: expected a number, found the text \"much\"",
+        ),
+        ("object.0.bevel=-1", "object.0.bevel: is -1.0"),
+    ] {
+        fault(parse(&text, "", &[set.to_owned()]), wanted);
+    }
 }
+
+/// Lines below a cone, and words of their refusal.
+const SLIPS: &str = r#"
+bevle = 1                           => object.0.bevle: unknown key; did you mean `bevel`?
+bevel = "1"                         => object.0.bevel: expected a number
+scale = [1, 0, 1]                   => object.0.scale: has 0.0
+scale = 2                           => object.0.scale: expected 3 numbers in brackets, found 2
+rotation = [0, 0, 0, 0]             => object.0.rotation:
+repeat = [1, 0, 1]                  => object.0.repeat: has 0
+chamfer = 2                         => object.0.chamfer: is 2.0
+extend = nan                        => object.0.extend: is NaN
+radius = 0                          => object.0.radius: 0 is no radius
+projection = "mercator"             => object.0.projection: "mercator" is not known; give one of "planar"
+profile = "x.svg"                   => object.0.polygon: stands beside a profile
+color_map = "none.png"              => none.png: object.0.color_map: the colour map cannot be read
+instances = "none.csv"              => none.csv: cannot be read
+[[object]]                          => object.1.profile: is missing
+extend = .1                         => line 6, column 10: is not TOML:
+extend = .1                         => ; write 0.1
+extend = 5. # wide                  => ; write 5.0
+map_rows = 07                       => ; write 7
+extend = 0,5                        => ; write 0.5
+bevel = 1,000                       => ; write 1.0 or 1000
+color = [.5, 1., 0]                 => ; write [0.5, 1.0, 0]
+profile_invert = True               => ; write true
+color_map = "C:\maps\a.png"         => ; write / in paths, or single quotes
+color_map = "C:\new.png"            => write / in paths, or single quotes
+color_map = "~/a.png"               => object.0.color_map: "~/a.png" is not there, and ~
+color_map = "https://a.b/c.png"     => is an address; download
+color_map = "-"                     => /dev/stdin
+[[light]] # colour = [1, 1, 1]      => light.0.colour: unknown key; did you mean `color`?
+[[object]] # profile = "none.svg" # profile_axis = "0.5" => "center", or a number without quotes
+profile_axis = "left"               => object.0.profile_axis: counts for files
+profile_threshold = 0.3             => object.0.profile_threshold: counts for files
+profile_invert = true               => object.0.profile_invert: counts for files
+profile_smooth = 2                  => object.0.profile_smooth: counts for files
+profile_smooth = "auto"             => object.0.profile_smooth: counts for files
+"#;
 
 #[test]
 fn slips_are_named_with_their_full_key() {
-    for (line, wanted) in [
-        (
-            "bevle = 1",
-            "object.0.bevle: unknown key; did you mean `bevel`?",
-        ),
-        ("bevel = \"1\"", "object.0.bevel: expected a number"),
-        ("scale = [1, 0, 1]", "object.0.scale: has 0.0"),
-        (
-            "scale = 2",
-            "object.0.scale: expected 3 numbers in brackets, found 2",
-        ),
-        ("rotation = [0, 0, 0, 0]", "object.0.rotation:"),
-        ("repeat = [1, 0, 1]", "object.0.repeat: has 0"),
-        ("chamfer = 2", "object.0.chamfer: is 2.0"),
-        ("extend = nan", "object.0.extend: is NaN"),
-        ("radius = 0", "object.0.radius: 0 is no radius"),
-        (
-            "projection = \"mercator\"",
-            "object.0.projection: \"mercator\" is not known; give one of \"planar\"",
-        ),
-        (
-            "profile = \"x.svg\"",
-            "object.0.polygon: stands beside a profile",
-        ),
-        (
-            "color_map = \"none.png\"",
-            "none.png: object.0.color_map: the colour map cannot be read",
-        ),
-        ("instances = \"none.csv\"", "none.csv: cannot be read"),
-        ("[[object]]\n", "object.1.profile: is missing"),
-        (
-            "[[light]]\ncolour = [1, 1, 1]",
-            "light.0.colour: unknown key; did you mean `color`?",
-        ),
-    ] {
-        fault(cone(line), wanted);
+    for (line, wanted) in SLIPS.lines().filter_map(|line| line.split_once(" => ")) {
+        // Tables have lines of their own.
+        let line = if line.starts_with('[') {
+            line.replace('#', "\n")
+        } else {
+            line.to_owned()
+        };
+        fault(cone(&line), wanted);
     }
+    let scene = format!("{CAMERA_LINES}{CONE}");
+    let wide: String = scene.chars().flat_map(|c| [c, '\0']).collect();
     for (text, wanted) in [
         (CONE, "camera.eye: is missing"),
         (CAMERA_LINES, "object: the scene is empty"),
@@ -298,71 +305,17 @@ fn slips_are_named_with_their_full_key() {
             "object = 3\n[camera]\neye=[1,0,0]\ntarget=[0,0,0]",
             "object: expected tables",
         ),
+        ("[camera]\neye = [1, 2\nfov_y = 1", "line 3"),
+        (
+            "[camera]\nup = 1\nup = 2",
+            "line 3, column 1: is not TOML: duplicate key `up`",
+        ),
+        (&scene.replace('\n', "\r"), "line ends of CR alone"),
+        (&wide, "holds zero bytes"),
+        ("1,2,3\n4,5,6\n", "is neither a scene in TOML"),
     ] {
         fault(parse(text, "", &[]), wanted);
     }
-}
-
-#[test]
-fn faults_of_the_grammar_name_the_line() {
-    fault(parse("[camera]\neye = [1, 2\nfov_y = 1", "", &[]), "line 3");
-    fault(
-        parse("[camera]\nup = 1\nup = 2", "", &[]),
-        "line 3, column 1: is not TOML: duplicate key `up`",
-    );
-}
-
-#[test]
-fn values_that_people_write_otherwise_are_spelled() {
-    for (line, wanted) in [
-        ("extend = .1", "line 6, column 10: is not TOML: "),
-        ("extend = .1", "; write 0.1"),
-        ("extend = 5. # wide", "; write 5.0"),
-        ("map_rows = 07", "; write 7"),
-        ("extend = 0,5", "; write 0.5"),
-        ("bevel = 1,000", "; write 1.0 or 1000"),
-        ("color = [.5, 1., 0]", "; write [0.5, 1.0, 0]"),
-        ("profile_invert = True", "; write true"),
-        (
-            "color_map = \"C:\\maps\\a.png\"",
-            "; write / in paths, or single quotes",
-        ),
-        (
-            "color_map = \"C:\\new.png\"",
-            "write / in paths, or single quotes",
-        ),
-        (
-            "color_map = \"~/a.png\"",
-            "object.0.color_map: \"~/a.png\" is not there, and ~",
-        ),
-        (
-            "color_map = \"https://a.b/c.png\"",
-            "is an address; download",
-        ),
-        ("color_map = \"-\"", "/dev/stdin"),
-        (
-            "profile_axis = \"0.5\"",
-            "\"center\", or a number without quotes",
-        ),
-    ] {
-        let object = match line.starts_with("profile_axis") {
-            true => "[[object]]\nprofile = \"none.svg\"\n",
-            false => CONE,
-        };
-        let text = format!("{CAMERA_LINES}{object}{line}");
-        fault(parse(&text, "", &[]), wanted);
-    }
-    let scene = format!("{CAMERA_LINES}{CONE}");
-    fault(
-        parse(&scene.replace('\n', "\r"), "", &[]),
-        "line ends of CR alone",
-    );
-    let wide: String = scene.chars().flat_map(|c| [c, '\0']).collect();
-    fault(parse(&wide, "", &[]), "holds zero bytes");
-    fault(
-        parse("1,2,3\n4,5,6\n", "", &[]),
-        "is neither a scene in TOML",
-    );
 }
 
 #[test]
@@ -383,19 +336,18 @@ fn the_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("s.toml");
     fault(scene(&file), "s.toml: cannot be read");
-    std::fs::write(&file, "bakground = 1").unwrap();
-    fault(
-        scene(&file),
-        "s.toml: bakground: unknown key; did you mean `background`?",
-    );
-    std::fs::write(&file, "extend = 1").unwrap();
-    fault(scene(&file), "did you mean `object.0.extend`?");
-    std::fs::write(
-        &file,
-        format!("{CAMERA_LINES}[[object]]\nprofile = \"none.png\""),
-    )
-    .unwrap();
-    fault(scene(&file), "none.png: object.0.profile:");
+    let missing = format!("{CAMERA_LINES}[[object]]\nprofile = \"none.png\"");
+    for (text, wanted) in [
+        (
+            "bakground = 1",
+            "s.toml: bakground: unknown key; did you mean `background`?",
+        ),
+        ("extend = 1", "did you mean `object.0.extend`?"),
+        (&missing, "none.png: object.0.profile:"),
+    ] {
+        std::fs::write(&file, text).unwrap();
+        fault(scene(&file), wanted);
+    }
     fault(scene(folder.path()), "cannot be read");
 }
 
@@ -420,29 +372,15 @@ fn every_key_is_documented() {
 
 #[test]
 fn keys_without_effect_are_refused() {
-    for (key, value) in [
-        ("profile_axis", "\"left\""),
-        ("profile_threshold", "0.3"),
-        ("profile_invert", "true"),
-        ("profile_smooth", "2"),
-        ("profile_smooth", "\"auto\""),
-    ] {
-        fault(
-            cone(&format!("{key} = {value}")),
-            &format!("object.0.{key}: counts for files"),
-        );
-    }
     let folder = folder();
-    for key in ["position", "rotation", "scale"] {
-        let value = if key == "rotation" {
-            "[0, 0, 0, 1]"
-        } else {
-            "[1, 1, 1]"
-        };
-        let lines = format!("{CAMERA_LINES}{CONE}instances = \"copies.csv\"\n{key} = {value}");
-        fault(
-            parse(&lines, folder.path(), &[]),
-            &format!("object.0.{key}: stands beside instances"),
-        );
+    for line in [
+        "position = [1, 1, 1]",
+        "rotation = [0, 0, 0, 1]",
+        "scale = [1, 1, 1]",
+    ] {
+        let key = line.split(' ').next().unwrap();
+        let lines = format!("{CAMERA_LINES}{CONE}instances = \"copies.csv\"\n{line}");
+        let words = format!("object.0.{key}: stands beside instances");
+        fault(parse(&lines, folder.path(), &[]), &words);
     }
 }

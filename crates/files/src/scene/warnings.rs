@@ -216,24 +216,18 @@ mod tests {
         warns("background", |s| s.background = [255.0, 0.0, 0.0, 1.0]);
         warns("object.0.color: has 200", |s| s.objects[0].color[1] = 200.0);
         warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
-    }
-
-    #[test]
-    fn an_inset_that_leaves_nothing_is_named() {
         warns("object.0.extend: the inset of 0.9 leaves nothing", |s| {
-            s.objects[0].offset.extend = -0.9;
+            s.objects[0].offset.extend = -0.9
         });
         // The other object is there, and the first is not asked for twice.
-        let mut two = scene();
-        two.objects.push(two.objects[0].clone());
-        two.objects[1].offset.extend = -0.3;
-        let found = warnings(&two, 80, 60);
-        assert!(
-            found.len() == 1 && found[0].starts_with("object.1.extend"),
-            "{found:?}"
-        );
-        two.objects[1].offset.extend = -0.02;
-        assert_eq!(warnings(&two, 80, 60), [""; 0]);
+        let two = |s: &mut Scene, extend: f64| {
+            s.objects.push(s.objects[0].clone());
+            s.objects[1].offset.extend = extend;
+        };
+        warns("object.1.extend: the inset of 0.3", |s| two(s, -0.3));
+        let mut small = scene();
+        two(&mut small, -0.02);
+        assert_eq!(warnings(&small, 80, 60), [""; 0]);
     }
 
     #[test]
@@ -260,37 +254,35 @@ mod tests {
 
     #[test]
     fn shadows_of_a_crowd_are_slow() {
-        let crowd = |s: &mut Scene| {
-            let object = &mut s.objects[0];
-            object.instances = vec![object.placement; CROWD + 1].into();
+        let crowd = |shadow: Shadow| {
+            let mut scene = scene();
+            let copies = vec![scene.objects[0].placement; CROWD + 1];
+            (scene.objects[0].instances, scene.shadow) = (copies.into(), shadow);
+            warnings(&scene, 80, 60)
         };
-        warns("shadow: 1001 solids", |s| {
-            crowd(s);
-            s.shadow = Shadow::Soft;
-        });
-        let mut unlit = scene();
-        crowd(&mut unlit);
-        assert!(warnings(&unlit, 80, 60).is_empty());
+        assert!(crowd(Shadow::Soft)[0].starts_with("shadow: 1001 solids"));
+        assert_eq!(crowd(Shadow::Off), [""; 0]);
     }
 
     #[test]
     fn a_camera_that_looks_elsewhere_sees_nothing() {
         for target in [
-            DVec3::new(4.0, 0.0, 0.5),
-            DVec3::new(2.0, 1.0, 0.5),
-            DVec3::new(2.1, 0.0, 5.0),
-            DVec3::new(2.0, -1.0, -3.0),
+            [4.0, 0.0, 0.5],
+            [2.0, 1.0, 0.5],
+            [2.1, 0.0, 5.0],
+            [2.0, -1.0, -3.0],
         ] {
-            warns("nothing is in view", |s| s.camera.target = target);
+            warns("nothing is in view", |s| s.camera.target = target.into());
         }
-        // The eye is within the solid's box, so every view direction counts.
-        let mut within = scene();
-        within.camera.eye = DVec3::new(0.1, 0.0, 0.5);
-        within.camera.target = DVec3::new(1.0, 0.2, 0.5);
-        assert!(warnings(&within, 80, 60).is_empty());
-        // A solid at the picture's edge counts.
-        let mut edge = scene();
-        edge.camera.target = DVec3::new(0.0, 1.0, 0.5);
-        assert!(warnings(&edge, 80, 60).is_empty());
+        // The eye is within the solid's box, so every view direction counts. A solid at the
+        // picture's edge counts.
+        for (eye, target) in [
+            ([0.1, 0.0, 0.5], [1.0, 0.2, 0.5]),
+            ([2.0, 0.0, 0.5], [0.0, 1.0, 0.5]),
+        ] {
+            let mut seen = scene();
+            (seen.camera.eye, seen.camera.target) = (eye.into(), target.into());
+            assert_eq!(warnings(&seen, 80, 60), [""; 0]);
+        }
     }
 }

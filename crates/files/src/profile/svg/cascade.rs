@@ -1,6 +1,8 @@
 //! The cascade: which declaration of a property counts for an element.
 
 use super::css::{Declaration, Rule, declarations, media, one_line, sheet, without_comments};
+use super::custom::{Custom, filled};
+use super::motion::OTHER_SHEET;
 use super::notes::Notes;
 use super::reader::{XHTML, is_svg};
 use super::selector::{Key, Places, Selector};
@@ -9,17 +11,7 @@ use super::value::attribute;
 use crate::content_fault;
 use revmap::error::Result;
 use roxmltree::Node;
-use std::borrow::Cow;
 use std::collections::HashMap;
-use std::rc::Rc;
-
-/// Custom properties of CSS (`--name`), inherited.
-pub(super) type Custom = Rc<HashMap<String, String>>;
-
-/// Fallbacks of custom properties may be nested this deep.
-const MOST_NESTED: usize = 64;
-/// Longest value after custom properties are filled in, bytes.
-const MOST_BYTES: usize = 1 << 16;
 
 /// Importance, then attribute, rule or `style` attribute, then specificity.
 type Strength = (bool, u8, [u32; 3]);
@@ -38,10 +30,7 @@ impl Sheets {
         let mut title = None;
         for node in document.descendants() {
             if node.pi().is_some_and(|pi| pi.target == "xml-stylesheet") {
-                notes.warn(
-                    "the drawing has a style sheet in another file, which is not read; copy the rules into the drawing"
-                        .to_owned(),
-                );
+                notes.warn(OTHER_SHEET.to_owned());
             }
             let is_known = is_svg(node) || node.tag_name().namespace() == Some(XHTML);
             if !is_known || node.tag_name().name() != "style" {
@@ -195,41 +184,16 @@ fn shows(name: &str) -> bool {
 
 /// Returns true for properties that move the outline.
 fn counts(name: &str) -> bool {
-    const PARTS: [&str; 26] = [
-        "all",
-        "background",
-        "fill",
-        "stroke",
-        "opacity",
-        "display",
-        "visibility",
-        "clip",
-        "mask",
-        "filter",
-        "transform",
-        "marker",
-        "paint-order",
-        "vector-effect",
-        "overflow",
-        "translate",
-        "rotate",
-        "scale",
-        "mix-blend",
-        "offset",
-        "width",
-        "height",
-        "color",
-        "stop-",
-        "zoom",
-        "--",
-    ];
-    PARTS.iter().any(|p| name.starts_with(p))
+    const BEGINNINGS: &str = "all background fill stroke opacity display visibility clip mask filter transform \
+        marker paint-order vector-effect overflow translate rotate scale mix-blend offset width height color stop- \
+        zoom --";
+    BEGINNINGS.split(' ').any(|part| name.starts_with(part))
         || matches!(name, "d" | "x" | "y" | "r" | "cx" | "cy" | "rx" | "ry")
 }
 
 /// Declarations by property, the strongest first.
 pub(super) struct Declared {
-    properties: HashMap<String, Vec<Declaration>>,
+    pub properties: HashMap<String, Vec<Declaration>>,
     /// What `all` makes of the properties without stronger declarations.
     all: Option<Wide>,
     /// The refusal of a rule that may be for the element.
@@ -238,14 +202,14 @@ pub(super) struct Declared {
 
 /// A keyword that every property has.
 #[derive(Clone, Copy, PartialEq)]
-enum Wide {
+pub(super) enum Wide {
     Inherit,
     Initial,
     Unset,
 }
 
 impl Wide {
-    fn of(text: &str) -> Option<Self> {
+    pub fn of(text: &str) -> Option<Self> {
         Some(match text.to_ascii_lowercase().as_str() {
             "inherit" => Self::Inherit,
             "initial" => Self::Initial,
@@ -259,9 +223,7 @@ impl Wide {
 pub(super) enum Picked<T> {
     /// Nothing is declared.
     Absent,
-    Inherit,
-    Initial,
-    Unset,
+    Wide(Wide),
     Is(T),
     /// No declaration can be read; the text is the refusal.
     Unread(String),
@@ -295,41 +257,6 @@ impl Declared {
             list.push(d.clone());
         }
         Ok(())
-    }
-
-    /// The custom properties of an element whose parent has `inherited`.
-    ///
-    /// # Errors
-    /// If one is set back to a value that is not known here.
-    pub fn custom(&self, inherited: &Custom) -> Result<Custom> {
-        let own = self.properties.iter();
-        let own = own.filter(|(name, _)| name.starts_with("--"));
-        let own = own.filter_map(|(name, list)| Some((name.as_str(), list.first()?)));
-        let own: HashMap<&str, &str> = own.map(|(name, d)| (name, d.value.as_str())).collect();
-        if own.is_empty() {
-            return Ok(Rc::clone(inherited));
-        }
-        let mut filling = Filling {
-            own: &own,
-            inherited,
-            done: HashMap::new(),
-        };
-        for (name, value) in &own {
-            if ["revert", "revert-layer"].contains(&value.to_ascii_lowercase().as_str()) {
-                return Err(content_fault(format!(
-                    "the drawing has \"{name}: {value}\", which is not read; write the value itself"
-                )));
-            }
-            filling.value(name, 0);
-        }
-        let mut all = HashMap::clone(inherited);
-        for (name, value) in filling.done {
-            match value {
-                Some(value) => drop(all.insert(name, value)),
-                None => drop(all.remove(&name)),
-            }
-        }
-        Ok(Rc::new(all))
     }
 
     /// The strongest declaration of CSS of a property, as text.
@@ -369,7 +296,7 @@ impl Declared {
                 return Picked::Unread(text);
             };
             if let Some(wide) = Wide::of(&value) {
-                return wide.picked();
+                return Picked::Wide(wide);
             }
             match read(&value, d.css) {
                 _ if value.eq_ignore_ascii_case("revert-layer") => {
@@ -399,7 +326,7 @@ impl Declared {
                     fault.get_or_insert(unread);
                 }
                 // Browsers find this too late to go back to the declaration before it.
-                Value::Wrong if is_filled => return Picked::Unset,
+                Value::Wrong if is_filled => return Picked::Wide(Wide::Unset),
                 Value::Wrong => {
                     let text = format!("the drawing has {}, which is not valid", said());
                     fault.get_or_insert(Picked::Wrong(text));
@@ -408,93 +335,8 @@ impl Declared {
         }
         match (fault, self.all) {
             (Some(fault), _) => fault,
-            (None, Some(all)) => all.picked(),
+            (None, Some(all)) => Picked::Wide(all),
             (None, _) => Picked::Absent,
         }
     }
-}
-
-impl Wide {
-    fn picked<T>(self) -> Picked<T> {
-        match self {
-            Self::Inherit => Picked::Inherit,
-            Self::Initial => Picked::Initial,
-            Self::Unset => Picked::Unset,
-        }
-    }
-}
-
-/// The custom properties of one element while references between them are followed.
-struct Filling<'a> {
-    own: &'a HashMap<&'a str, &'a str>,
-    inherited: &'a Custom,
-    /// `None` for those that are not valid, and for those that are being read.
-    done: HashMap<String, Option<String>>,
-}
-
-impl Filling<'_> {
-    /// The value of a custom property with all references filled in.
-    fn value(&mut self, name: &str, depth: usize) -> Option<String> {
-        let before = || self.inherited.get(name).cloned();
-        if let Some(done) = self.done.get(name) {
-            return done.clone();
-        }
-        let Some(text) = self.own.get(name) else {
-            return before();
-        };
-        let value = match Wide::of(text) {
-            Some(Wide::Initial) => None,
-            Some(_) => before(),
-            None => {
-                self.done.insert(name.to_owned(), None);
-                substituted(text, &mut |n| self.value(n, depth + 1), depth)
-            }
-        };
-        self.done.insert(name.to_owned(), value.clone());
-        value
-    }
-}
-
-/// A value with custom properties filled in. `None` if one is not set.
-fn filled<'a>(text: &'a str, custom: &Custom) -> Option<Cow<'a, str>> {
-    match text.contains("var(") {
-        true => substituted(text, &mut |name| custom.get(name).cloned(), 0)
-            .map(|value| Cow::Owned(value.trim().to_owned())),
-        false => Some(Cow::Borrowed(text)),
-    }
-}
-
-/// Fills in what `value` gives for the names of custom properties. `None` if that is not set.
-fn substituted(
-    text: &str,
-    value: &mut dyn FnMut(&str) -> Option<String>,
-    depth: usize,
-) -> Option<String> {
-    if depth > MOST_NESTED {
-        return None;
-    }
-    let mut out = String::new();
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once("var(") {
-        let mut open = 1;
-        let end = after.char_indices().find_map(|(i, c)| {
-            open += i32::from(c == '(') - i32::from(c == ')');
-            (open == 0).then_some(i)
-        })?;
-        let (name, fallback) = match after[..end].split_once(',') {
-            Some((name, fallback)) => (name, Some(fallback)),
-            None => (&after[..end], None),
-        };
-        out.push_str(before);
-        match (value(name.trim()), fallback) {
-            (Some(own), _) => out.push_str(own.trim()),
-            (None, fallback) => out.push_str(substituted(fallback?, value, depth + 1)?.trim()),
-        }
-        if out.len() > MOST_BYTES {
-            return None;
-        }
-        rest = &after[end + 1..];
-    }
-    out.push_str(rest);
-    Some(out)
 }

@@ -2,7 +2,8 @@
 
 use super::notes::{Notes, line_at, line_starts};
 use super::reader::SVG;
-use super::selector::{Selector, selectors};
+use super::selector::Selector;
+use super::selector_reader::selectors;
 use super::value::unescaped;
 
 /// Rules and `@media` may be nested this deep.
@@ -30,18 +31,17 @@ pub(super) struct Rule {
 }
 
 /// Properties that browsers read with the prefix `-webkit-`, too.
-const PREFIXED: [&str; 10] = [
-    "transform",
-    "transform-origin",
-    "clip-path",
-    "filter",
-    "opacity",
-    "animation",
-    "animation-name",
-    "mask",
-    "mask-image",
-    "mask-box-image",
-];
+const PREFIXED: &str = "transform transform-origin clip-path filter opacity animation animation-name mask mask-image \
+    mask-box-image";
+/// Parts of conditions of media that hold, and those that do not.
+const HOLDS: &str = "all screen (prefers-color-scheme:light) (prefers-reduced-motion:no-preference) \
+    (prefers-contrast:no-preference) (forced-colors:none)";
+const FAILS: &str = "print speech tty tv projection handheld braille embossed aural (prefers-color-scheme:dark) \
+    (prefers-reduced-motion:reduce) (prefers-reduced-motion) (forced-colors:active)";
+
+fn is_in(list: &str, word: &str) -> bool {
+    list.split(' ').any(|known| known == word)
+}
 
 /// Reads the declarations of a `style` attribute or of a rule.
 pub(super) fn declarations(text: &str) -> Vec<Declaration> {
@@ -59,7 +59,7 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
             name => name.to_ascii_lowercase(),
         };
         let plain = name.strip_prefix("-webkit-");
-        let name = plain.filter(|p| PREFIXED.contains(p)).unwrap_or(&name);
+        let name = plain.filter(|p| is_in(PREFIXED, p)).unwrap_or(&name);
         // Ends of lines are attributes alone.
         if matches!(name, "x1" | "x2" | "y1" | "y2") {
             continue;
@@ -265,28 +265,8 @@ pub(super) fn media(condition: &str) -> Option<bool> {
         };
         let parts = query.split(" and ").map(|part| {
             let part: String = part.split_ascii_whitespace().collect();
-            match part.as_str() {
-                "all"
-                | "screen"
-                | "(prefers-color-scheme:light)"
-                | "(prefers-reduced-motion:no-preference)"
-                | "(prefers-contrast:no-preference)"
-                | "(forced-colors:none)" => Some(true),
-                "print"
-                | "speech"
-                | "tty"
-                | "tv"
-                | "projection"
-                | "handheld"
-                | "braille"
-                | "embossed"
-                | "aural"
-                | "(prefers-color-scheme:dark)"
-                | "(prefers-reduced-motion:reduce)"
-                | "(prefers-reduced-motion)"
-                | "(forced-colors:active)" => Some(false),
-                _ => None,
-            }
+            let holds = is_in(HOLDS, &part);
+            (holds || is_in(FAILS, &part)).then_some(holds)
         });
         let parts: Vec<Option<bool>> = parts.collect();
         let holds = match parts.contains(&Some(false)) {
@@ -383,86 +363,4 @@ fn string_length(text: &str) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(text: &str) -> Vec<(usize, Vec<String>, Option<String>, u32)> {
-        let rules = sheet(text, 10, &mut Notes::default());
-        let name = |d: &Declaration| {
-            format!(
-                "{}={}{}",
-                d.name,
-                d.value,
-                ["", "!"][usize::from(d.important)]
-            )
-        };
-        let of = |r: &Rule| {
-            (
-                r.selectors.len(),
-                r.declarations.iter().map(name).collect(),
-                r.unread.clone(),
-                r.line,
-            )
-        };
-        rules.iter().map(of).collect()
-    }
-
-    #[test]
-    fn rules_are_read() {
-        let text = "@charset 'a';<!-- .a, .b { Fill: url(a;b) !important; --X:1 } -->/* {\n */\n\
-            @font-face { font-family: 'a}' } @media print { a { fill: red } }\n\
-            @media screen { c { d: 'x;y' } } e{f:g";
-        let got = names(text);
-        let own = |list: &[&str]| list.iter().map(|&s| s.to_owned()).collect::<Vec<_>>();
-        assert_eq!(got[0], (2, own(&["fill=url(a;b)!", "--X=1"]), None, 10));
-        assert_eq!(got[1], (1, own(&["d='x;y'"]), None, 13));
-        assert_eq!(got[2], (1, own(&["f=g"]), None, 13));
-        assert_eq!(got.len(), 3);
-    }
-
-    #[test]
-    fn the_rest_is_kept_by_name() {
-        assert_eq!(names("a:has(b) {c:d}")[0].2.as_deref(), Some("a:has(b)"));
-        assert_eq!(
-            names("@supports (x: y) { a {c:d} }")[0].2.as_deref(),
-            Some("@supports (x: y)")
-        );
-        assert_eq!(names("@media (min-width: 9px) { a {c:d} }")[0].0, 1);
-        let deep = "a {".repeat(40) + "b:c" + &"}".repeat(40);
-        assert!(names(&deep)[0].2.is_some());
-        let mut notes = Notes::default();
-        assert!(sheet("@import 'a.css'; a{b:c}", 1, &mut notes).len() == 1);
-        assert!(notes.into_warnings()[0].contains("@import (line 1)"));
-    }
-
-    #[test]
-    fn rules_within_rules_are_in_order() {
-        let text = "a, .b {c:1; &:hover, d {e:2} > f {g:3} --h:{i:4}; @media screen {j:5} k:6}";
-        let got: Vec<(usize, Vec<String>)> = names(text).into_iter().map(|r| (r.0, r.1)).collect();
-        let wanted = [
-            (2, "c=1"),
-            (2, "e=2"),
-            (1, "g=3"),
-            (2, "--h={i:4}"),
-            (2, "j=5"),
-            (2, "k=6"),
-        ];
-        assert_eq!(got, wanted.map(|(n, d)| (n, vec![d.to_owned()])));
-        assert_eq!(nested("d, e", "a"), ":is(a) d,:is(a) e");
-    }
-
-    #[test]
-    fn conditions_of_media() {
-        for (text, wanted) in [
-            ("", Some(true)),
-            ("screen", Some(true)),
-            ("print, screen", Some(true)),
-            ("not print", Some(true)),
-            ("only screen and (prefers-color-scheme: dark)", Some(false)),
-            ("screen and (min-width: 100px)", None),
-            ("print and (min-width: 100px)", Some(false)),
-        ] {
-            assert_eq!(media(text), wanted, "{text}");
-        }
-    }
-}
+mod tests;

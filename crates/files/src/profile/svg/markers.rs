@@ -1,16 +1,15 @@
 //! Markers: the content that is repeated at the corners of a line.
 
 use super::notes::misled;
-use super::reader::{Place, Reader};
+use super::reader::{Place, Reader, Shown};
 use super::shapes::Curve;
-use super::style::{Style, Target};
+use super::style::Style;
 use super::tree::{Clip, Group, Node as Drawn};
-use super::value::{Value, attribute, length, split_number};
+use super::value::{Value, attribute, length, radians, split_number};
 use super::viewport::{fitted, view_box};
 use kurbo::{Affine, PathEl, Point, Rect, Vec2};
 use revmap::error::Result;
 use roxmltree::Node;
-use std::rc::Rc;
 
 /// A corner of a path with the directions of the line before and after it.
 struct Corner {
@@ -41,20 +40,24 @@ impl<'a> Reader<'a> {
         place: Place,
         curve: &Curve,
         width: f64,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Shown {
+        let mut out = Vec::new();
         let marked = matches!(
             node.tag_name().name(),
             "path" | "line" | "polyline" | "polygon"
         );
         if !marked || style.markers.iter().all(Option::is_none) {
-            return Ok(());
+            return Ok(out);
         }
         let corners = corners(curve);
         let last = corners.len().saturating_sub(1);
         for (k, target) in style.markers.iter().enumerate() {
             let Some(target) = target else { continue };
-            let Some(marker) = self.marker(target, node) else {
+            // Browsers ignore one that is missing.
+            let Some(marker) = self.found(target, "marker") else {
+                let (Ok(id) | Err(id)) = target;
+                let how = ", which is not in it and is left out";
+                self.notes.warn_at(node, &format!("a marker \"{id}\""), how);
                 continue;
             };
             for (i, corner) in corners.iter().enumerate() {
@@ -64,28 +67,14 @@ impl<'a> Reader<'a> {
                     _ => i == last,
                 };
                 if here {
-                    self.marker_at(marker, corner, k == 0, style, place, width, out)?;
+                    let drawn = self.marker_at(marker, corner, k == 0, style, place, width)?;
+                    out.extend(drawn.map(Drawn::Group));
                 }
             }
         }
-        Ok(())
+        Ok(out)
     }
 
-    /// The marker that is referred to. Browsers ignore one that is missing.
-    fn marker(&mut self, target: &Target, node: Node) -> Option<Node<'a, 'a>> {
-        let found = target.as_ref().ok().and_then(|id| self.by_id(id));
-        let marker = found.filter(|n| n.tag_name().name() == "marker");
-        if marker.is_none() {
-            let (Ok(id) | Err(id)) = target;
-            self.notes.warn(format!(
-                "the drawing has a marker \"{id}\" (line {}), which is not in it and is left out",
-                self.notes.line(node)
-            ));
-        }
-        marker
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "one corner of one shape")]
     fn marker_at(
         &mut self,
         marker: Node<'a, 'a>,
@@ -94,23 +83,13 @@ impl<'a> Reader<'a> {
         of_shape: &Style,
         place: Place,
         width: f64,
-        out: &mut Vec<Drawn>,
-    ) -> Result<()> {
+    ) -> Result<Option<Group>> {
         if self.open.contains(&marker.id()) {
             let what = "a marker that contains itself";
-            return Err(misled(
-                what,
-                marker,
-                "without an end",
-                "remove the inner one",
-            ));
+            return Err(misled(marker, what, "without an end; remove the inner one"));
         }
         let mut style = self.style_of(marker)?;
-        let paints = (
-            of_shape.resolved(&of_shape.fill).clone(),
-            of_shape.resolved(&of_shape.stroke).clone(),
-        );
-        style.context = Rc::new(paints);
+        style.context = of_shape.as_context();
         let size = |name: &str, whole: f64, usual: f64| {
             let text = attribute(marker, name).map(str::trim);
             let read = text.map(|t| length(t, style.fonts, true));
@@ -126,21 +105,18 @@ impl<'a> Reader<'a> {
             || inner.is_some_and(|i| i.area() <= 0.0)
             || (width <= 0.0 && attribute(marker, "markerUnits").is_none())
         {
-            return Ok(());
+            return Ok(None);
         }
-        let fit = inner.map_or(Affine::IDENTITY, |i| fitted(marker, i, own));
-        let whole = inner.map_or(own, |i| (i.width(), i.height()));
+        let (fit, whole) = fitted(marker, inner, own);
         let reference = fit * Point::new(size("refX", whole.0, 0.0), size("refY", whole.1, 0.0));
         let angle = match attribute(marker, "orient").map(str::trim) {
             Some("auto") => corner.angle(),
             Some("auto-start-reverse") if is_start => corner.angle() + std::f64::consts::PI,
             Some("auto-start-reverse") => corner.angle(),
             text => match text.and_then(split_number) {
-                Some((v, "" | "deg")) => v.to_radians(),
-                Some((v, "rad")) => v,
-                Some((v, "grad")) => (0.9 * v).to_radians(),
-                Some((v, "turn")) => v * std::f64::consts::TAU,
-                _ => 0.0,
+                Some((v, "")) => v.to_radians(),
+                Some((v, unit)) => radians(v, unit).unwrap_or(0.0),
+                None => 0.0,
             },
         };
         let scale = match attribute(marker, "markerUnits") {
@@ -152,25 +128,23 @@ impl<'a> Reader<'a> {
             * Affine::scale(scale)
             * Affine::translate(-reference.to_vec2());
         self.open.push(marker.id());
-        let mut content = Vec::new();
         let within = Place {
             viewport: whole,
             ..place.deeper()
         };
-        self.children(marker, &style, within, &mut content)?;
+        let content = self.children(marker, &style, within)?;
         self.open.pop();
         if content.is_empty() {
-            return Ok(());
+            return Ok(None);
         }
         let clip = (!style.own.overflow).then(|| Clip::to_rect(Rect::new(0.0, 0.0, own.0, own.1)));
         style.own.check()?;
-        out.push(Drawn::Group(Group {
+        Ok(Some(Group {
             opacity: style.own.opacity,
             clip,
             is_marker: true,
             ..Group::moved(transform, vec![Drawn::Group(Group::moved(fit, content))])
-        }));
-        Ok(())
+        }))
     }
 }
 

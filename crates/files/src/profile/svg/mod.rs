@@ -6,14 +6,24 @@
 //! with its line and a remedy (`docs/drawings.md` has the list).
 
 mod cascade;
+mod clips;
 mod color;
 mod css;
+mod custom;
 mod encoding;
+mod keywords;
 mod markers;
+mod motion;
 mod notes;
+mod paints;
+mod placed;
+mod properties;
 mod reader;
+mod references;
 mod selector;
+mod selector_reader;
 mod shapes;
+mod strokes;
 mod style;
 mod transform;
 mod tree;
@@ -24,8 +34,9 @@ pub(super) use encoding::is_markup;
 pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
 
 use crate::content_fault;
-use kurbo::{Affine, Rect, Shape};
-use reader::{Place, Reader, SVG, premultiplied, root_fault};
+use kurbo::{Rect, Shape};
+use paints::premultiplied;
+use reader::{Place, Reader, SVG};
 use revmap::error::{Error, Result};
 use revmap::profile::FillRule;
 use style::Paint;
@@ -46,7 +57,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
         roxmltree::Document::parse_with_options(&text, options).map_err(|e| damaged(&e))?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
-        return Err(root_fault(root.tag_name().name()));
+        let name = root.tag_name().name();
+        return Err(content_fault(format!(
+            "the file has <{name}> at its root, not <svg>; save the drawing as SVG"
+        )));
     }
     if let Some(other) = root.tag_name().namespace().filter(|n| *n != SVG) {
         return Err(content_fault(format!(
@@ -57,27 +71,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Drawing> {
     let style = reader.style_of(root)?;
     let inner = viewport::view_box(root, &mut reader.notes);
     let size = viewport::page(&style, inner)?;
-    let fit = inner.map_or(Affine::IDENTITY, |i| viewport::fitted(root, i, size));
-    let viewport = inner.map_or(size, |i| (i.width(), i.height()));
-    let mut content = Vec::new();
-    if style.own.display && style.own.opacity > 0.0 {
-        reader.children(root, &style, Place::within(viewport), &mut content)?;
-    }
+    let (fit, viewport) = viewport::fitted(root, inner, size);
+    let content = match style.own.display && style.own.opacity > 0.0 {
+        true => reader.children(root, &style, Place::within(viewport))?,
+        false => Vec::new(),
+    };
     let children = vec![Node::Group(Group::moved(fit, content))];
-    let mut content = Vec::new();
-    reader.wrap(root, &style, Place::within(size), children, &mut content)?;
+    let mut content = reader.wrap(root, &style, Place::within(size), children)?;
     tree::prune(&mut content);
     if let Paint::Color(color) = style.resolved(&style.own.background) {
         let color = premultiplied(*color, 1.0);
         let page = Rect::new(0.0, 0.0, size.0, size.1);
-        let path = Path {
-            curve: page.to_path(0.1),
-            band: None,
-            rule: FillRule::NonZero,
-            color,
-            lightest: None,
-        };
-        content.insert(0, Node::Path(path));
+        let path = Path::plain(page.to_path(0.1), FillRule::NonZero);
+        content.insert(0, Node::Path(Path { color, ..path }));
     }
     Ok(Drawing {
         size,

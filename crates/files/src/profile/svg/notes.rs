@@ -44,6 +44,14 @@ impl Notes {
         }
     }
 
+    /// Warns of a feature of an element: `what`, its line, and `how` it is drawn.
+    pub fn warn_at(&mut self, node: roxmltree::Node, what: &str, how: &str) {
+        self.warn(format!(
+            "the drawing has {what} (line {}){how}",
+            self.line(node)
+        ));
+    }
+
     pub fn into_warnings(mut self) -> Vec<String> {
         if self.warnings.len() > MOST {
             let more = self.warnings.len() - MOST;
@@ -71,17 +79,17 @@ fn line(node: roxmltree::Node) -> u32 {
 }
 
 /// The refusal of a feature that has no outline.
-pub(super) fn unsupported(what: &str, node: roxmltree::Node, remedy: &str) -> Error {
+pub(super) fn unsupported(node: roxmltree::Node, what: &str, remedy: &str) -> Error {
     content_fault(format!(
         "the drawing uses {what} (line {}), which has no outline here; {remedy}",
         line(node)
     ))
 }
 
-/// The refusal of a reference that leads nowhere or in a circle.
-pub(super) fn misled(what: &str, node: roxmltree::Node, how: &str, remedy: &str) -> Error {
+/// The refusal of `what`, with its fault and a remedy.
+pub(super) fn misled(node: roxmltree::Node, what: &str, how: &str) -> Error {
     content_fault(format!(
-        "the drawing has {what} (line {}), {how}; {remedy}",
+        "the drawing has {what} (line {}), {how}",
         line(node)
     ))
 }

@@ -1,7 +1,7 @@
 //! The curves of basic shapes and of path data, in double precision.
 
 use super::style::Style;
-use super::value::{Value, attribute};
+use super::value::attribute;
 use kurbo::{BezPath, Ellipse, Line, ParamCurve, Point, Shape, SvgArc, Vec2};
 use svgtypes::{PathParser, PathSegment};
 
@@ -31,46 +31,43 @@ impl From<BezPath> for Curve {
 pub(super) fn curve(node: roxmltree::Node, style: &Style, viewport: (f64, f64)) -> Curve {
     let (width, height) = viewport;
     let diagonal = (0.5 * (width * width + height * height)).sqrt();
-    let across = |name: &str| style.geometry(name).map(|l| l.of(width));
-    let down = |name: &str| style.geometry(name).map(|l| l.of(height));
-    let zero = |v: Option<f64>| v.unwrap_or(0.0);
+    let x = |name: &str| style.size(name, width);
+    let y = |name: &str| style.size(name, height);
+    let radii = || {
+        let rx = style
+            .geometry("rx")
+            .map(|l| l.of(width))
+            .filter(|r| *r >= 0.0);
+        let ry = style
+            .geometry("ry")
+            .map(|l| l.of(height))
+            .filter(|r| *r >= 0.0);
+        // One that is missing is as the other.
+        (rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0))
+    };
     match node.tag_name().name() {
         "rect" => {
-            let (w, h) = (zero(across("width")), zero(down("height")));
+            let (w, h) = (x("width"), y("height"));
             if w <= 0.0 || h <= 0.0 {
                 return Curve::default();
             }
-            let (rx, ry) = radii(across("rx"), down("ry"));
-            let corner = (zero(across("x")), zero(down("y")));
-            rectangle(corner, (w, h), (rx.min(0.5 * w), ry.min(0.5 * h))).into()
+            let (rx, ry) = radii();
+            rectangle((x("x"), y("y")), (w, h), (rx.min(0.5 * w), ry.min(0.5 * h))).into()
         }
         "circle" => {
-            let r = zero(style.geometry("r").map(|l| l.of(diagonal)));
-            ellipse((zero(across("cx")), zero(down("cy"))), (r, r))
+            let r = style.size("r", diagonal);
+            ellipse((x("cx"), y("cy")), (r, r))
         }
-        "ellipse" => {
-            let radii = radii(across("rx"), down("ry"));
-            ellipse((zero(across("cx")), zero(down("cy"))), radii)
-        }
+        "ellipse" => ellipse((x("cx"), y("cy")), radii()),
         "line" => {
             let mut path = BezPath::new();
-            path.move_to((zero(across("x1")), zero(down("y1"))));
-            path.line_to((zero(across("x2")), zero(down("y2"))));
+            path.move_to((x("x1"), y("y1")));
+            path.line_to((x("x2"), y("y2")));
             path.into()
         }
         "polyline" => points(attribute(node, "points").unwrap_or_default(), false),
         "polygon" => points(attribute(node, "points").unwrap_or_default(), true),
         _ => path_data(style.own.path_data.as_deref().unwrap_or_default()),
-    }
-}
-
-/// The radii of corners or of an ellipse; one that is missing is as the other.
-fn radii(rx: Option<f64>, ry: Option<f64>) -> (f64, f64) {
-    let valid = |r: Option<f64>| r.filter(|r| *r >= 0.0);
-    match (valid(rx), valid(ry)) {
-        (Some(rx), Some(ry)) => (rx, ry),
-        (Some(r), None) | (None, Some(r)) => (r, r),
-        (None, None) => (0.0, 0.0),
     }
 }
 
@@ -117,26 +114,23 @@ fn rectangle(corner: (f64, f64), (w, h): (f64, f64), (rx, ry): (f64, f64)) -> Be
 }
 
 fn points(text: &str, closed: bool) -> Curve {
-    let mut path = BezPath::new();
-    let mut numbers = Vec::new();
-    let mut wrong = None;
+    let (mut path, mut numbers, mut mistake) = (BezPath::new(), Vec::new(), None);
     for number in svgtypes::NumberListParser::from(text) {
         match number {
             Ok(v) => numbers.push(v),
             Err(_) => {
-                wrong = Some("points that are damaged".to_owned());
+                mistake = Some("points that are damaged".to_owned());
                 break;
             }
         }
     }
-    if wrong.is_none() && numbers.len() % 2 == 1 {
-        wrong = Some("points with a coordinate too few".to_owned());
+    if mistake.is_none() && numbers.len() % 2 == 1 {
+        mistake = Some("points with a coordinate too few".to_owned());
     }
     for pair in numbers.chunks_exact(2) {
-        let p = Point::new(pair[0], pair[1]);
         match path.elements().is_empty() {
-            true => path.move_to(p),
-            false => path.line_to(p),
+            true => path.move_to((pair[0], pair[1])),
+            false => path.line_to((pair[0], pair[1])),
         }
     }
     if closed && !path.elements().is_empty() {
@@ -144,22 +138,9 @@ fn points(text: &str, closed: bool) -> Curve {
     }
     Curve {
         path,
-        mistake: wrong,
+        mistake,
         ..Curve::default()
     }
-}
-
-/// The path of the property `d`, which browsers read from CSS as `path("...")`.
-pub(super) fn css_path(text: &str) -> Value<Option<String>> {
-    if text.eq_ignore_ascii_case("none") {
-        return Value::Is(None);
-    }
-    let inner = text.strip_prefix("path(").and_then(|t| t.strip_suffix(')'));
-    let quoted = inner.map(str::trim).and_then(|t| {
-        let within = |q: char| t.strip_prefix(q).and_then(|t| t.strip_suffix(q));
-        within('"').or_else(|| within('\''))
-    });
-    Value::from_option(quoted.map(|t| Some(t.to_owned())))
 }
 
 /// Reads path data up to the first mistake, as browsers do.
@@ -203,12 +184,8 @@ impl Pen {
         let (from, control) = (self.at, self.control.take());
         let base = |abs: bool| if abs { Vec2::ZERO } else { from.to_vec2() };
         let place = |abs: bool, x: f64, y: f64| Point::new(x, y) + base(abs);
-        if self.closed
-            && !matches!(
-                segment,
-                PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }
-            )
-        {
+        use PathSegment::{ClosePath, MoveTo};
+        if self.closed && !matches!(segment, MoveTo { .. } | ClosePath { .. }) {
             self.path.move_to(from);
             self.closed = false;
         }
@@ -229,15 +206,8 @@ impl Pen {
             PathSegment::VerticalLineTo { abs, y } => {
                 self.line(Point::new(from.x, y + base(abs).y));
             }
-            PathSegment::CurveTo {
-                abs,
-                x1,
-                y1,
-                x2,
-                y2,
-                x,
-                y,
-            } => {
+            #[rustfmt::skip]
+            PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
                 self.cubic(place(abs, x1, y1), place(abs, x2, y2), place(abs, x, y));
             }
             PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
@@ -249,25 +219,16 @@ impl Pen {
             PathSegment::SmoothQuadratic { abs, x, y } => {
                 self.quadratic(mirrored(false), place(abs, x, y));
             }
-            PathSegment::EllipticalArc {
-                abs,
-                rx,
-                ry,
-                x_axis_rotation,
-                large_arc,
-                sweep,
-                x,
-                y,
-            } => {
-                let arc = SvgArc {
+            #[rustfmt::skip]
+            PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
+                self.arc(SvgArc {
                     from,
                     to: place(abs, x, y),
                     radii: Vec2::new(rx.abs(), ry.abs()),
                     x_rotation: x_axis_rotation.to_radians(),
                     large_arc,
                     sweep,
-                };
-                self.arc(arc);
+                });
             }
             PathSegment::ClosePath { .. } => {
                 if !self.closed {
@@ -349,44 +310,33 @@ pub(super) fn crossings(path: &BezPath) -> f64 {
     hits as f64 / f64::from(PAIRS) * 0.5 * (chords.len() as f64).powi(2)
 }
 
-/// Names of the attributes that are lengths of shapes.
-pub(super) const LENGTHS: [&str; 13] = [
-    "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2",
-];
-
-/// `auto` is a missing length.
-pub(super) fn is_auto(text: &str) -> bool {
-    text.eq_ignore_ascii_case("auto")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use kurbo::ParamCurveArea;
 
-    fn area(text: &str) -> f64 {
-        path_data(text)
-            .path
-            .segments()
-            .map(|s| s.signed_area())
-            .sum::<f64>()
-            .abs()
-    }
-
     #[test]
     fn path_data_of_every_kind() {
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6 * b.max(1.0), "{a} for {b}");
-        near(area("M0 0H10V10H0Z"), 100.0);
-        near(area("m5,5 10,0 0,10 -10,0zm20 0h1v1h-1z"), 101.0);
-        near(
-            area("M10 0A10 10 0 0 1-10 0A10 10 0 0 1 10 0"),
-            100.0 * std::f64::consts::PI,
-        );
-        near(area("M0 0C0 10 10 10 10 0S20-10 20 0"), 0.0);
-        near(area("M0 0Q5 10 10 0T20 0"), 0.0);
-        near(area("M0 0A0 5 0 0 1 10 0V10Z"), 50.0);
-        // A segment after the end of a subpath begins at its start.
-        near(area("M0 0H10V10ZH-10V-10Z"), 100.0);
+        for (text, wanted) in [
+            ("M0 0H10V10H0Z", 100.0),
+            ("m5,5 10,0 0,10 -10,0zm20 0h1v1h-1z", 101.0),
+            (
+                "M10 0A10 10 0 0 1-10 0A10 10 0 0 1 10 0",
+                100.0 * std::f64::consts::PI,
+            ),
+            ("M0 0C0 10 10 10 10 0S20-10 20 0", 0.0),
+            ("M0 0Q5 10 10 0T20 0", 0.0),
+            ("M0 0A0 5 0 0 1 10 0V10Z", 50.0),
+            // A segment after the end of a subpath begins at its start.
+            ("M0 0H10V10ZH-10V-10Z", 100.0),
+        ] {
+            let path = path_data(text).path;
+            let area = path.segments().map(|s| s.signed_area()).sum::<f64>().abs();
+            assert!(
+                (area - wanted).abs() < 1e-6 * wanted.max(1.0),
+                "{text}: {area}"
+            );
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Transforms of attributes (`rotate(90 5 5)`) and of CSS (`rotate(90deg)`).
 
-use super::value::{Fonts, Value, length, list, number, split_number};
+use super::value::{Fonts, NUMBER, Value, length, list, number, radians, split_number};
 use kurbo::{Affine, Vec2};
 
 /// What the lengths of a transform refer to.
@@ -21,19 +21,11 @@ impl Base {
     /// An angle in radians.
     pub fn angle(&self, text: &str) -> Value<f64> {
         let Some((v, unit)) = split_number(text) else {
-            return match text.contains('(') {
-                true => Value::Unread("write a number"),
-                false => Value::Wrong,
-            };
+            return Value::none(text, NUMBER);
         };
-        match unit {
-            "" if !self.css || v == 0.0 => Value::Is(v.to_radians()),
-            "deg" if self.css => Value::Is(v.to_radians()),
-            "rad" if self.css => Value::Is(v),
-            "grad" if self.css => Value::Is((0.9 * v).to_radians()),
-            "turn" if self.css => Value::Is(v * std::f64::consts::TAU),
-            _ => Value::Wrong,
-        }
+        let of_unit = radians(v, unit).filter(|_| self.css);
+        let plain = unit.is_empty() && (!self.css || v == 0.0);
+        Value::from_option(of_unit.or(plain.then(|| v.to_radians())))
     }
 }
 
@@ -78,6 +70,9 @@ pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
     }
 }
 
+/// The remedy for transforms in space.
+const MATRIX: &str = "write the transform with matrix(a, b, c, d, e, f)";
+
 /// Functions of the attribute `transform`.
 const ATTRIBUTE_FUNCTIONS: [&str; 6] = ["matrix", "translate", "scale", "rotate", "skewX", "skewY"];
 
@@ -109,7 +104,7 @@ macro_rules! read {
 fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
     let (width, height) = base.size;
     if arguments.iter().any(|a| a.contains('(')) {
-        return Value::Unread("write a number");
+        return Value::Unread(NUMBER);
     }
     let name = match base.css {
         true => name.to_ascii_lowercase(),
@@ -145,7 +140,7 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
             Affine::skew(read!(base.angle(x)).tan(), read!(base.angle(y)).tan())
         }
         (name, _) if base.css && is_spatial(name) => {
-            return Value::Unread("write the transform with matrix(a, b, c, d, e, f)");
+            return Value::Unread(MATRIX);
         }
         _ => return Value::Wrong,
     })
@@ -166,28 +161,12 @@ fn factor(text: &str) -> Value<f64> {
     }
 }
 
-/// The property `translate`.
-pub(super) fn translate(text: &str, base: Base) -> Value<Affine> {
-    property(text, "translate", base)
-}
-
-/// The property `scale`.
-pub(super) fn scale(text: &str, base: Base) -> Value<Affine> {
-    property(text, "scale", base)
-}
-
-/// The property `rotate`.
-pub(super) fn rotate(text: &str, base: Base) -> Value<Affine> {
-    property(text, "rotate", base)
-}
-
-fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
+/// The property `translate`, `rotate` or `scale`.
+pub(super) fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
     let arguments = list(text);
     match arguments.as_slice() {
         ["none"] => Value::Is(Affine::IDENTITY),
-        &[_, _, _] | &[_, _, _, _] => {
-            Value::Unread("write the transform with matrix(a, b, c, d, e, f)")
-        }
+        &[_, _, _] | &[_, _, _, _] => Value::Unread(MATRIX),
         arguments => function(name, arguments, base),
     }
 }
@@ -216,7 +195,6 @@ pub(super) fn origin(text: &str, base: Base) -> Value<Vec2> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use kurbo::Point;
 
@@ -232,57 +210,39 @@ mod tests {
         }
     }
 
-    #[track_caller]
-    fn maps(text: &str, css: bool, wanted: (f64, f64)) {
-        let affine = transform(text, base(css)).ok().unwrap();
-        let got = affine * Point::new(10.0, 20.0);
-        assert!(got.distance(wanted.into()) < 1e-9, "{text}: {got:?}");
-    }
+    /// Where transforms of attributes (`a`) and of CSS (`c`) take the point (10, 20).
+    const TAKEN: &str = "
+a translate(5) => 15 20
+a translate(5,-5) scale(2) => 25 35
+a rotate(90 10 10) => 0 10
+a matrix(1 0 0 1 3 4) => 13 24
+a skewX(45) => 30 20
+c translate(50%, 10px) => 110 30
+c rotate(0.25turn) => -20 10
+c scaleY(50%) => 10 10
+a translate(5-5)rotate(0),scale(2.0.5) => 25 5
+c none => 10 20
+a  => 10 20";
+    const WRONG: &str = "a rotate(90deg)|a translate(5,,5)|a translate(5,)|a scale(50%)|a translateX(5)|a scale(2),|\
+        a translate(a)|a rotate(5|c rotate(90)|c translate(5, 5)|c translate(5px 5px)|c translate (5px)|c spin(5)";
 
     #[test]
     fn attributes_and_css() {
-        maps("translate(5)", false, (15.0, 20.0));
-        maps("translate(5,-5) scale(2)", false, (25.0, 35.0));
-        maps("rotate(90 10 10)", false, (0.0, 10.0));
-        maps("matrix(1 0 0 1 3 4)", false, (13.0, 24.0));
-        maps("skewX(45)", false, (30.0, 20.0));
-        maps("translate(50%, 10px)", true, (110.0, 30.0));
-        maps("rotate(0.25turn)", true, (-20.0, 10.0));
-        maps("scaleY(50%)", true, (10.0, 10.0));
-        maps("translate(5-5)rotate(0),scale(2.0.5)", false, (25.0, 5.0));
-        maps("none", true, (10.0, 20.0));
-        maps("", false, (10.0, 20.0));
-        for (text, css) in [
-            ("rotate(90deg)", false),
-            ("rotate(90)", true),
-            ("translate(5, 5)", true),
-            ("translate(5px 5px)", true),
-            ("translate (5px)", true),
-            ("translate(5,,5)", false),
-            ("translate(5,)", false),
-            ("scale(50%)", false),
-            ("translateX(5)", false),
-            ("scale(2),", false),
-            ("translate(a)", false),
-            ("spin(5)", true),
-            ("rotate(5", false),
-        ] {
-            assert_eq!(transform(text, base(css)), Value::Wrong, "{text}");
+        let read = |text: &str| transform(&text[2..], base(text.starts_with('c')));
+        for (text, wanted) in TAKEN.lines().filter_map(|line| line.split_once(" => ")) {
+            let wanted: Vec<f64> = wanted.split(' ').filter_map(|n| n.parse().ok()).collect();
+            let got = read(text).ok().map(|t| t * Point::new(10.0, 20.0));
+            let near = got.is_some_and(|p| p.distance((wanted[0], wanted[1]).into()) < 1e-9);
+            assert!(near, "{text}: {got:?}");
         }
-        for text in ["rotate3d(1, 1, 1, 5deg)", "translateX(calc(1px + 2px))"] {
-            assert!(
-                matches!(transform(text, base(true)), Value::Unread(_)),
-                "{text}"
-            );
+        for text in WRONG.split('|') {
+            assert_eq!(read(text), Value::Wrong, "{text}");
         }
-    }
-
-    #[test]
-    fn origins() {
-        let at = |text| origin(text, base(true)).ok().unwrap();
-        assert_eq!(at("center"), Vec2::new(100.0, 50.0));
-        assert_eq!(at("bottom right"), Vec2::new(200.0, 100.0));
-        assert_eq!(at("10px 50%"), Vec2::new(10.0, 50.0));
-        assert_eq!(at("left"), Vec2::new(0.0, 50.0));
+        for text in ["c rotate3d(1, 1, 1, 5deg)", "c translateX(calc(1px + 2px))"] {
+            assert!(matches!(read(text), Value::Unread(_)), "{text}");
+        }
+        let origins = ["center", "bottom right", "10px 50%", "left"].map(|t| origin(t, base(true)));
+        let wanted = [(100.0, 50.0), (200.0, 100.0), (10.0, 50.0), (0.0, 50.0)];
+        assert_eq!(origins, wanted.map(|at| Value::Is(at.into())));
     }
 }

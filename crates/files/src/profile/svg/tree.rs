@@ -108,6 +108,19 @@ impl Clip {
     }
 }
 
+impl Path {
+    /// The geometry of a fill without paint.
+    pub fn plain(curve: BezPath, rule: FillRule) -> Self {
+        Self {
+            curve,
+            band: None,
+            rule,
+            color: [0.0; 4],
+            lightest: None,
+        }
+    }
+}
+
 impl Group {
     /// A group that moves its children and does no more.
     pub fn moved(transform: Affine, children: Vec<Node>) -> Self {

@@ -28,6 +28,27 @@ impl<T> Value<T> {
         }
     }
 
+    /// The values of a list, or the first that is none.
+    pub fn all(list: impl Iterator<Item = Self>) -> Value<Vec<T>> {
+        let mut all = Vec::new();
+        for value in list {
+            match value {
+                Self::Is(v) | Self::Near(v, _) => all.push(v),
+                Self::Wrong => return Value::Wrong,
+                Self::Unread(remedy) => return Value::Unread(remedy),
+            }
+        }
+        Value::Is(all)
+    }
+
+    /// No value: not read if it is a function, else not valid.
+    pub fn none(text: &str, remedy: &'static str) -> Self {
+        match text.contains('(') {
+            true => Self::Unread(remedy),
+            false => Self::Wrong,
+        }
+    }
+
     pub fn ok(self) -> Option<T> {
         match self {
             Self::Is(v) | Self::Near(v, _) => Some(v),
@@ -66,15 +87,17 @@ pub(super) struct Fonts {
 /// Splits a leading number off.
 pub(super) fn split_number(text: &str) -> Option<(f64, &str)> {
     let bytes = text.as_bytes();
-    let digits = |mut at: usize| {
-        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
-            at += 1;
-        }
-        at
+    let digits = |at: usize| {
+        at + bytes
+            .iter()
+            .skip(at)
+            .take_while(|b| b.is_ascii_digit())
+            .count()
     };
-    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
-    let mut end = digits(sign);
-    let mut count = end - sign;
+    let sign = |at: usize| at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
+    let start = sign(0);
+    let mut end = digits(start);
+    let mut count = end - start;
     if bytes.get(end) == Some(&b'.') {
         let fraction = digits(end + 1);
         count += fraction - end - 1;
@@ -84,20 +107,25 @@ pub(super) fn split_number(text: &str) -> Option<(f64, &str)> {
         return None;
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(end + 1 + sign);
-        if exponent > end + 1 + sign {
-            end = exponent;
-        }
+        let first = sign(end + 1);
+        let exponent = digits(first);
+        end = if exponent > first { exponent } else { end };
     }
     let number: f64 = text[..end].parse().ok()?;
     number.is_finite().then_some((number, &text[end..]))
 }
 
+/// Remedies.
+pub(super) const NUMBER: &str = "write a number";
+const LENGTH: &str = "write the length in px";
+/// Units of CSS that depend on the window or on fonts that are not read.
+const UNREAD_UNITS: &str = "vw vh vi vb vmin vmax dvw dvh dvi dvb dvmin dvmax svw svh svi svb svmin svmax \
+    lvw lvh lvi lvb lvmin lvmax lh rlh cap rcap ic ric rex rch cqw cqh cqi cqb cqmin cqmax";
+
 pub(super) fn number(text: &str) -> Value<f64> {
     match split_number(text) {
         Some((v, "")) => Value::Is(v),
-        None if text.contains('(') => Value::Unread("write a number"),
+        None => Value::none(text, NUMBER),
         _ => Value::Wrong,
     }
 }
@@ -107,7 +135,7 @@ pub(super) fn alpha(text: &str) -> Value<f32> {
     match split_number(text) {
         Some((v, "")) => Value::Is(v.clamp(0.0, 1.0) as f32),
         Some((v, "%")) => Value::Is((v / 100.0).clamp(0.0, 1.0) as f32),
-        None if text.contains('(') => Value::Unread("write a number"),
+        None => Value::none(text, NUMBER),
         _ => Value::Wrong,
     }
 }
@@ -115,10 +143,7 @@ pub(super) fn alpha(text: &str) -> Value<f32> {
 /// A length. `plain` lengths need no unit.
 pub(super) fn length(text: &str, fonts: Fonts, plain: bool) -> Value<Length> {
     let Some((v, unit)) = split_number(text) else {
-        return match text.contains('(') {
-            true => Value::Unread("write the length in px"),
-            false => Value::Wrong,
-        };
+        return Value::none(text, LENGTH);
     };
     let factor = match unit.to_ascii_lowercase().as_str() {
         "" if plain || v == 0.0 => 1.0,
@@ -133,36 +158,21 @@ pub(super) fn length(text: &str, fonts: Fonts, plain: bool) -> Value<Length> {
         "q" => 96.0 / 101.6,
         "pt" => 96.0 / 72.0,
         "pc" => 16.0,
-        u if u.starts_with(['v', 'd', 's', 'l', 'c', 'r', 'i']) && is_css_unit(u) => {
-            return Value::Unread("write the length in px");
-        }
+        unit if UNREAD_UNITS.split(' ').any(|u| u == unit) => return Value::Unread(LENGTH),
         _ => return Value::Wrong,
     };
     Value::Is(Length::Px(v * factor))
 }
 
-/// Units of CSS that depend on the window or on fonts that are not read.
-fn is_css_unit(unit: &str) -> bool {
-    let of_window = |u: &str| matches!(u, "vw" | "vh" | "vi" | "vb" | "vmin" | "vmax");
-    let sized = |c: char| unit.strip_prefix(c).is_some_and(of_window);
-    of_window(unit)
-        || ['d', 's', 'l'].into_iter().any(sized)
-        || matches!(
-            unit,
-            "lh" | "rlh"
-                | "cap"
-                | "rcap"
-                | "ic"
-                | "ric"
-                | "rex"
-                | "rch"
-                | "cqw"
-                | "cqh"
-                | "cqi"
-                | "cqb"
-                | "cqmin"
-                | "cqmax"
-        )
+/// An angle of CSS in radians, by its number and unit.
+pub(super) fn radians(number: f64, unit: &str) -> Option<f64> {
+    Some(match unit {
+        "deg" => number.to_radians(),
+        "rad" => number,
+        "grad" => (0.9 * number).to_radians(),
+        "turn" => number * std::f64::consts::TAU,
+        _ => return None,
+    })
 }
 
 /// The parts of a list that blanks or commas separate, outside of parentheses.
@@ -191,27 +201,34 @@ pub(super) fn attribute<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
     found.map(|a| a.value())
 }
 
+/// The letter that an escape of CSS stands for, and the length of the escape after its `\`.
+pub(super) fn escape(after: &str) -> (Option<char>, usize) {
+    let digits = after
+        .bytes()
+        .take(6)
+        .take_while(u8::is_ascii_hexdigit)
+        .count();
+    if digits == 0 {
+        let letter = after.chars().next();
+        return (letter, letter.map_or(0, char::len_utf8));
+    }
+    let code = u32::from_str_radix(&after[..digits], 16);
+    let blank = after[digits..].starts_with(|c: char| c.is_ascii_whitespace());
+    (
+        code.ok().and_then(char::from_u32),
+        digits + usize::from(blank),
+    )
+}
+
 /// Text with the escapes of CSS resolved.
 pub(super) fn unescaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('\\') {
+        let (letter, length) = escape(after);
         out.push_str(before);
-        let digits = after
-            .bytes()
-            .take(6)
-            .take_while(u8::is_ascii_hexdigit)
-            .count();
-        let code = u32::from_str_radix(&after[..digits], 16);
-        let letter = code.ok().and_then(char::from_u32);
-        let own = after.chars().next().filter(|_| digits == 0);
-        out.extend(letter.or(own));
-        rest = &after[digits.max(own.map_or(0, char::len_utf8))..];
-        if digits > 0 {
-            rest = rest
-                .strip_prefix(|c: char| c.is_ascii_whitespace())
-                .unwrap_or(rest);
-        }
+        out.extend(letter);
+        rest = &after[length..];
     }
     out.push_str(rest);
     out
@@ -249,17 +266,13 @@ mod tests {
             root: 16.0,
         };
         let px = |text| length(text, fonts, true);
-        for (text, wanted) in [
-            ("5", 5.0),
-            (".5", 0.5),
-            ("-5.", -5.0),
-            ("+1e2", 100.0),
-            ("2em", 20.0),
-            ("1rem", 16.0),
-            ("1in", 96.0),
-            ("3PX", 3.0),
-        ] {
-            assert_eq!(px(text), Value::Is(Length::Px(wanted)), "{text}");
+        let known = "5=5 .5=.5 -5.=-5 +1e2=100 2em=20 1rem=16 1in=96 3PX=3";
+        for (text, wanted) in known.split(' ').filter_map(|case| case.split_once('=')) {
+            assert_eq!(
+                px(text),
+                Value::Is(Length::Px(wanted.parse().unwrap_or(0.0))),
+                "{text}"
+            );
         }
         assert_eq!(px("50%"), Value::Is(Length::Part(0.5)));
         for unread in ["calc(1px + 2px)", "5vw", "1dvh"] {
@@ -276,10 +289,14 @@ mod tests {
     #[test]
     fn lists_and_addresses() {
         assert_eq!(list("a, b(1, 2)  c"), ["a", "b(1, 2)", "c"]);
-        assert_eq!(url("url(#a) red"), Some((Ok("a"), "red")));
-        assert_eq!(url("URL( '#a b' )"), Some((Ok("a b"), "")));
-        assert_eq!(url("url(b.svg#a)"), Some((Err("b.svg#a"), "")));
-        assert_eq!(url("red"), None);
-        assert_eq!(url("url(#a"), None);
+        for (text, wanted) in [
+            ("url(#a) red", Some((Ok("a"), "red"))),
+            ("URL( '#a b' )", Some((Ok("a b"), ""))),
+            ("url(b.svg#a)", Some((Err("b.svg#a"), ""))),
+            ("red", None),
+            ("url(#a", None),
+        ] {
+            assert_eq!(url(text), wanted, "{text}");
+        }
     }
 }

@@ -20,40 +20,44 @@ pub(super) fn view_box(node: Node, notes: &mut Notes) -> Option<Rect> {
         _ => None,
     };
     if valid.is_none() {
-        notes.warn(format!(
-            "the drawing has viewBox=\"{text}\" (line {}), which is not valid; it is ignored, as browsers do",
-            notes.line(node)
-        ));
+        let how = ", which is not valid; it is ignored, as browsers do";
+        notes.warn_at(node, &format!("viewBox=\"{text}\""), how);
     }
     valid
 }
 
-/// Maps a `viewBox` to a viewport of this size.
-pub(super) fn fitted(node: Node, inner: Rect, (width, height): (f64, f64)) -> Affine {
+/// Maps the content of an element with this `viewBox` to a viewport of this size. Returns the size of
+/// the content's own viewport, too.
+pub(super) fn fitted(node: Node, inner: Option<Rect>, size: (f64, f64)) -> (Affine, (f64, f64)) {
+    let Some(inner) = inner else {
+        return (Affine::IDENTITY, size);
+    };
     let aspect = attribute(node, "preserveAspectRatio");
     let aspect = aspect
         .and_then(|a| AspectRatio::from_str(a).ok())
         .unwrap_or_default();
-    let (sx, sy) = (width / inner.width(), height / inner.height());
+    let (sx, sy) = (size.0 / inner.width(), size.1 / inner.height());
     let to_corner = Affine::translate((-inner.x0, -inner.y0));
-    let s = match (aspect.align, aspect.slice) {
-        (Align::None, _) => return Affine::scale_non_uniform(sx, sy) * to_corner,
-        (_, false) => sx.min(sy),
-        (_, true) => sx.max(sy),
+    let of_content = (inner.width(), inner.height());
+    use Align::{
+        XMaxYMax, XMaxYMid, XMaxYMin, XMidYMax, XMidYMid, XMidYMin, XMinYMax, XMinYMid, XMinYMin,
     };
-    use Align::{XMaxYMax, XMaxYMid, XMaxYMin, XMidYMax, XMidYMin, XMinYMax, XMinYMid, XMinYMin};
-    let x = match aspect.align {
-        XMinYMin | XMinYMid | XMinYMax => 0.0,
-        XMaxYMin | XMaxYMid | XMaxYMax => 1.0,
-        _ => 0.5,
+    let (x, y) = match aspect.align {
+        Align::None => return (Affine::scale_non_uniform(sx, sy) * to_corner, of_content),
+        XMinYMin => (0.0, 0.0),
+        XMidYMin => (0.5, 0.0),
+        XMaxYMin => (1.0, 0.0),
+        XMinYMid => (0.0, 0.5),
+        XMidYMid => (0.5, 0.5),
+        XMaxYMid => (1.0, 0.5),
+        XMinYMax => (0.0, 1.0),
+        XMidYMax => (0.5, 1.0),
+        XMaxYMax => (1.0, 1.0),
     };
-    let y = match aspect.align {
-        XMinYMin | XMidYMin | XMaxYMin => 0.0,
-        XMinYMax | XMidYMax | XMaxYMax => 1.0,
-        _ => 0.5,
-    };
-    let free = (width - s * inner.width(), height - s * inner.height());
-    Affine::translate((x * free.0, y * free.1)) * Affine::scale(s) * to_corner
+    let s = if aspect.slice { sx.max(sy) } else { sx.min(sy) };
+    let free = (size.0 - s * inner.width(), size.1 - s * inner.height());
+    let moved = Affine::translate((x * free.0, y * free.1));
+    (moved * Affine::scale(s) * to_corner, of_content)
 }
 
 /// Width and height of the page in pixels.
