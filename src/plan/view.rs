@@ -89,6 +89,8 @@ pub struct View {
     pub(crate) mask: u32,
     /// Shift of the picture by the projection's jitter, pixels.
     pub(crate) jitter: DVec2,
+    /// Width of the part of a pixel that a ray stands for, pixels.
+    pub(crate) ray_width: f64,
     /// [`View::pixel_rows`] of the last frame's view, for motion.
     pub(crate) last: Option<[DVec4; 3]>,
     /// First row and end of the rows that are drawn; all if none.
@@ -110,6 +112,7 @@ impl View {
                 "the depth range {near} to {far} is none; give 0 < near < far"
             )));
         }
+        let ray_width = camera.ray_width;
         let camera = CameraFrame::new(camera, size.0, size.1)?;
         // depth = constant + factor / t
         let constant = far / (far - near);
@@ -140,6 +143,7 @@ impl View {
         Ok(Self {
             depth: [constant, factor],
             near,
+            ray_width,
             ..Self::of_rays(camera.eye, rays, clip_from_world, viewport)
         })
     }
@@ -168,6 +172,7 @@ impl View {
             parallel: false,
             mask: u32::MAX,
             jitter: DVec2::ZERO,
+            ray_width: 1.0,
             last: None,
             rows: None,
         }
@@ -185,6 +190,16 @@ impl View {
     pub fn with_jitter(self, shift: [f64; 2]) -> Self {
         let jitter = DVec2::from(shift);
         Self { jitter, ..self }
+    }
+
+    /// The same view for rays that stand for a part of a pixel, of this width in pixels. Textures are
+    /// sharper by as much: `n` rays of a pixel whose colours are averaged, in one frame or over
+    /// frames with jitter, have a width of `1 / sqrt(n)`. Values of 0 and below count as the least
+    /// positive one, above 1 textures are softer.
+    #[must_use]
+    pub fn with_ray_width(self, pixels: f64) -> Self {
+        let ray_width = pixels.max(f64::MIN_POSITIVE);
+        Self { ray_width, ..self }
     }
 
     /// The same view after a frame of the view `last`, whose viewport may differ. Motion is that

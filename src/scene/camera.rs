@@ -151,6 +151,7 @@ mod tests {
             up: DVec3::Z,
             fov_y: 40.0,
             shift: [0.0; 2],
+            ray_width: 1.0,
         }
     }
 

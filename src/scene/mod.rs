@@ -101,6 +101,9 @@ pub struct Camera {
     /// The point of the pixel that each ray passes, in pixels right of and below the centre. The
     /// average of pictures with several shifts is free of jagged edges.
     pub shift: [f64; 2],
+    /// Width of the part of a pixel that a ray stands for, pixels: 1, or `1 / sqrt(n)` for the average
+    /// of `n` pictures. Textures are as sharp as that.
+    pub ray_width: f64,
 }
 
 impl Camera {
@@ -117,6 +120,7 @@ impl Camera {
             up: DVec3::Z,
             fov_y: Self::FOV_Y,
             shift: [0.0; 2],
+            ray_width: 1.0,
         }
     }
 }

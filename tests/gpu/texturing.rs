@@ -8,6 +8,7 @@ use revmap::maps::{ArcLength, ColorMap, DisplacementMap, MapFormat, Projection};
 use revmap::profile::Profile;
 use revmap::scene::{BumpForm, CameraFrame, Scene};
 use revmap::settings::Settings;
+use revmap_offscreen::samples::averaged;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -263,4 +264,38 @@ fn colours_and_bumps_are_the_references() {
             assert!(most.0 < 0.4 && most.1 < 0.025, "{what}");
         }
     }
+}
+
+/// Several rays of a pixel read the texture as sharply as the pixels of a picture that is larger by as
+/// much.
+#[test]
+fn rays_sharpen_textures() {
+    let (wide, high, side) = (480u32, 360u32, 8u32);
+    let mut scene = scene_of(shapes::vase(), eye(15.0, 2.0));
+    let stripe = |k: usize| [if k % 64 / 2 % 2 == 0 { 255 } else { 0 }, 90, 40, 255];
+    let texels: Vec<_> = (0..512 * 64).map(stripe).collect();
+    let map = ColorMap::from_texels(512, 64, texels).unwrap();
+    scene.objects[0].texturing.color_map = Some(Arc::new(map));
+    let large = draw(&scene, &sized(wide, high));
+    let drawn = |rays: u32| {
+        let settings = sized(wide / side, high / side);
+        let frame = averaged(rays, &scene, |shifted| Ok(draw(shifted, &settings))).unwrap();
+        let (mut sum, mut count) = (0.0, 0);
+        for (k, color) in frame.color.iter().enumerate() {
+            let [left, top] = [k as u32 % frame.width * side, k as u32 / frame.width * side];
+            let pixels = (0..side * side).map(|n| (top + n / side) * wide + left + n % side);
+            let inside = pixels.clone().all(|pixel| large.hits(pixel as usize));
+            if inside {
+                let red = pixels
+                    .map(|pixel| large.color[pixel as usize][0])
+                    .sum::<f32>();
+                sum += (color[0] - red / (side * side) as f32).powi(2);
+                count += 1;
+            }
+        }
+        assert!(count > 100);
+        (sum / count as f32).sqrt()
+    };
+    let [one, many] = [1, 16].map(drawn);
+    assert!(many < 0.6 * one, "rms {one} with one ray, {many} with 16");
 }

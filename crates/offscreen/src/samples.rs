@@ -18,6 +18,7 @@ pub fn averaged(
     }
     let mut sums = host_memory::filled(frame.pixels(), [0.0f32; 4], "the sums of samples")?;
     let mut shifted = scene.clone();
+    shifted.camera.ray_width = f64::from(count).sqrt().recip();
     for i in 0..count {
         let [x, y] = point(i, count);
         shifted.camera.shift = [scene.camera.shift[0] + x, scene.camera.shift[1] + y];

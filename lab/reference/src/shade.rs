@@ -3,7 +3,7 @@
 
 use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use revmap::error::Result;
 use revmap::scene::{Scene, Shadow};
 
@@ -50,7 +50,7 @@ impl<'a> Colors<'a> {
     /// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
     /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
     /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-    /// away. A light adds the part of it that [`visible`] finds.
+    /// away. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
     pub(super) fn shade(
         &self,
         reference: &Reference,
@@ -79,27 +79,28 @@ impl<'a> Colors<'a> {
         let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
         for light in &scene.lights {
             let towards = -light.direction.normalize_or_zero();
-            let lambert = normal.dot(towards);
-            if lambert <= 0.0 {
-                continue;
-            }
             let from = point + lift * smooth;
-            let visible = match scene.shadow {
-                Shadow::Off => 1.0,
-                Shadow::Hard => f64::from(u8::from(reaches(reference, from, smooth, towards))),
-                Shadow::Soft => visible(reference, from, smooth, towards, light.cap()),
+            // Lambert's term and the highlight of light from one direction.
+            let reflected = |towards: DVec3| {
+                let lambert = normal.dot(towards);
+                if lambert <= 0.0 {
+                    return DVec2::ZERO;
+                }
+                let half = (towards + view).normalize_or_zero();
+                let shine = normal.dot(half).max(0.0);
+                let shine = shine.powf(f64::from(object.specular.shininess));
+                DVec2::new(lambert, f64::from(object.specular.strength) * shine)
             };
-            if visible == 0.0 {
-                continue;
+            let reaches = |towards| reaches(reference, from, smooth, towards);
+            let [lambert, shine] = match scene.shadow {
+                Shadow::Off => reflected(towards),
+                Shadow::Hard if !reaches(towards) => DVec2::ZERO,
+                Shadow::Hard => reflected(towards),
+                Shadow::Soft => over_disc(towards, light.cap(), reflected, reaches),
             }
-            let half = (towards + view).normalize_or_zero();
-            let shine = f64::from(object.specular.strength)
-                * normal
-                    .dot(half)
-                    .max(0.0)
-                    .powf(f64::from(object.specular.shininess));
+            .to_array();
             for (c, sum) in color.iter_mut().enumerate() {
-                *sum += visible * f64::from(light.color[c]) * (albedo[c] * lambert + shine);
+                *sum += f64::from(light.color[c]) * (albedo[c] * lambert + shine);
             }
         }
         Some(Shaded {
@@ -111,7 +112,7 @@ impl<'a> Colors<'a> {
     }
 }
 
-/// Rays towards a light's disc whose mean is its visible part, where they disagree.
+/// Rays towards a light's disc, where they disagree.
 const DISC_RAYS: u32 = 256;
 /// Rays that must agree for the others to be left out.
 const FIRST_RAYS: u32 = 64;
@@ -126,24 +127,33 @@ fn reaches(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3) ->
     normal.dot(towards) > 0.0 && reference.trace(ray).hit.is_none()
 }
 
-/// The part of a light's disc that a point sees, 0 to 1: directions within the cone around
-/// `towards`, all of the same weight. `cap` is 1 - cos of the cone's half angle.
-fn visible(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3, cap: f64) -> f64 {
+/// The mean of `reflected` over the directions of a light's disc that `reaches` the light: those within
+/// the cone around `towards`, all of the same weight. `cap` is 1 - cos of the cone's half angle.
+fn over_disc(
+    towards: DVec3,
+    cap: f64,
+    reflected: impl Fn(DVec3) -> DVec2,
+    reaches: impl Fn(DVec3) -> bool,
+) -> DVec2 {
     let (u, v) = towards.any_orthonormal_pair();
-    let one = |k: u32| {
+    let ray = |k: u32| {
         // Bit-reversed numbers beside multiples of the golden ratio: every prefix is even.
         let height = cap * (f64::from(k.reverse_bits()) + 0.5) / f64::from(u32::MAX);
         let turn = f64::from(k) * std::f64::consts::TAU * 0.618_033_988_749_894_9;
         let aside = (height * (2.0 - height)).sqrt();
-        let direction = (1.0 - height) * towards + aside * (turn.cos() * u + turn.sin() * v);
-        u32::from(reaches(reference, from, normal, direction))
+        (1.0 - height) * towards + aside * (turn.cos() * u + turn.sin() * v)
     };
-    let first: u32 = (0..FIRST_RAYS).map(one).sum();
-    if first == 0 || first == FIRST_RAYS {
-        return f64::from(first / FIRST_RAYS);
-    }
-    let all = first + (FIRST_RAYS..DISC_RAYS).map(one).sum::<u32>();
-    f64::from(all) / f64::from(DISC_RAYS)
+    let first: Vec<bool> = (0..FIRST_RAYS).map(|k| reaches(ray(k))).collect();
+    let agree = first.iter().all(|lit| *lit == first[0]);
+    let lit = |k: u32| match first.get(k as usize) {
+        Some(lit) => *lit,
+        None if agree => first[0],
+        None => reaches(ray(k)),
+    };
+    let seen = (0..DISC_RAYS)
+        .filter(|&k| lit(k))
+        .map(|k| reflected(ray(k)));
+    seen.sum::<DVec2>() / f64::from(DISC_RAYS)
 }
 
 /// The outward normal tilted by the height's slope, in the world; `None` if the object has no
@@ -216,20 +226,24 @@ mod tests {
             radius,
             ..Light::default()
         };
+        let visible = |reference: &Reference, normal: DVec3| {
+            let reaches = |towards| reaches(reference, DVec3::ZERO, normal, towards);
+            over_disc(DVec3::Z, light.cap(), |_| DVec2::X, reaches).x
+        };
         let disc = 10.0 * radius.to_radians().tan();
         for part in [-1.1, -0.7, -0.2, 0.0, 0.3, 0.6, 1.1] {
             let mut scene = tests::scene(vec![Object::new("plate", plate.clone().unwrap().into())]);
             scene.objects[0].placement.scale = DVec3::new(2e4, 2e4, 1e-4);
             scene.objects[0].placement.position = DVec3::new(1e4 + part * disc, 0.0, 10.0);
             let reference = Reference::new(&scene).unwrap();
-            let found = visible(&reference, DVec3::ZERO, DVec3::Z, DVec3::Z, light.cap());
+            let found = visible(&reference, DVec3::Z);
             let d: f64 = f64::clamp(-part, -1.0, 1.0);
             let segment = (d.acos() - d * (1.0 - d * d).sqrt()) / std::f64::consts::PI;
             assert!((found - segment).abs() < 0.02, "{part}: {found}, {segment}");
         }
         // Half of the disc is below the horizon.
         let clear = Reference::new(&tests::scene(Vec::new())).unwrap();
-        let low = visible(&clear, DVec3::ZERO, DVec3::X, DVec3::Z, light.cap());
+        let low = visible(&clear, DVec3::X);
         assert!((low - 0.5).abs() < 0.01, "{low}");
     }
 

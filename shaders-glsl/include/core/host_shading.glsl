@@ -15,8 +15,8 @@ struct Surface {
     float roughness;     // 0 to 1, as the next
     float metalness;
     vec2 uv;             // where the object's colour map is read: u around the axis, v downwards
-    vec2 uv_right;       // change of uv a pixel to the right
-    vec2 uv_down;        // change of uv a pixel down
+    vec2 uv_right;       // change of uv a pixel to the right, or less if pixels have several rays (View::with_ray_width)
+    vec2 uv_down;        // change of uv down, likewise
     uint object;         // ObjectId::number
     uint copy;           // number of the copy among the object's instances
     vec2 pixel;          // position in the picture, pixels from its upper left corner

@@ -22,14 +22,15 @@ vec3 unit(vec3 v)
     return v * inversesqrt(dot(v, v));
 }
 
-// Returns the changes of the surface point a pixel to the right and a pixel down, profile units. A replica's are in its
-// own space.
+// Returns the changes of the surface point a ray's width to the right and down, profile units. A replica's are in its own
+// space.
 void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
 {
     vec3 normal = unit(hit.normal);
     float t = rays.base + hit.t; // relative to the eye
-    right = footprint(v, rays.dir_x, normal, t) * profile_units();
-    down = footprint(v, rays.dir_y, normal, t) * profile_units();
+    float units = profile_units() * frame_block.ray_width;
+    right = footprint(v, rays.dir_x, normal, t) * units;
+    down = footprint(v, rays.dir_y, normal, t) * units;
     if (REPLICAS != 0u) {
         right *= hit.sense * vec3(shape.replicas);
         down *= hit.sense * vec3(shape.replicas);
@@ -38,7 +39,7 @@ void footprints(PixelRays rays, vec3 v, Hit hit, out vec3 right, out vec3 down)
 
 #include "core/host_shading.glsl"
 
-// Returns the light reflected from one light, in turned space.
+// Returns the light reflected from one light. All directions have the same axes.
 vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 {
     vec3 middle = light.towards + view;
@@ -48,6 +49,33 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
     vec3 reflected = light.color * (albedo * facing + look.albedo_strength.w * highlight);
     return facing > 0.0 ? reflected : vec3(0.0);
 }
+
+#ifndef HOST_SHADING
+// Returns the light reflected from the part of a light's disc that a point sees: the mean over its rays. World axes.
+// `point`: relative to the instance; `outward`: normal without bumps, below whose horizon the surface hides the disc.
+vec3 shadowed(Look look, Light light, vec3 n, vec3 outward, vec3 view, vec3 albedo, vec3 point, uvec2 pixel)
+{
+    Disc disc = disc_of(light.towards, light.cap, pixel);
+    uint open = 0u;
+    vec2 angle = disc.first;
+    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+        vec3 towards = towards_disc(disc, k, angle);
+        open |= min(dot(outward, towards), dot(n, towards)) > 0.0 ? 1u << k : 0u;
+        angle = next_angle(angle);
+    }
+    vec3 sum = vec3(0.0);
+    if (open != 0u) {
+        uint lit = reaching(look.position, point, disc, open);
+        angle = disc.first;
+        for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+            light.towards = towards_disc(disc, k, angle);
+            sum += (lit >> k & 1u) != 0u ? blinn_phong(look, light, n, view, albedo) : vec3(0.0);
+            angle = next_angle(angle);
+        }
+    }
+    return sum / float(LIGHT_RAYS);
+}
+#endif
 
 Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
 {
@@ -110,13 +138,13 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     }
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
         for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.light_count; ++n) {
-            Light light = turned_to(look.rotation, frame_block.lights[n]);
-            vec3 reflected = blinn_phong(look, light, lit, view, s.albedo);
-            if (SHADOW != SHADOW_OFF && reflected != vec3(0.0)) {
-                Disc disc = disc_of(rotate(look.rotation, light.towards), light.cap, uvec2(pixel + 0.5));
-                reflected *= light_reaching(look.position, point, rotate(look.rotation, outward), disc);
+            Light light = frame_block.lights[n];
+            if (SHADOW == SHADOW_OFF) {
+                color += blinn_phong(look, turned_to(look.rotation, light), lit, view, s.albedo);
+            } else {
+                vec3 above = rotate(look.rotation, outward), to_eye = rotate(look.rotation, view);
+                color += shadowed(look, light, s.shading_normal, above, to_eye, s.albedo, point, uvec2(pixel + 0.5));
             }
-            color += reflected;
         }
     }
     s.color = vec4(color, 1.0);

@@ -1,4 +1,4 @@
-// Visible fraction of a light at a point, from rays towards the light that are traced against every solid of the scene.
+// The parts of a light that a point sees, by rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
 #include "core/pixel_ray.glsl"
@@ -157,17 +157,10 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
     return left;
 }
 
-// Returns the visible fraction of the light, 0 to 1. `point` is relative to `origin`, and `origin` to the eye; world
-// axes. `normal` points to the lit side; directions below its horizon are hidden. The members of `object` that a search
-// reads are those of another solid afterwards: restoring them would take registers.
-float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
+// Returns the rays of `open`, one bit each, that reach the light. `point` is relative to `origin`, and `origin` to the
+// eye; world axes. The members of `shape` are those of another solid afterwards: restoring them would take registers.
+uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
 {
-    uint open = 0u;
-    vec2 angle = disc.first;
-    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
-        open |= dot(normal, towards_disc(disc, k, angle)) > 0.0 ? 1u << k : 0u;
-        angle = next_angle(angle);
-    }
     traces_caster = true;
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
@@ -179,7 +172,7 @@ float light_reaching(vec3 origin, vec3 point, vec3 normal, Disc disc)
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
     traces_caster = false;
-    return float(bitCount(lit)) / float(LIGHT_RAYS);
+    return lit & open;
 }
 
 #endif

@@ -51,7 +51,7 @@ struct FrameData {
     float first_depth; // the depth buffer's value of depth 0 in clip space
     float depth_range; // its value of depth 1, minus first_depth
     float far_depth; // depth in clip space of the far plane
-    float unused;
+    float ray_width; // width of the part of a pixel that a ray stands for: 1, or less if a pixel has several rays
     Light lights[MAX_LIGHTS];
 };
 

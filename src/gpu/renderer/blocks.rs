@@ -2,6 +2,7 @@
 
 use crate::gpu::content::entry::{Last, PreparedObject};
 use crate::gpu::content::view_plan::PlannedObject;
+use crate::gpu::vk::output::Output;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{DepthOrder, View};
 use crate::scene::{Lighting, Object, Placement};
@@ -145,7 +146,12 @@ pub(super) fn last_copy(of: &PreparedObject, copy: usize, view: &View) -> LastCo
 
 /// The frame's block: eye, rays, lights, depths. `last_copies`: index of the first [`last_copy`]
 /// among instances.
-pub(super) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) -> FrameBlock {
+pub(super) fn frame_block(
+    view: &View,
+    output: &Output,
+    lighting: &Lighting,
+    last_copies: u32,
+) -> FrameBlock {
     let vector = |v: DVec3| v.as_vec3().to_array();
     let mut lights = [LightBlock::default(); MAX_LIGHTS as usize];
     for (block, light) in lights.iter_mut().zip(&lighting.lights) {
@@ -194,6 +200,7 @@ pub(super) fn frame_block(view: &View, lighting: &Lighting, last_copies: u32) ->
         first_depth: least as f32,
         depth_range: (most - least) as f32,
         far_depth: 1.0 - near_depth,
+        ray_width: (view.ray_width * output.ray_width()) as f32,
         lights,
         ..FrameBlock::default()
     }

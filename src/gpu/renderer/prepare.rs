@@ -118,7 +118,8 @@ impl Renderer {
         }
         let to = &mut self.slots[slot];
         let snapshot = &plan.snapshot;
-        let mut block = frame_block(view, &self.content.lighting, snapshot.instances);
+        let (output, lighting) = (&self.content.output, &self.content.lighting);
+        let mut block = frame_block(view, output, lighting, snapshot.instances);
         if let Some(hierarchy) = &plan.hierarchy {
             let maps = snapshot.facts.shadow_maps.maps.len();
             block.casters = caster_root(hierarchy, view.eye, maps);

@@ -210,6 +210,12 @@ impl Output {
         if spreads { FRAC_1_SQRT_2 } else { 0.0 }
     }
 
+    /// Width of the part of a pixel that a ray stands for, pixels.
+    pub(crate) fn ray_width(&self) -> f64 {
+        let rays = self.pass().filter(|pass| pass.sample_rays);
+        rays.map_or(1.0, |pass| f64::from(pass.samples).sqrt().recip())
+    }
+
     /// `(constant_id, value)` of the specialisation constants of a pass.
     pub(crate) fn constants(&self) -> [(u32, u32); 2] {
         let bias = self.pass().map(|pass| pass.slope_bias).unwrap_or_default();
