@@ -124,6 +124,12 @@ pub(super) const SCENES: &[Scene] = &[
             .solid(&points, "")
             .sized(320, 240)
     }),
+    ("wide-hollow", |width| {
+        let points = [[width, 0.1], [0.2, 0.5], [0.0, 0.9]];
+        Step::through([-3.0, 4.4, -2.3], MIDDLE, 8.0)
+            .solid(&points, &format!("radius = {width:?}"))
+            .sized(200, 150)
+    }),
     ("grooves", |texels| {
         let period: f64 = texels / 512.0;
         let count = (0.5 / period).floor().min(128.0) as u32;
