@@ -55,8 +55,9 @@ const FLAT: f64 = 8.0;
 /// with a sheet near, the guard uses only `z`, and a rounding of `z` moves `r` by `|dr/dz|` times
 /// as much.
 const REACH: f64 = 0.08 / 512.0;
-/// Most bands of a flat segment.
-const MOST_BANDS: f64 = 128.0;
+/// Most bands of a flat segment. The widest that 32 bits draw need 240; with fewer bands, their guards
+/// reach past the segment's ends.
+const MOST_BANDS: f64 = 512.0;
 /// Distance from the axis below which the resolution of radii grows no finer: `r^2` has an absolute
 /// rounding error.
 const SMALL: f64 = 0.05;

@@ -44,19 +44,16 @@ struct Span {
 
 pub(super) struct FrustaBuilder<'a> {
     pub options: &'a ProxyHullOptions,
+    /// All patches of the solid.
+    pub patches: &'a [QuadricPatch],
     /// `1 / cos(pi / n)`.
     pub widen: f64,
 }
 
 impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
-    ///
-    /// Patches shorter than the margin have no usable direction and are skipped. The frusta around
-    /// their neighbours contain them, too.
     pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
-        let long = |p: &&QuadricPatch| p.start.distance(p.end) > self.options.margin;
-        let kept: Vec<QuadricPatch> = cell.iter().filter(long).copied().collect();
-        let cell = if kept.is_empty() { cell } else { &kept };
+        let cell = &self.without_short(cell);
         let mut shell = Vec::new();
         let mut frusta: Vec<[DVec2; 2]> = Vec::new();
         let mut from = 0;
@@ -74,17 +71,44 @@ impl FrustaBuilder<'_> {
                 })
                 .collect();
             self.follow(cell, &spans, 0, &mut frusta);
-            // A rim between a part that faces outwards and one that faces inwards.
-            let rim = (from > 0 && a * cell[from - 1].quadric[0] < 0.0).then(|| {
-                let joint = cell[from].start;
-                let up = if a < 0.0 { 1.0 } else { -1.0 };
-                joint * DVec2::new(self.widen, 1.0) + self.options.margin * DVec2::new(1.0, up)
-            });
-            join(&mut shell, &mut frusta, rim);
+            let is_ridge = from > 0 && a * cell[from - 1].quadric[0] < 0.0;
+            let rims = is_ridge.then(|| self.rims(cell[from].start, a));
+            join(&mut shell, &mut frusta, rims);
             from = to;
         }
         self.wall_off(cell, &mut shell);
         shell
+    }
+
+    /// A cell's patches, of which those shorter than the margin are joined with the next longer
+    /// one, because they have no usable direction.
+    fn without_short(&self, cell: &[QuadricPatch]) -> Vec<QuadricPatch> {
+        let mut kept: Vec<QuadricPatch> = Vec::with_capacity(cell.len());
+        for patch in cell {
+            let start = kept.last().map_or(cell[0].start, |last| last.end);
+            if start.distance(patch.end) > self.options.margin {
+                kept.push(QuadricPatch { start, ..*patch });
+            }
+        }
+        match (kept.last_mut(), cell.last()) {
+            (Some(last), Some(end)) => last.end = end.end,
+            _ => kept = cell.to_vec(),
+        }
+        kept
+    }
+
+    /// The rims of a ridge: the joint between a part that faces outwards and one that faces inwards
+    /// (`a` is -1), or the reverse. Both are beyond the joint, as those of a plane without width:
+    /// one goes around the joint's circle, the other is within.
+    fn rims(&self, joint: DVec2, a: f64) -> [DVec2; 2] {
+        let margin = self.options.margin;
+        let around = joint * DVec2::new(self.widen, 1.0) + DVec2::new(margin, -a * margin);
+        let within = DVec2::new((joint.x - margin).max(0.0), around.y);
+        if a < 0.0 {
+            [around, within]
+        } else {
+            [within, around]
+        }
     }
 
     /// Adds frusta along spans that all face outwards, all face inwards, or are one plane.
@@ -181,13 +205,29 @@ impl FrustaBuilder<'_> {
             return;
         };
         let on_axis = |p: DVec2| p.x == 0.0;
-        let alone = cell.len() == 1;
+        let wall = |patch: &QuadricPatch, joint: DVec2, top: DVec2| {
+            if patch.is_plane() {
+                let inner = if joint == patch.end {
+                    patch.start
+                } else {
+                    patch.end
+                };
+                let feet = self.feet_of_plane(inner, joint, top);
+                // A ray from behind meets no other patch.
+                let count = if cell.len() == 1 { 1 } else { 2 };
+                return feet[..count].to_vec();
+            }
+            let foot = self.foot(patch, joint, top);
+            match self.is_open(patch, joint, top, foot) {
+                true => self.level_feet(patch, joint).to_vec(),
+                false => vec![foot],
+            }
+        };
         if let Some(patch) = cell.last()
             && !(on_axis(patch.end) && on_axis(end))
         {
-            let feet = self.feet(patch, [patch.start, patch.end], end, end.y <= patch.end.y);
             let mut from = end;
-            for to in feet.into_iter().take(if alone { 1 } else { 2 }) {
+            for to in wall(patch, patch.end, end) {
                 shell.push([from, to]);
                 from = to;
             }
@@ -195,44 +235,89 @@ impl FrustaBuilder<'_> {
         if let Some(patch) = cell.first()
             && !(on_axis(patch.start) && on_axis(begin))
         {
-            let around = begin.y > patch.start.y;
-            let feet = self.feet(patch, [patch.end, patch.start], begin, around);
             let mut to = begin;
-            for from in feet.into_iter().take(if alone { 1 } else { 2 }) {
+            for from in wall(patch, patch.start, begin) {
                 shell.insert(0, [from, to]);
                 to = from;
             }
         }
     }
 
-    /// The feet of a wall that comes from `top`, for the joint at the end of `[.., joint]`. The
-    /// wall goes through a polygon that keeps the joint's circle on its inner side all round. The
-    /// wall continues beyond by the distance of that polygon from the circle, so that no ray passes
-    /// under the foot.
-    ///
-    /// A plane's rims are already beyond its circles. There the wall is upright and continues
-    /// behind the plane to the joint. Otherwise a ray from behind could pass between polygon and
-    /// circle and meet the cell's other patches.
-    fn feet(
-        &self,
-        patch: &QuadricPatch,
-        [inner, joint]: [DVec2; 2],
-        top: DVec2,
-        around: bool,
-    ) -> Vec<DVec2> {
-        if patch.is_plane() {
-            let behind = joint.y + (joint.y - top.y).signum() * ROOT;
-            let within = joint.x + (inner.x - joint.x).signum() * ROOT;
-            return vec![
-                DVec2::new(top.x, behind),
-                DVec2::new(within.max(0.0), behind),
-            ];
-        }
+    /// The foot of a wall that comes from `top`, for the `joint` at an end of a patch that is no
+    /// plane. The wall goes through a polygon that keeps the joint's circle on its inner side all
+    /// round. The wall continues beyond by the distance of that polygon from the circle.
+    fn foot(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2) -> DVec2 {
+        // On the side of the patch, a wall of an outward part is around the circle.
+        let around = beside(patch, joint, top) == (patch.quadric[0] > 0.0);
         let factor = if around { self.widen } else { 1.0 };
         let ring = DVec2::new(joint.x * factor, joint.y);
-        let reach = (self.widen - 1.0) * joint.x + ROOT;
-        let p = ring + (ring - top).normalize_or_zero() * reach;
-        vec![DVec2::new(p.x.max(0.0), p.y)]
+        let p = ring + (ring - top).normalize_or_zero() * self.reach(joint);
+        DVec2::new(p.x.max(0.0), p.y)
+    }
+
+    /// Distance by which a wall continues beyond a joint.
+    fn reach(&self, joint: DVec2) -> f64 {
+        (self.widen - 1.0) * joint.x + ROOT
+    }
+
+    /// True if a ray may pass between the wall's foot and the surface beyond the joint, and then
+    /// meet the cell: the wall comes from the cell's side of the joint's height, and its foot is not
+    /// in the solid all round.
+    fn is_open(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2, foot: DVec2) -> bool {
+        joint.x > 0.0
+            && beside(patch, joint, top)
+            // The wall is a cone of flat sides: its foot is between these two circles.
+            && !self.is_solid([foot.x / self.widen, foot.x], foot.y)
+    }
+
+    /// True if everything between two radii is in the solid, at a height.
+    fn is_solid(&self, radii: [f64; 2], z: f64) -> bool {
+        let [inner, outer] = radii.map(|r| r * r);
+        let mut beyond = 0;
+        for patch in self.patches {
+            if patch.z[0] <= z && z < patch.z[1] {
+                let square = patch.square_at(z);
+                if square > outer {
+                    beyond += 1;
+                } else if square >= inner {
+                    return false;
+                }
+            }
+        }
+        beyond % 2 == 1
+    }
+
+    /// The feet of a wall that is level from the joint's height on. It passes the joint's circle
+    /// itself, and no ray crosses a level twice.
+    fn level_feet(&self, patch: &QuadricPatch, joint: DVec2) -> [DVec2; 2] {
+        let wide = joint.x * self.widen;
+        let radii = if patch.quadric[0] > 0.0 {
+            [wide, (joint.x - ROOT).max(0.0)]
+        } else {
+            [joint.x, wide + ROOT]
+        };
+        radii.map(|r| DVec2::new(r, joint.y))
+    }
+
+    /// The feet of a wall at the end of a plane, whose rims are already beyond its circles. The
+    /// wall is upright and continues behind the plane to the joint. Otherwise a ray from behind
+    /// could pass between polygon and circle and meet the cell's other patches.
+    fn feet_of_plane(&self, inner: DVec2, joint: DVec2, top: DVec2) -> [DVec2; 2] {
+        let behind = joint.y + (joint.y - top.y).signum() * ROOT;
+        let within = joint.x + (inner.x - joint.x).signum() * ROOT;
+        [
+            DVec2::new(top.x, behind),
+            DVec2::new(within.max(0.0), behind),
+        ]
+    }
+}
+
+/// True if `top` is on the side of the joint's height on which the patch is.
+fn beside(patch: &QuadricPatch, joint: DVec2, top: DVec2) -> bool {
+    if joint.y > patch.start.y.min(patch.end.y) {
+        top.y <= joint.y
+    } else {
+        top.y > joint.y
     }
 }
 
@@ -268,11 +353,10 @@ fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(
 }
 
 /// Appends frusta and joins each to the one before it. Frusta at a bulge meet at the intersection
-/// of their lines, and in a hollow where they cross. Otherwise another frustum joins them. The
-/// joining frustum goes around `rim`, if given: the joint in the meridian through the corners. A
-/// direct one has polygons around the circles of one part and within those of the other, and would
-/// leave part of the joint's circle outside.
-fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rim: Option<DVec2>) {
+/// of their lines, and in a hollow where they cross. Otherwise more frusta join them. At a ridge they
+/// go around its `rims`: a direct one has polygons around the circles of one part and within those
+/// of the other, and would leave part of the joint's circle outside.
+fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rims: Option<[DVec2; 2]>) {
     for mut frustum in frusta.drain(..) {
         if let Some(last) = shell.last_mut() {
             let (p, q) = (last[1], frustum[0]);
@@ -288,13 +372,33 @@ fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rim: Opti
                 frustum[0] = p;
             } else if bulge || hollow {
                 (last[1], frustum[0]) = (meeting, meeting);
-            } else if let Some(rim) = rim.filter(|&rim| (q - p).perp_dot(rim - p) < 0.0) {
-                shell.extend([[p, rim], [rim, q]]);
             } else {
-                shell.push([p, q]);
+                let mut from = p;
+                for to in around(p, rims, q) {
+                    shell.push([from, to]);
+                    from = to;
+                }
             }
         }
-        rim = None;
+        rims = None;
         shell.push(frustum);
     }
+}
+
+/// The points after `p` of the way to `q` that has the rims on its left.
+fn around(p: DVec2, rims: Option<[DVec2; 2]>, q: DVec2) -> Vec<DVec2> {
+    let outside = |from: DVec2, rim: DVec2, to: DVec2| (to - from).perp_dot(rim - from) < 0.0;
+    let mut way = vec![q];
+    if let Some([first, second]) = rims {
+        if outside(p, second, q) {
+            way.insert(0, second);
+        }
+        if outside(p, first, way[0]) {
+            way.insert(0, first);
+        }
+        if way.len() == 2 && way[0] == first && outside(first, second, q) {
+            way.insert(1, second);
+        }
+    }
+    way
 }

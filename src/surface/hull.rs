@@ -26,6 +26,10 @@
 //! above a line are the roots of a quadratic. Two frusta that meet at a bulge are extended to their
 //! intersection. In a hollow they are cut at it. Otherwise a third frustum joins them.
 //!
+//! A wall runs on in its own direction until it is in the solid all round. Where it would end beside
+//! the solid, as at a narrow rim, it continues on the level of the joint instead, since no ray
+//! crosses a level twice.
+//!
 //! A regular polygon of `n` corners at radius `f r` contains the circle of radius `r` with `f = 1 /
 //! cos(pi / n)`, and is inside it with `f = 1`. Walls that face away from the axis use the first
 //! factor, walls that face the axis the second. Planes use the first at their outer rim and the
@@ -87,6 +91,11 @@ impl ProxyHull {
         };
         let widen = 1.0 / (std::f64::consts::PI / f64::from(sides)).cos();
         let most = options.patches_per_cell.clamp(1, 255) as usize;
+        let builder = FrustaBuilder {
+            options,
+            patches,
+            widen,
+        };
         let mut cells = Vec::new();
         let mut first = 0;
         while first < patches.len() {
@@ -99,7 +108,7 @@ impl ProxyHull {
             // each fragment.
             let count = left.div_ceil(left.div_ceil(most));
             let cell = &patches[first..first + count];
-            let points = FrustaBuilder { options, widen }.of(cell);
+            let points = builder.of(cell);
             hull.push(&points, first, count);
             hull.reaches
                 .push(cell.iter().fold(0.0, |most, p| most.max(p.r[1])));

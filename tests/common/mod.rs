@@ -4,6 +4,7 @@
 
 mod drawing;
 pub mod host;
+pub mod outlines;
 pub mod passing;
 mod scenes;
 pub mod shapes;

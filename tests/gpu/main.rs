@@ -50,6 +50,7 @@ mod rounding;
 mod shadow_crowds;
 mod shadowed_host;
 mod shadows;
+mod short_edges;
 mod small_copies;
 mod small_device;
 mod spirv;

@@ -101,6 +101,35 @@ pub(super) const SCENES: &[Scene] = &[
         ];
         Step::seen(eye(35.0, 1.9), MIDDLE).solid(&points, "")
     }),
+    ("narrow-rim", |width| {
+        // The rim is the last edge of a cell of seven patches that leans outwards as a whole.
+        let rim = [0.420326 - 0.494 * width, 0.677196 + 0.869 * width];
+        let points = [
+            [0.0, 0.113918],
+            [0.155462, 0.356134],
+            [0.131933, 0.118276],
+            [0.158050, 0.103708],
+            [0.397365, 0.034788],
+            [0.323659, 0.565625],
+            [0.420326, 0.677196],
+            rim,
+            [0.247981, 0.760700],
+            [0.111086, 0.883183],
+            [0.067088, 0.862553],
+            [0.048068, 0.801923],
+            [0.030889, 0.580703],
+            [0.033079, 0.557485],
+        ];
+        Step::through([1.393, 0.0, 2.115], [0.041, 0.408, 0.68], 8.0)
+            .solid(&points, "")
+            .sized(320, 240)
+    }),
+    ("wide-hollow", |width| {
+        let points = [[width, 0.1], [0.2, 0.5], [0.0, 0.9]];
+        Step::through([-3.0, 4.4, -2.3], MIDDLE, 8.0)
+            .solid(&points, &format!("radius = {width:?}"))
+            .sized(200, 150)
+    }),
     ("grooves", |texels| {
         let period: f64 = texels / 512.0;
         let count = (0.5 / period).floor().min(128.0) as u32;
