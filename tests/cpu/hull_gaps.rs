@@ -3,7 +3,6 @@
 
 use crate::common::outlines::outline;
 use crate::common::rays::{Random, count};
-use crate::common::walk::guards;
 use glam::{DVec2, DVec3};
 use revmap::profile::Profile;
 use revmap::scene::Offset;
@@ -18,6 +17,12 @@ const HEIGHT_SLACK: f64 = 1e-3;
 /// Distance by which a ray is moved aside in all directions: only rays that hit the same patch then
 /// are tested.
 const ASIDE: f64 = 2e-5;
+
+/// True if a point of a patch's quadric is on the patch.
+fn guards(patch: &QuadricPatch, square: f64, z: f64) -> bool {
+    let [cz, cr, low, high] = patch.guard;
+    (low..=high).contains(&(cz * z + cr * square))
+}
 
 struct Solid {
     patches: Vec<QuadricPatch>,

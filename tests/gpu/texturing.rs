@@ -272,7 +272,7 @@ fn colours_and_bumps_are_the_references() {
 fn rays_sharpen_textures() {
     let (wide, high, side) = (480u32, 360u32, 8u32);
     let mut scene = scene_of(shapes::vase(), eye(15.0, 2.0));
-    let stripe = |k: usize| [if k % 64 / 2 % 2 == 0 { 255 } else { 0 }, 90, 40, 255];
+    let stripe = |k: usize| [255 * (k / 2 % 2) as u8, 90, 40, 255];
     let texels: Vec<_> = (0..512 * 64).map(stripe).collect();
     let map = ColorMap::from_texels(512, 64, texels).unwrap();
     scene.objects[0].texturing.color_map = Some(Arc::new(map));

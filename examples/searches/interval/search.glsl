@@ -5,7 +5,7 @@
 
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
 {
-    float least = width * object.map.z * m.inverse_speed;
+    float least = width * shape.texel * m.inverse_speed;
     float nearest = -m.b / max(m.a, 1e-20); // s at which the ray is nearest to the axis
     float segment = 0.25 * m.s_end;
     bool found = false;
@@ -20,7 +20,7 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
         // F on the rectangle lies within `spread` of F at its middle.
         float spread = 0.5 * length(upto - from);
         if (bool(BEVELED)) {
-            spread += 0.5 * abs(object.offset.y) * (upto.y - from.y);
+            spread += 0.5 * abs(shape.bevel) * (upto.y - from.y);
         }
         f = side * field(0.5 * (from + upto));
         ++steps;
@@ -35,5 +35,5 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
             s = found ? 0.5 * (s + to) : to;
         }
     }
-    return found ? FOUND : s >= m.s_end ? LEFT : f < object.map.z ? NEARLY : EXHAUSTED;
+    return found ? FOUND : s >= m.s_end ? LEFT : f < shape.texel ? NEARLY : EXHAUSTED;
 }

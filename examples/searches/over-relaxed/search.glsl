@@ -10,9 +10,9 @@
 
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
 {
-    float threshold = 0.02 * object.map.z;
+    float threshold = 0.02 * shape.texel;
     // Under a bevel F changes by up to 1 + b per object unit, so the empty ball is smaller.
-    float shrink = 1.0 / (1.0 + (bool(BEVELED) ? abs(object.offset.y) : 0.0));
+    float shrink = 1.0 / (1.0 + (bool(BEVELED) ? abs(shape.bevel) : 0.0));
     float ball = 0.0;   // radius of the last ball, object units
     float stride = 0.0; // the last step
     float over = planar == 0 ? max(omega, 1.0) : omega;
@@ -44,5 +44,5 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     if (s > m.s_end && f >= threshold) {
         return LEFT;
     }
-    return f < threshold ? FOUND : f < object.map.z ? NEARLY : EXHAUSTED;
+    return f < threshold ? FOUND : f < shape.texel ? NEARLY : EXHAUSTED;
 }

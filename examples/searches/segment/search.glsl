@@ -22,7 +22,7 @@ float bound(Meridian m, float side, float from, float to)
 
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
 {
-    float threshold = 0.02 * object.map.z;
+    float threshold = 0.02 * shape.texel;
     float segment = growth * f * m.inverse_speed;
     int most = most_steps();
     for (int i = 1; i < most && f >= threshold && s <= m.s_end; ++i) {
@@ -35,5 +35,5 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     if (s > m.s_end && f >= threshold) {
         return LEFT;
     }
-    return f < threshold ? FOUND : f < object.map.z ? NEARLY : EXHAUSTED;
+    return f < threshold ? FOUND : f < shape.texel ? NEARLY : EXHAUSTED;
 }

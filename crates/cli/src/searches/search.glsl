@@ -11,7 +11,7 @@
 // steps  add 1 for each look-up of the map
 uint search(Meridian m, float side, float f, float pixel, inout float s, inout uint steps)
 {
-    float threshold = 0.02 * object.map.z; // object.map.z: a texel
+    float threshold = 0.02 * shape.texel; // shape.texel: a texel
     // most_steps() may be as small as 1.
     for (int i = 1; i < most_steps() && f >= threshold && s <= m.s_end; ++i) {
         // Distances are in object units; m.inverse_speed converts them to units of s.
@@ -22,5 +22,5 @@ uint search(Meridian m, float side, float f, float pixel, inout float s, inout u
     if (s > m.s_end) {
         return LEFT; // no hit
     }
-    return f < threshold ? FOUND : f < object.map.z ? NEARLY : EXHAUSTED;
+    return f < threshold ? FOUND : f < shape.texel ? NEARLY : EXHAUSTED;
 }
