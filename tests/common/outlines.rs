@@ -71,7 +71,7 @@ pub fn outline(kind: u64, random: &mut dyn FnMut() -> f64) -> Vec<[f64; 2]> {
         );
         if here.x > 0.0 {
             let length = within(1e-4f64.ln(), 0.05f64.ln()).exp();
-            let mut towards = |other: DVec2, part: f64| {
+            let towards = |other: DVec2, part: f64| {
                 let most = 0.4 * other.distance(here);
                 here + (other - here).normalize_or_zero() * length.min(most) * part
             };
