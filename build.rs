@@ -6,7 +6,6 @@
 //! `shaders-spirv/`. `REVMAP_KEEP_SPIRV=1 cargo build` renews the stored SPIR-V.
 
 use shaderc_link::modules::{self, Fallible, Modules};
-use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -104,18 +103,33 @@ fn constants(text: &str) -> Fallible<String> {
     Ok(out)
 }
 
-/// `struct NAME { type member; .. };` becomes a Rust structure of the same layout. Refuses a member that
-/// the GLSL would align to another place.
+/// Structures of storage buffers alone. Uniform buffers have elements of arrays in 16 bytes each.
+const OF_STORAGE: [&str; 1] = ["QueueBlock"];
+
+/// The Rust type, the bytes and the alignment of the types of members.
+const TYPES: [(&str, &str, u32, u32); 8] = [
+    ("float", "f32", 4, 4),
+    ("uint", "u32", 4, 4),
+    ("vec2", "[f32; 2]", 8, 8),
+    ("vec3", "[f32; 3]", 12, 16),
+    ("vec4", "[f32; 4]", 16, 16),
+    ("uvec2", "[u32; 2]", 8, 8),
+    ("uvec3", "[u32; 3]", 12, 16),
+    ("uvec4", "[u32; 4]", 16, 16),
+];
+
+/// `struct NAME { type member; .. };` becomes a Rust structure of the same layout. Refuses a member or
+/// an end that the GLSL would move, and an array whose elements it would spread.
 fn structures(text: &str, constants: &str) -> Fallible<String> {
-    let mut out = String::new();
-    let mut known: HashMap<&str, u32> = HashMap::new();
-    let (mut name, mut place) = ("", 0);
-    let mut about = String::new();
+    let refused = |what: String| Err(format!("structures.glsl: {what}").into());
+    let mut types = TYPES.to_vec();
+    let (mut name, mut place, mut largest) = ("", 0, 4);
+    let (mut out, mut about) = (String::new(), String::new());
     for line in text.lines() {
         let (code, doc) = line.split_once("//").unwrap_or((line, ""));
         let (code, doc) = (code.trim(), doc.trim());
         if let Some(begun) = code.strip_prefix("struct ") {
-            (name, place) = (begun.trim_end_matches('{').trim(), 0);
+            (name, place, largest) = (begun.trim_end_matches('{').trim(), 0, 4);
             writeln!(
                 out,
                 "/// {about} See `structures.glsl`.\n#[repr(C)]\n#[allow(missing_docs)]\n\
@@ -124,57 +138,42 @@ fn structures(text: &str, constants: &str) -> Fallible<String> {
             )?;
         } else if code == "};" {
             out += "}\n";
-            if place % 16 != 0 && place > 16 {
-                return Err(format!("structures.glsl: {name} ends within a vector").into());
+            if place % largest != 0 {
+                return refused(format!("{name} ends within a vector, at byte {place}"));
             }
-            known.insert(name, place);
+            types.push((name, name, place, largest));
             (name, about) = ("", String::new());
         } else if name.is_empty() {
             about = if doc.is_empty() {
-                String::new()
+                doc.to_owned()
             } else {
                 format!("{about}{doc} ")
             };
         } else if let Some((kind, member)) = code.trim_end_matches(';').split_once(' ') {
-            let vector =
-                |of: &str, n: u32| (format!("[{of}; {n}]"), 4 * n, if n == 2 { 8 } else { 16 });
-            let (rust, size, align) = match kind {
-                "float" => ("f32".to_owned(), 4, 4),
-                "uint" => ("u32".to_owned(), 4, 4),
-                "vec2" => vector("f32", 2),
-                "vec3" => vector("f32", 3),
-                "vec4" => vector("f32", 4),
-                "uvec2" => vector("u32", 2),
-                "uvec3" => vector("u32", 3),
-                "uvec4" => vector("u32", 4),
-                _ => {
-                    let size = known
-                        .get(kind)
-                        .ok_or_else(|| format!("structures.glsl: no {kind}"))?;
-                    (kind.to_owned(), *size, if *size < 16 { 8 } else { 16 })
-                }
+            let Some(&(_, rust, size, align)) = types.iter().find(|(glsl, ..)| *glsl == kind)
+            else {
+                return refused(format!("{name}.{member} has no type {kind}"));
             };
+            largest = largest.max(align);
             if place % align != 0 {
-                let message =
-                    format!("structures.glsl: {name}.{member} would be moved from byte {place}");
-                return Err(message.into());
+                return refused(format!("{name}.{member} would be moved from byte {place}"));
             }
-            match member.split_once('[') {
-                Some((member, count)) => {
-                    let count = count.trim_end_matches(']');
-                    let value = constants
-                        .split_once(&format!("{count}: u32 = "))
-                        .and_then(|(_, rest)| rest.split_once(';'));
-                    let (number, _) =
-                        value.ok_or_else(|| format!("structures.glsl: no constant {count}"))?;
-                    writeln!(out, "    pub {member}: [{rust}; {count} as usize],")?;
-                    place += size * number.parse::<u32>()?;
-                }
-                None => {
-                    writeln!(out, "    pub {member}: {rust},")?;
-                    place += size;
-                }
+            let (member, count) = member.split_once('[').unwrap_or((member, ""));
+            let count = count.trim_end_matches(']');
+            if count.is_empty() {
+                writeln!(out, "    pub {member}: {rust},")?;
+                place += size;
+                continue;
             }
+            if size % 16 != 0 && !OF_STORAGE.contains(&name) {
+                return refused(format!("{name}.{member} would have gaps"));
+            }
+            let value = constants.split_once(&format!(" {count}: u32 = "));
+            let Some((number, _)) = value.and_then(|(_, rest)| rest.split_once(';')) else {
+                return refused(format!("{name}.{member} has no constant {count}"));
+            };
+            writeln!(out, "    pub {member}: [{rust}; {count} as usize],")?;
+            place += size * number.parse::<u32>()?;
         }
     }
     Ok(out)

@@ -68,7 +68,8 @@ void main()
         vec4 wider = beam.width.x * vec4(-1.0, -1.0, 1.0, 1.0);
         outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
         inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
-        inner.x = inner.x <= inner.y ? inner.x : 1e30;
+        // Without a ray that is sure to be between the sides, any ray may be cut.
+        inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
     }
     PatchRuns runs = NO_PATCHES;
     vec2 all = vec2(3e38, -3e38);

@@ -12,8 +12,7 @@ void main()
     CopyTile tile = copy_tiles[LARGE_POINTS != 0u ? uint(gl_VertexIndex) : uint(gl_VertexIndex) / 6u];
     uvec2 corner = square_corner(tile.square);
     uint side = 1u << (tile.square >> (2u * QUAD_BITS)); // pixels
-    // A draw that only warms up pipelines may read any word.
-    Instance i = begin(min(tile.instance, uint(instances.length()) - 1u));
+    Instance i = begin(tile.instance);
     vec2 position = vec2(corner) + 0.5 * float(side);
     if (LARGE_POINTS == 0u) {
         uint bit = 1u << (uint(gl_VertexIndex) % 6u);

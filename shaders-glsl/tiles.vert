@@ -12,7 +12,7 @@ void main()
     QueueTile tile = queue_tiles[uint(gl_VertexIndex) / 6u];
     uint bit = 1u << (uint(gl_VertexIndex) % 6u);
     // Halves of the tile in which no pixel shows a copy are left out.
-    uvec4 halves = uvec4(tile.tile) >> TILE_HALVES + uvec4(0u, 1u, 2u, 3u) & 1u;
+    uvec4 halves = uvec4(tile.place) >> TILE_HALVES + uvec4(0u, 1u, 2u, 3u) & 1u;
     uvec2 far = uvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u);
     uvec2 half_tiles = far * (1u + halves.yw) + (1u - far) * (1u - halves.xz);
     vec2 corner = vec2(corner_of(tile) + GROUP_PIXELS / 2u * half_tiles);

@@ -6,7 +6,7 @@ use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
 };
 use crate::shader::generated::{MOST_GROUPS, TILE_BINS, TREE_BIN};
-use crate::shader::{Kind, Pushed, Variant};
+use crate::shader::{BinTile, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
 use std::ops::Range;
 use std::sync::Arc;
@@ -178,7 +178,9 @@ fn leave_out_lists(
             tiles.unlist();
         }
     }
-    let bytes = |l: &LayerTiles| 16 * u64::from(bin_vectors(l.listed.len() as u32));
+    let bytes = |l: &LayerTiles| {
+        size_of::<BinTile>() as u64 * u64::from(bin_vectors(l.listed.len() as u32))
+    };
     if tiles.iter().map(bytes).sum::<u64>() > with.room() {
         tiles.iter_mut().for_each(LayerTiles::unlist);
     }

@@ -1,14 +1,17 @@
 //! Data that the CPU passes to the GPU: the structures of `include/core/structures.glsl`.
 
 pub use super::generated::{
-    Appearance as AppearanceBlock, CasterNode, CasterRoot, CopyTile, Frame as FrameView,
+    Appearance as AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, Frame as FrameView,
     FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy,
     Light as LightBlock, Object as ObjectBlock, Pushed, QueueBlock, QueueTile, QueuedCopy,
     Shape as ShapeBlock,
 };
 
-/// Bytes from one object to the next: the largest alignment of offsets in a uniform buffer that a
-/// device may have.
-pub const OBJECT_STRIDE: u32 = 256;
+use super::generated::{INSTANCE_WORDS, OBJECT_STRIDE_WORDS, OBJECT_WORDS};
 
-const _: () = assert!(size_of::<ObjectBlock>() <= OBJECT_STRIDE as usize);
+/// Bytes from one object to the next.
+pub const OBJECT_STRIDE: u32 = 4 * OBJECT_STRIDE_WORDS;
+
+const _: () = assert!(size_of::<InstanceBlock>() == 4 * INSTANCE_WORDS as usize);
+const _: () = assert!(size_of::<LastCopy>() == size_of::<InstanceBlock>());
+const _: () = assert!(size_of::<ObjectBlock>() == 4 * OBJECT_WORDS as usize);

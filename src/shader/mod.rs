@@ -13,9 +13,9 @@ mod textures;
 mod variant;
 
 pub use blocks::{
-    AppearanceBlock, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView, GatheredPixel,
-    InstanceBlock, LastCopy, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed, QueueBlock, QueueTile,
-    QueuedCopy, ShapeBlock,
+    AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView,
+    GatheredPixel, InstanceBlock, LastCopy, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
+    QueueBlock, QueueTile, QueuedCopy, ShapeBlock,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

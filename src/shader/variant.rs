@@ -51,7 +51,7 @@ impl Kind {
 
     /// True if it draws in compute.
     #[must_use]
-    pub const fn is_compute(self) -> bool {
+    pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
             Self::TilePatches(_) | Self::TileTree | Self::TileCopies
@@ -233,7 +233,7 @@ impl Variant {
         if !lists && (cells || !patches) {
             speciality.outside = Outside::None;
         }
-        speciality.depths |= !kind.is_compute();
+        speciality.depths |= !kind.draws_in_compute();
         Self {
             technique: if lists { Technique::LISTS } else { technique },
             speciality,
@@ -281,7 +281,7 @@ impl Variant {
         Module {
             entry,
             search,
-            output: if listed && !kind.is_compute() {
+            output: if listed && !kind.draws_in_compute() {
                 Output::List
             } else {
                 output

@@ -1,5 +1,5 @@
 //! Replicas in a box, compared with the reference, whose replicas are single solids
-//! (`crates/reference/src/tests/crowds.rs`).
+//! (`lab/reference/src/tests/crowds.rs`).
 
 use crate::common::passing::count;
 use crate::common::{draw, hits, placement, reference, scene_of, shapes, sized};

@@ -205,8 +205,7 @@ impl<'a> Palette<'a> {
         look.displacement_map = dice.chance(0.4).then(|| dice.pick(&self.slopes));
         look.bump = dice.pick(&[0.02, 0.05]);
         look.bump_form = dice.pick(&[BumpForm::SurfaceGradient, BumpForm::Papers]);
-        look.projection =
-            dice.pick(&[Projection::Cylindrical, Projection::Arc, Projection::Planar]);
+        look.projection = dice.pick(&Projection::NAMES.map(|(_, projection)| projection));
         look.repeat = dice.pick(&[[1.0; 2], [2.0, 1.0], [1.0, 3.0]]);
     }
 

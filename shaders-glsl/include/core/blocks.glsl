@@ -7,10 +7,9 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
     FrameData frame_block;
 };
 
-// An object padded to the largest alignment of uniform buffer offsets on any device.
 struct PaddedObject {
     Object object;
-    uvec4 padding[5];
+    uvec4 padding[(OBJECT_STRIDE_WORDS - OBJECT_WORDS) / 4u];
 };
 
 layout(set = 0, binding = 1, std430) readonly buffer ObjectBlock {

@@ -100,11 +100,11 @@ struct Shape {
     uint first_frustum; // first vector of the frusta
     uvec3 replicas; // along x, y, z
     uint flags; // bits: replicas are reflected along x, y, z, then OUTSIDE_BIT
-    uint table; // first vector of the copy's table
+    uint table; // first vector of the copy's table; set by load_level()
     uint table_fact_0; // words about the table, by search; the quadric search has no first two
     uint table_fact_1;
     uint table_fact_2; // quadric search: unit of r^2 (bits of a float)
-    uint listed; // first vector of the copy's table of listed patches
+    uint listed; // first vector of the copy's table of listed patches; set by load_level()
     uint listed_window; // first vector of such tables of all levels
     uint table_window; // first vector of the tables of all levels
     uint unused;
@@ -150,8 +150,8 @@ struct CopyTile {
 
 // A tile with a queue of copies.
 struct QueueTile {
-    uint tile; // column | row << TILE_BITS, then from TILE_HALVES on a bit for each half in which a copy may be visible:
-               // left, right, top, bottom
+    uint place; // column | row << TILE_BITS, then from TILE_HALVES on a bit for each half in which a copy may be visible:
+                // left, right, top, bottom
     uint first; // index of its first QueueBlock
     uint count; // number of copies
     float near; // nearest depth

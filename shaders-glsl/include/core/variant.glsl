@@ -98,6 +98,9 @@ const uint EXHAUSTED_BIT = 2147483648u; // bit in a pixel's word of look-ups: on
 const uint OUTSIDE_BIT = 8u; // bit in an object's block: its box cuts nothing, and rays from the eye begin outside of the solid
 
 const uint MAX_LIGHTS = 8u;
+const uint INSTANCE_WORDS = 20u; // words of an Instance
+const uint OBJECT_WORDS = 44u; // words of an Object
+const uint OBJECT_STRIDE_WORDS = 64u; // words from one object to the next: the largest alignment of uniform buffer offsets
 const uint PATCH_VECTORS = 1024u; // minimum of OWN_VECTORS: uniform buffers of every device hold this many
 const uint MOST_OWN_VECTORS = 4096u;
 const uint PATCH_ROWS = 256u; // rows of a solid's tables, a power of 4

@@ -10,7 +10,7 @@
 bool trace_cell(vec2 pixel, out Hit hit)
 {
     load_varyings();
-    PatchRow row = begin_row(varying_rays(), pixel);
+    PatchRow row = begin_row(varying_rays(), pixel, abs(ray_dir_00.w));
     const float SIDE_SLACK = 4e-6; // object units; a hit so close before a side of the box counts
     float eye = row.least;
     bool by_side = false;

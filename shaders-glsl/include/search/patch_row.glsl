@@ -1,4 +1,5 @@
-// Intersects a pixel's ray with a few patches in sequence, without branches: those of a cell or of a tile's list.
+// A pixel's ray and its nearest hit so far, for a few patches in sequence without branches: those of a cell or of a tile's
+// list.
 #ifndef PATCH_ROW_GLSL
 #define PATCH_ROW_GLSL
 #include "core/hit.glsl"
@@ -6,19 +7,23 @@
 #include "search/quadric.glsl"
 
 struct PatchRow {
-    Meridian m; // s = 0 is near the middle of the axis: there 32 bits hold flat and slender boxes, too
+    // s = 0 is where the ray is nearest to the axis, in a flat or wide box nearest to its middle. 32 bits hold boxes of
+    // any ratio there, and tips, which are on the axis.
+    Meridian m;
     float shift; // t = shift + s
     float least, most; // range of s of valid hits
     float best;
     vec4 quadric; // patch of the nearest hit so far
 };
 
-PatchRow begin_row(PixelRays rays, vec2 pixel)
+// `half_side`: half of the box's side.
+PatchRow begin_row(PixelRays rays, vec2 pixel, float half_side)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);
     vec3 origin = ray_origin(rays, pixel);
-    row.shift = dot(vec3(0.0, 0.0, 0.5) - origin, row.m.v) / dot(row.m.v, row.m.v);
+    vec3 weighted = row.m.v * vec3(1.0, 1.0, 0.25 * half_side * half_side);
+    row.shift = dot(vec3(0.0, 0.0, 0.5) - origin, weighted) / dot(row.m.v, weighted);
     row.m.o = origin + row.shift * row.m.v;
     row.m.a = dot(row.m.v.xy, row.m.v.xy);
     row.m.b = dot(row.m.o.xy, row.m.v.xy);

@@ -46,7 +46,7 @@ vec2 octahedral(vec3 n)
 }
 
 // Returns the way in pixels from a hit to where it was in the last frame. The hit moves along its normal by the change
-// of the extension; last_block() of src/gpu/resources/block.rs makes the rows.
+// of the extension; last_copy() of src/gpu/renderer/blocks.rs makes the rows.
 vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 {
     LastCopy before = last_copies[frame.last_copies + instance];

@@ -4,9 +4,6 @@
 #define SHARED_OBJECT_GLSL
 #include "stage/tile.glsl"
 
-const uint INSTANCE_WORDS = 20u;
-const uint OBJECT_WORDS = 44u;
-const uint OBJECT_STRIDE_WORDS = 64u;
 layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
     uint instance_words[];
 };

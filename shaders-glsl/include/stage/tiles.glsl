@@ -1,6 +1,6 @@
 // Tiles: squares of GROUP_PIXELS^2 pixels with the copies that may be visible there. One buffer has three ranges, each of
 // one structure (structures.glsl): first blocks of queues, then tiles, then gathered pixels. Indices count from the
-// buffer's start in units of the structure.
+// buffer's start in units of the structure. The first block is zero: draws that only warm up pipelines read it as tiles.
 #ifndef TILES_GLSL
 #define TILES_GLSL
 #include "core/structures.glsl"
@@ -21,7 +21,7 @@ layout(set = 2, binding = 1, std430) readonly buffer GatheredPixels {
 // Returns the upper left pixel of a tile with a queue.
 uvec2 corner_of(QueueTile tile)
 {
-    return GROUP_PIXELS * (uvec2(tile.tile, tile.tile >> TILE_BITS) & ((1u << TILE_BITS) - 1u));
+    return GROUP_PIXELS * (uvec2(tile.place, tile.place >> TILE_BITS) & ((1u << TILE_BITS) - 1u));
 }
 
 // Returns the upper left pixel of a square.

@@ -198,7 +198,9 @@ impl Renderer {
                 faster.push((forms[0], kind));
             }
             steps.push(BoundStep {
-                compares_depths: pipeline.is_some() && kind.is_compute() && taken.speciality.depths,
+                compares_depths: pipeline.is_some()
+                    && kind.draws_in_compute()
+                    && taken.speciality.depths,
                 pipeline,
                 textures: object.derived.textures.clone(),
                 offsets: [16 * begin, object.number * OBJECT_STRIDE],

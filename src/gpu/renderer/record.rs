@@ -7,12 +7,14 @@ use super::slot::{BoundPlan, BoundStep, FrameSlot, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::usage::Usage;
 use crate::plan::{Call, IndexedDraw, Step};
-use crate::shader::{Kind, Pushed};
+use crate::shader::{BinTile, Kind, Pushed};
 use ash::vk;
 use std::ops::Range;
 
 /// Bytes of one indirect draw.
 const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
+/// Bytes of the head of a bin, as of its tiles.
+const HEAD_BYTES: u64 = size_of::<BinTile>() as u64;
 
 impl Renderer {
     /// Records the draws of a prepared frame, within a pass of the output's formats.
@@ -69,7 +71,7 @@ impl Renderer {
         let plan = &bound.plan.frame;
         let bins = slot.buffer(SlotBuffer::Bins);
         if plan.bin_heads > 0 {
-            let bytes = 16 * u64::from(plan.bin_heads);
+            let bytes = HEAD_BYTES * u64::from(plan.bin_heads);
             // The frame may have been recorded before.
             bins.barrier(cmd, Usage::TileRead, Usage::TransferWrite);
             // SAFETY: `cmd` is recording outside of a pass, and the words are within the buffer.
@@ -146,7 +148,7 @@ impl Renderer {
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);
-                    raw.cmd_dispatch_indirect(cmd, bins, 16 * u64::from(*head));
+                    raw.cmd_dispatch_indirect(cmd, bins, HEAD_BYTES * u64::from(*head));
                 }
                 Call::Groups(groups, pushed) => {
                     self.push(cmd, pushed);

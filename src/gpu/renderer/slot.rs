@@ -15,7 +15,8 @@ use crate::gpu::vk::usage::Usage;
 use crate::plan::casters::Hierarchy;
 use crate::plan::{Call, DrawPath, FramePlan};
 use crate::shader::{
-    CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, Variant,
+    BinTile, CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, QueueBlock,
+    Variant,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -41,7 +42,7 @@ const BUFFERS: [(Use, &str, usize); 8] = [
     (Use::Storage, "objects", OBJECT_STRIDE as usize),
     (Use::Storage, "instances", size_of::<InstanceBlock>()),
     (Use::Storage, "casters", size_of::<CasterNode>()),
-    (Use::Storage, "tiles", 0),
+    (Use::Storage, "tiles", size_of::<QueueBlock>()),
     (Use::Bins, "bins of tiles", 0),
     (Use::Draws, "draws", 0),
     (Use::Mark, "mark of uploads", 4),
@@ -51,6 +52,8 @@ const BUFFERS: [(Use, &str, usize); 8] = [
 const SPARE: u64 = 8;
 /// Bytes of contents below which buffers keep their memory.
 const LEAST_SPARE: u64 = 1 << 12;
+/// The first block of tiles, which holds no copies.
+const EMPTY_BLOCK: [u32; size_of::<QueueBlock>() / 4] = [0; size_of::<QueueBlock>() / 4];
 
 /// The buffers and descriptor sets of one prepared frame.
 pub(crate) struct FrameSlot {
@@ -98,8 +101,7 @@ pub(crate) struct BoundStep {
     /// True if it compares depths of a compute target.
     pub compares_depths: bool,
     pub textures: Arc<TextureSet>,
-    /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
-    /// solid.
+    /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its block.
     pub offsets: [u32; 2],
 }
 
@@ -129,6 +131,7 @@ impl FrameSlot {
         write(&mut buffers[SlotBuffer::Mark as usize], 0, &0u32)?;
         let instance = InstanceBlock::zeroed();
         write(&mut buffers[SlotBuffer::Instances as usize], 0, &instance)?;
+        write_slice(&mut buffers[SlotBuffer::Tiles as usize], &EMPTY_BLOCK)?;
         let layouts = &device.pipelines.set_layouts;
         let sets = [FRAME_SET, TARGET_SET];
         let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
@@ -287,9 +290,14 @@ impl FrameSlot {
 
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
-        let words = plan.tile_words.as_slice();
+        // Draws that only warm up pipelines read the first block.
+        let words = match plan.tile_words.as_slice() {
+            [] => &EMPTY_BLOCK,
+            words => words,
+        };
         self.fit(SlotBuffer::Tiles, size_of_val(words) as u64)?;
-        self.fit(SlotBuffer::Bins, 16 * u64::from(plan.bin_vectors))?;
+        let bins = size_of::<BinTile>() as u64 * u64::from(plan.bin_vectors);
+        self.fit(SlotBuffer::Bins, bins)?;
         self.fit(SlotBuffer::Draws, size_of_val(plan.draws.as_slice()) as u64)?;
         write_slice(self.buffer_mut(SlotBuffer::Tiles), words)?;
         write_slice(self.buffer_mut(SlotBuffer::Draws), &plan.draws)

@@ -59,7 +59,7 @@ pub(crate) struct ScreenBounds {
     pub near: f32,
 }
 
-/// Most pixels along a side of the picture: records of tiles and quads hold no more.
+/// Most pixels along a side of the picture: tiles and quads hold no more.
 pub(crate) const MOST_PIXELS: u32 = 1 << QUAD_BITS;
 /// Pixels along the side of a tile.
 pub(super) const SIDE: u32 = 8;

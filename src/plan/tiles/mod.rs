@@ -166,7 +166,7 @@ impl<'a> Visible<'a> {
 
     /// True if the eye is outside of all copies of a batch that may show.
     pub fn is_apart(&self, batch: usize) -> bool {
-        self.batches[batch].surface.is_some() && self.strips.iter().all(|s| s.facts[batch].apart)
+        self.batches[batch].surface.is_some() && self.strips.iter().all(|s| s.apart[batch])
     }
 
     /// True if patches are listed for a batch's tiles in this view.

@@ -26,13 +26,6 @@ pub(super) struct Opened {
     pub items: Vec<Item>,
 }
 
-/// Facts that hold for all copies of a batch that may show.
-#[derive(Clone, Copy)]
-pub(super) struct CopyFacts {
-    /// True if the eye is outside of each copy's bounding cylinder.
-    pub apart: bool,
-}
-
 /// The index of no copy.
 const NONE: u32 = u32::MAX;
 
@@ -55,8 +48,8 @@ pub(super) struct Strip<'a> {
     tiles: Vec<[u32; 2]>,
     /// Number of every instance that may show.
     pub copies: Vec<u32>,
-    /// One entry per batch.
-    pub facts: Vec<CopyFacts>,
+    /// For each batch, true if the eye is outside of the bounding cylinder of each copy that may show.
+    pub apart: Vec<bool>,
 }
 
 impl Item {
@@ -90,7 +83,6 @@ impl<'a> Strip<'a> {
         columns: Range<u32>,
         down: u32,
     ) -> Self {
-        let facts = CopyFacts { apart: true };
         Self {
             projector,
             batches,
@@ -102,7 +94,7 @@ impl<'a> Strip<'a> {
             open: Vec::new(),
             waiting: Vec::new(),
             copies: Vec::new(),
-            facts: vec![facts; batches.len()],
+            apart: vec![true; batches.len()],
         }
     }
 
@@ -184,8 +176,7 @@ impl<'a> Strip<'a> {
         }
         self.copies.push(item.copy);
         if let Some(surface) = batch.surface {
-            let facts = &mut self.facts[item.batch as usize];
-            facts.apart &= is_apart(surface, axes.eye);
+            self.apart[item.batch as usize] &= is_apart(surface, axes.eye);
         }
         if let Some(inner) = batch.inner.filter(|_| in_front) {
             self.cover.add(&axes, inner, pixels);

@@ -103,9 +103,9 @@ impl TileWriter<'_> {
             [copy] if is_large(copy) || self.single[copy.batch as usize] => Some(0),
             _ => (0..copies.len()).find(|&n| {
                 // Copies that coincide need the same search: the first of equal depths stays.
-                let alike = |other: &TileCopy| other.near == copies[n].near;
-                let unique = copies.iter().filter(|copy| alike(copy)).count() == 1;
-                self.lists[copies[n].batch as usize] && is_large(&copies[n]) && unique
+                let alike = |other: &&TileCopy| other.near == copies[n].near;
+                let lists = self.lists[copies[n].batch as usize] && is_large(&copies[n]);
+                lists && copies.iter().filter(alike).count() == 1
             }),
         }
     }
@@ -166,7 +166,7 @@ impl BandTiles {
                 });
             }
         }
-        tile.tile = x | y << TILE_BITS | halves_of(pixels) << TILE_HALVES;
+        tile.place = x | y << TILE_BITS | halves_of(pixels) << TILE_HALVES;
         if !gathers || pixels == u64::MAX {
             self.queued.push(tile);
             return;
@@ -224,7 +224,7 @@ impl LayerTiles {
     }
 }
 
-/// Joins the tiles of all bands: blocks of queues, then tiles, then gathered pixels.
+/// Joins the tiles of all bands: an empty block, blocks of queues, tiles, gathered pixels.
 pub(super) fn join(bands: &[Vec<BandTiles>], layers: usize) -> LayeredTiles {
     let all = || (0..layers).flat_map(|n| bands.iter().map(move |band| &band[n]));
     let bytes = |band: &BandTiles| {
@@ -238,7 +238,9 @@ pub(super) fn join(bands: &[Vec<BandTiles>], layers: usize) -> LayeredTiles {
             .sum::<usize>()
     };
     let padding = layers * size_of::<[GatheredPixel; TILE_PIXELS as usize]>();
-    let mut words: Vec<u32> = Vec::with_capacity((all().map(bytes).sum::<usize>() + padding) / 4);
+    let bytes = size_of::<QueueBlock>() + all().map(bytes).sum::<usize>() + padding;
+    let mut words: Vec<u32> = Vec::with_capacity(bytes / 4);
+    words.resize(size_of::<QueueBlock>() / 4, 0);
     // The first block of each band, and its first gathered tile.
     let mut begins = Vec::with_capacity(bands.len() * layers);
     for band in all() {
@@ -440,7 +442,7 @@ mod tests {
     fn visited(tiles: &BandTiles) -> Found {
         let mut found = BTreeMap::new();
         let corner = |tile: &QueueTile| {
-            [tile.tile, tile.tile >> TILE_BITS].map(|at| (at & ((1 << TILE_BITS) - 1)) * SIDE)
+            [tile.place, tile.place >> TILE_BITS].map(|at| (at & ((1 << TILE_BITS) - 1)) * SIDE)
         };
         let mut visit = |tile: &QueueTile, [x, y]: [u32; 2]| {
             let list = list(&tiles.blocks, tile, x % SIDE + y % SIDE * SIDE);

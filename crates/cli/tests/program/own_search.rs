@@ -544,7 +544,7 @@ fn an_endless_search_ends_no_run() {
     let scene = "scene.toml --size 640x480 --quick";
     left_out(&own, scene, "took more than 2 seconds");
     // Endless for one scene of the run alone: the test picture does not show it.
-    let mut own = Own::new(TOML, &endless("f > -9.0 && object.offset.x > 0.0"));
+    let mut own = Own::new(TOML, &endless("f > -9.0 && shape.extend > 0.0"));
     own.limit = "2";
     own.bench
         .object("polygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\nextend = 0.01");

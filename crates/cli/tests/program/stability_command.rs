@@ -46,7 +46,10 @@ fn unknown_cases_and_meshes_are_wrong_usage() {
 #[test]
 fn a_case_whose_map_is_too_large_is_named() {
     let bench = Bench::new();
-    let relief = concat!(env!("CARGO_MANIFEST_DIR"), "/../searches/published/relief");
+    let relief = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../lab/searches/published/relief"
+    );
     let output = bench.done(&format!(
         "stability large-outline --quick --solver {relief} --out kept --quiet"
     ));

@@ -1,7 +1,8 @@
 //! The drawing area: nodes of a drawing as regions of the half-plane.
 
-use super::paint::{Paint, Rgba, Tile, is_dark, over_white, overlap};
+use super::paint::{Paint, Rgba, is_dark, over_white};
 use super::svg::{Band, Clip, Group, Node, Path};
+use super::tile::{Tile, overlap};
 use crate::content_fault;
 use crate::pixels::luminance;
 use glam::{DVec2, Vec2Swizzles as _};

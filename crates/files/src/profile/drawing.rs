@@ -9,8 +9,9 @@
 
 use super::canvas::{Canvas, FLATNESS};
 use super::form::{DRAWING, Silhouette};
-use super::paint::{Paint, Tile, gradients, lightened};
+use super::paint::{Paint, gradients, lightened};
 use super::svg::has_translucency;
+use super::tile::Tile;
 use super::{ProfileAxis, svg};
 use crate::content_fault;
 use crate::faults::{empty_fault, full_fault, half_empty_fault};

@@ -1,7 +1,10 @@
 //! The outer ends of a silhouette's rows, and the line that their middles follow.
 
-use super::form::{ALIKE, Row, Silhouette};
+/// The solid parts of one row, `[from, to]` in ascending order, pixels from the left edge.
+pub(super) type Row = Vec<[f64; 2]>;
 
+/// Halves that differ by less than this part of the solid's width are alike.
+pub(super) const ALIKE: f64 = 0.05;
 /// Distances below this part of the solid's half width are left over from drawing and scanning.
 const SLACK: f64 = 0.02;
 /// The part of the rows that an edge must follow to be straight.
@@ -17,12 +20,13 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    pub fn of(form: &Silhouette) -> Self {
+    /// The ends of rows that are `step` pixels apart.
+    pub fn of(rows: &[Row], step: f64) -> Self {
         let ends =
-            |(i, row): (usize, &Row)| Some([i as f64 * form.step, row.first()?[0], row.last()?[1]]);
+            |(i, row): (usize, &Row)| Some([i as f64 * step, row.first()?[0], row.last()?[1]]);
         Self {
-            rows: form.rows.iter().enumerate().filter_map(ends).collect(),
-            step: form.step,
+            rows: rows.iter().enumerate().filter_map(ends).collect(),
+            step,
         }
     }
 

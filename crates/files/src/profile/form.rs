@@ -4,13 +4,10 @@
 //! Drawings and pictures share these rules. Both give rows of solid spans and the outline of the
 //! half right of the axis.
 
-use super::ends::Ends;
+use super::ends::{ALIKE, Ends, Row};
 use super::{ProfileAxis, gaps};
 use glam::DVec2;
 use revmap::profile::{FillRule, Grid, Outline, Region, Segment, loop_area};
-
-/// The solid parts of one row, `[from, to]` in ascending order, pixels from the left edge.
-pub(super) type Row = Vec<[f64; 2]>;
 
 /// Most rows that are looked at.
 const ROWS: usize = 512;
@@ -20,8 +17,6 @@ pub(super) const DRAWING: f64 = 1024.0;
 const LEAST_ROWS: usize = 8;
 /// Fewer solid pixels side by side are noise.
 const RUN: usize = 3;
-/// Halves that differ by less than this part of the solid's width are alike.
-pub(super) const ALIKE: f64 = 0.05;
 /// A solid lower than this part of the picture may be a ring beside the axis.
 const LOW: f64 = 0.5;
 /// A wall below this part of the height is thin.
@@ -115,7 +110,7 @@ impl<'a> Silhouette<'a> {
                 self.what
             ))];
         }
-        let ends = Ends::of(self);
+        let ends = Ends::of(&self.rows, self.step);
         if ends.rows.len() < LEAST_ROWS {
             return gaps::hints(half);
         }
@@ -133,7 +128,7 @@ impl<'a> Silhouette<'a> {
 
     /// A solid that is even about a line well beside the axis. Its half has no meaning.
     pub(super) fn aside(&self, axis: ProfileAxis) -> Option<String> {
-        let ends = Ends::of(self);
+        let ends = Ends::of(&self.rows, self.step);
         if axis == ProfileAxis::Left || ends.rows.len() < LEAST_ROWS {
             return None;
         }

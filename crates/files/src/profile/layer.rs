@@ -1,6 +1,7 @@
 //! Paint laid over paint within a tile.
 
-use super::paint::{Paint, Rgba, Tile, over, overlap};
+use super::paint::{Paint, Rgba, over};
+use super::tile::{Tile, overlap};
 use revmap::profile::Region;
 
 /// Disjoint cells of colour that fill a tile.

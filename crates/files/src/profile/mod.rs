@@ -1,6 +1,7 @@
 //! Profiles from drawings and pictures.
 
 mod canvas;
+mod dark;
 mod drawing;
 mod ends;
 mod form;
@@ -11,6 +12,7 @@ mod noise;
 mod options;
 mod paint;
 mod svg;
+mod tile;
 mod transparency;
 
 pub(crate) use gaps::hints as gap_hints;
