@@ -7,11 +7,15 @@ void main()
 {
     load_frame(pushed.object);
     load_tile();
-    if (ONE_OBJECT != 2u) {
+    // On GPUs what comes from shared memory takes vector registers, so only the general form reads its object there.
+    if (ONE_OBJECT == 0u) {
         share_object();
         barrier();
+        load_shared();
+    } else {
+        tile_instance = instances[instance_number()];
+        load(tile_instance);
     }
-    load_shared();
     begin_tile();
     // Only tiles of bins contain the span.
     vec2 span = reads_bin() && is_outside() ? uintBitsToFloat(tile.found) : EVERYWHERE;

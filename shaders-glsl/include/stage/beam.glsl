@@ -11,7 +11,7 @@ struct Beam {
     vec3 o;
     vec3 v;
     float least, nearest, a, b; // r^2 of the middle ray: least + a (t - nearest)^2
-    float per_z, speed; // 1 / v.z; speed across the axis
+    float per_z; // 1 / v.z
     vec2 spread; // largest deviation of a direction from the middle one: across the axis, along it
     vec2 width; // largest distance of a ray from the middle one at equal t, anywhere in the box: across the axis, along it
     float base;
@@ -37,7 +37,6 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
     vec3 across = rays.dir_x + rays.dir_y, down = rays.dir_x - rays.dir_y; // the square's diagonals
     beam.spread = half_side * vec2(max(length(across.xy), length(down.xy)), max(abs(across.z), abs(down.z)));
     beam.width = beam.spread * farthest + 1e-4 + 4e-7 * abs(vec2(length(beam.o.xy), beam.o.z));
-    beam.speed = length(beam.v.xy);
     beam.a = max(dot(beam.v.xy, beam.v.xy), 1e-12 * dot(beam.v, beam.v));
     beam.b = dot(beam.o.xy, beam.v.xy);
     // This divides, as node_span() does: rounding of 1 / a loses pixels of a plate that is a thousand times as wide as
@@ -104,7 +103,7 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     float al = sense * beam.a + k2 * beam.v.z * beam.v.z;
     float be = sense * beam.b + slope * beam.v.z;
     float steep = 0.5 * abs(k1) + abs(k2); // upper bound of |k1 / 2 + k2 z| for z in [0, 1]
-    float turned = (r.y + beam.width.x) * beam.spread.x + beam.width.x * beam.speed;
+    float turned = (r.y + beam.width.x) * beam.spread.x + beam.width.x * sqrt(beam.a);
     float tilted = (steep + abs(k2) * beam.width.y) * beam.spread.y + abs(k2) * beam.width.y * abs(beam.v.z);
     float most = abs(sense) * turned + tilted;
     bool faces_before = min(al * before.x, al * before.y) + be <= most;
