@@ -865,6 +865,9 @@ typedef struct RevmapView {
     /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
     /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.
     double depth_range[2];
+    /// Width of the part of a pixel that a ray stands for, pixels: 1 / sqrt(n) if the colours of n
+    /// frames with jitter are averaged. Textures are as sharp as that. 0: 1.
+    double ray_width;
 } RevmapView;
 
 /// An object of one renderer, which refuses those of others; never 0. The number refers to the same

@@ -113,6 +113,9 @@ pub struct RevmapView {
     /// minDepth and maxDepth of the host's VkViewport, which do not reach depths that a shader
     /// writes by themselves: 0 <= minDepth < maxDepth <= 1. Both 0: 0 to 1.
     pub depth_range: [f64; 2],
+    /// Width of the part of a pixel that a ray stands for, pixels: 1 / sqrt(n) if the colours of n
+    /// frames with jitter are averaged. Textures are as sharp as that. 0: 1.
+    pub ray_width: f64,
 }
 
 /// Settings of the search. Defaults: revmap_search_defaults().
@@ -149,6 +152,7 @@ described! {
         0 => [size, depth_order, view, projection, viewport]
         1 => [last, jitter, depth_bias, mask, layer]
         2 => [depth_range]
+        3 => [ray_width]
     }
     RevmapSearch {
         0 => [
@@ -261,8 +265,10 @@ impl RevmapView {
             );
             return Err(Fault::new(RevmapResult::Usage, message));
         }
-        if !(self.depth_bias.is_finite() && self.jitter.iter().all(|shift| shift.is_finite())) {
-            let message = "view: jitter and depth_bias are not finite; give finite numbers";
+        let numbers = [self.depth_bias, self.ray_width].into_iter();
+        if !numbers.chain(self.jitter).all(f64::is_finite) || self.ray_width < 0.0 {
+            let message =
+                "view: give finite numbers as jitter and depth_bias, and a ray_width of 0 or more";
             return Err(Fault::new(RevmapResult::Content, message));
         }
         let [x, y, width, height] = self.viewport;
@@ -283,6 +289,10 @@ impl RevmapView {
         let made = made.with_mask(mask);
         let made = made.with_jitter(self.jitter);
         let made = made.with_depth_bias(self.depth_bias);
+        let made = match self.ray_width {
+            0.0 => made,
+            width => made.with_ray_width(width),
+        };
         match self.depth_range {
             [0.0, 0.0] => Ok(made),
             range => Ok(made.with_depth_range(range)?),

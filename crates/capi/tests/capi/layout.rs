@@ -40,7 +40,7 @@ fn structures_are_the_same_in_c() {
         RevmapLight { color, radius }
         RevmapLighting { ambient, light_count, lights }
         RevmapCamera { eye, target, up, fov_y }
-        RevmapView { view, projection, viewport, last, jitter, depth_bias, mask, layer, depth_range }
+        RevmapView { view, projection, viewport, last, jitter, depth_bias, mask, layer, depth_range, ray_width }
         RevmapSearch { proxy_min_pixels, tolerance }
         RevmapRequirements { features }
         RevmapHostDevice { get_instance_proc_addr, physical_device, queue, features, pipeline_cache }
@@ -72,6 +72,7 @@ fn added_fields_begin_where_earlier_structures_end() {
     assert_eq!(offset_of!(RevmapPass, attachments), 56);
     assert_eq!(offset_of!(RevmapView, last), 296);
     assert_eq!(offset_of!(RevmapView, depth_range), 336);
+    assert_eq!(offset_of!(RevmapView, ray_width), 352);
     assert_eq!(offset_of!(RevmapObjectInfo, has_material), 264);
 }
 
