@@ -16,13 +16,12 @@ struct PatchRow {
     vec4 quadric; // patch of the nearest hit so far
 };
 
-// `half_side`: half of the box's side.
-PatchRow begin_row(PixelRays rays, vec2 pixel, float half_side)
+PatchRow begin_row(PixelRays rays, vec2 pixel, float axis_weight)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);
     vec3 origin = ray_origin(rays, pixel);
-    vec3 weighted = row.m.v * vec3(1.0, 1.0, 0.25 * half_side * half_side);
+    vec3 weighted = row.m.v * vec3(1.0, 1.0, axis_weight);
     row.shift = dot(vec3(0.0, 0.0, 0.5) - origin, weighted) / dot(row.m.v, weighted);
     row.m.o = origin + row.shift * row.m.v;
     row.m.a = dot(row.m.v.xy, row.m.v.xy);
