@@ -19,6 +19,6 @@ void main()
     }
     float depth = draw(varying_look(), varying_rays(), pixel, hit);
     // The triangle is never behind the surface that it wraps, except by rounding.
-    float sense = sign(ray_dir_00.w);
+    float sense = ray_dir_00.w;
     gl_FragDepth = sense * max(sense * depth, sense * gl_FragCoord.z);
 }

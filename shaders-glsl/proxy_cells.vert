@@ -15,7 +15,7 @@ void main()
     vec2 rz = vertex < RING_CORNERS ? rings.xy : rings.zw;
     float angle = float(vertex % RING_CORNERS) * (6.28318530717958648 / float(RING_CORNERS));
     gl_Position = clip_of(i, vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(shape.axis, 0.0));
-    hand_over(i, frame.depth_sense * axis_weight());
+    hand_over(i, frame.depth_sense);
     cell_record = at;
     if (FETCHED_CELLS == 0u) {
         [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {

@@ -93,10 +93,4 @@ void load(Instance i)
     }
 }
 
-// Returns the weight of a distance along the axis for begin_row() of search/patch_row.glsl: a flat or wide box has a large one.
-float axis_weight()
-{
-    return 0.25 * shape.half_side * shape.half_side;
-}
-
 #endif

@@ -10,7 +10,10 @@
 bool trace_cell(vec2 pixel, out Hit hit)
 {
     load_varyings();
-    PatchRow row = begin_row(varying_rays(), pixel, abs(ray_dir_00.w));
+    PixelRays rays = varying_rays();
+    // The shell is near the surface.
+    float shift = ORTHO != 0u ? middle_of(rays, pixel) : 1.0 / gl_FragCoord.w - rays.base;
+    PatchRow row = begin_row(rays, pixel, shift);
     const float SIDE_SLACK = 4e-6; // object units; a hit so close before a side of the box counts
     float eye = row.least;
     bool by_side = false;

@@ -35,7 +35,7 @@ vec4 listed_vector(uint n)
 
 bool search_listed(uvec2 pixel, out Hit hit)
 {
-    PatchRow row = begin_row(tile_rays, pixel, axis_weight());
+    PatchRow row = begin_row(tile_rays, pixel, middle_of(tile_rays, vec2(pixel)));
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
     if (!is_outside()) {
         clip_to_sides(row);

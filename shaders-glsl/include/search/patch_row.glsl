@@ -7,8 +7,7 @@
 #include "search/quadric.glsl"
 
 struct PatchRow {
-    // s = 0 is where the ray is nearest to the axis, in a flat or wide box nearest to its middle. 32 bits hold boxes of
-    // any ratio there, and tips, which are on the axis.
+    // s = 0 is near the hit or the axis: 32 bits hold boxes of any ratio there, and tips.
     Meridian m;
     float shift; // t = shift + s
     float least, most; // range of s of valid hits
@@ -16,18 +15,25 @@ struct PatchRow {
     vec4 quadric; // patch of the nearest hit so far
 };
 
-PatchRow begin_row(PixelRays rays, vec2 pixel, float axis_weight)
+// Returns the `t` at which a ray is nearest to the axis, in a flat or wide box nearest to its middle.
+float middle_of(PixelRays rays, vec2 pixel)
+{
+    vec3 v = ray_direction(rays, pixel);
+    vec3 weighted = v * vec3(1.0, 1.0, 0.25 * shape.half_side * shape.half_side);
+    return dot(vec3(0.0, 0.0, 0.5) - ray_origin(rays, pixel), weighted) / dot(v, weighted);
+}
+
+// `shift`: the `t` of s = 0.
+PatchRow begin_row(PixelRays rays, vec2 pixel, float shift)
 {
     PatchRow row;
     row.m.v = ray_direction(rays, pixel);
-    vec3 origin = ray_origin(rays, pixel);
-    vec3 weighted = row.m.v * vec3(1.0, 1.0, axis_weight);
-    row.shift = dot(vec3(0.0, 0.0, 0.5) - origin, weighted) / dot(row.m.v, weighted);
-    row.m.o = origin + row.shift * row.m.v;
+    row.shift = shift;
+    row.m.o = ray_origin(rays, pixel) + shift * row.m.v;
     row.m.a = dot(row.m.v.xy, row.m.v.xy);
     row.m.b = dot(row.m.o.xy, row.m.v.xy);
     row.m.c = dot(row.m.o.xy, row.m.o.xy);
-    row.least = -rays.base - row.shift;
+    row.least = -rays.base - shift;
     row.most = 2e38;
     row.best = row.most;
     row.quadric = vec4(0.0);

@@ -10,7 +10,7 @@
 #endif
 
 layout(location = 1) flat VARYING vec4 ray_origin_base;
-layout(location = 2) flat VARYING vec4 ray_dir_00; // w: pixel_size of the frame; for cells depth_sense * axis_weight()
+layout(location = 2) flat VARYING vec4 ray_dir_00; // w: pixel_size of the frame; for cells depth_sense
 layout(location = 3) flat VARYING vec4 ray_dir_x;  // w: depth_constant
 layout(location = 4) flat VARYING vec4 ray_dir_y; // w: depth_factor
 layout(location = 0) flat VARYING vec4 look_rotation;
