@@ -60,7 +60,8 @@ pub(crate) struct PlanObject<'a> {
     pub outline: Option<(&'a Solid, f64)>,
 }
 
-/// Inputs of a plan other than view and objects.
+/// Inputs of a plan other than view and objects. Each member is one fact; a plan is used again while all
+/// are equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Conditions {
     /// True if tiles are traced in compute; otherwise fragments draw proxies and tiles.

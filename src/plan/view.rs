@@ -67,6 +67,8 @@ impl Viewport {
 /// dir_y)`. The direction is not normalised: `t` is the depth along `forward`, and the depth in clip
 /// space is `depth[0] + depth[1] / t`. A parallel view has rays `eye + i dir_x + j dir_y + t dir_00`
 /// instead, and depths `depth[0] + depth[1] t`. [`View::depth_at`] is the value in the depth buffer.
+///
+/// Members are what all pixels and copies read, computed once for a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     pub(crate) eye: DVec3,

@@ -7,7 +7,7 @@ use crate::surface::Offset;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A solid of revolution, drawn once or as many copies.
+/// A solid of revolution, drawn once or as many copies. Members are keys of a scene file.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Name in messages and pictures: the file name of the profile, or `polygon`.

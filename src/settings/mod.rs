@@ -240,7 +240,7 @@ impl FromStr for Tolerance {
     }
 }
 
-/// Settings of a drawing.
+/// Settings of a drawing. Members are options of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Pixels across.

@@ -30,8 +30,10 @@ pub(crate) use technique::is_beveled;
 pub use technique::{HostLook, ShadowCasters, Technique};
 pub use textures::{with_constant_textures, with_varying_textures};
 #[cfg(feature = "other-shaders")]
+pub(crate) use variant::Outside;
+#[cfg(feature = "other-shaders")]
 pub(crate) use variant::SPECIALITIES;
-pub use variant::{Drawn, Kind, Lights, Outside, Speciality, Variant};
+pub use variant::{Drawn, Kind, Lights, Speciality, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // The list includes numbers that only the shaders read, or that only tests compare.

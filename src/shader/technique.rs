@@ -34,7 +34,7 @@ pub struct HostLook {
 }
 
 /// What an object, its search and the output demand. Each technique and [`Kind`](super::Kind) has
-/// one general pipeline, which is right for every view, light and number of objects.
+/// one general pipeline, which is right for every view, light and number of objects. Each member selects code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Technique {
     /// The search that finds hits.

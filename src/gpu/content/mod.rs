@@ -27,7 +27,8 @@ use snapshot::{Demands, Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
 use view_plan::{LevelRules, PlannedObject, ViewPlan, hierarchy};
 
-/// Objects and lights as set, the last snapshot of all objects, and the last plan.
+/// Objects and lights as set, the last snapshot of all objects, and the last plan. One owner has them,
+/// because a failed step must leave all of them as they were.
 pub(super) struct Content {
     pub objects: Objects,
     pub lighting: Lighting,

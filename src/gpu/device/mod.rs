@@ -18,7 +18,7 @@ use std::ffi::{CStr, CString};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, OnceLock};
 
-/// The state of a device, which everything made on it keeps alive.
+/// The state of a device, which everything made on it keeps alive. Members are destroyed in order.
 pub(crate) struct Shared {
     // Dropped before the device: see Drop.
     pub allocator: ManuallyDrop<Arc<Mutex<Allocator>>>,

@@ -47,7 +47,8 @@ impl DeviceConstants {
     }
 }
 
-/// Set layouts, the pipeline layout, and the pipelines made so far.
+/// Set layouts, the pipeline layout, and the pipelines made so far. Members are all inputs of a
+/// compilation that a device has.
 pub(crate) struct Pipelines {
     /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],

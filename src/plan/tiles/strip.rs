@@ -29,6 +29,7 @@ pub(super) struct Opened {
 /// The index of no copy.
 const NONE: u32 = u32::MAX;
 
+/// A range of columns of tiles. Its vectors live from copy to copy, which saves their allocation.
 pub(super) struct Strip<'a> {
     projector: &'a Projector,
     batches: &'a [Batch<'a>],
