@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Intersects a fragment's ray with the patches of its cell.
 #define SINGLE
+#define UNSHADOWED
 #define STORED_TABLES // lavapipe 22 takes 3.7 times as long for a cut solid with its own
 #include "search/cell.glsl"
 #include "stage/outputs.glsl"

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Intersects the pixels of a tile with its listed patches.
 #define SINGLE
+#define UNSHADOWED
 #include "search/listed.glsl"
 
 void main()

@@ -142,10 +142,10 @@ impl Conditions {
         self.compute || (of.technique.is_shaded() && pays)
     }
 
-    /// True if fragments may search the queues of tiles by a technique: it has the library's patches, no
-    /// replicas and no shadows.
+    /// True if fragments may search the queues of tiles by a technique: it has the library's patches
+    /// and no replicas.
     pub fn searches_queues(technique: &Technique) -> bool {
-        technique.search == Search::Quadric && technique.is_single()
+        technique.search == Search::Quadric && !technique.replicas
     }
 
     /// The path of an object in a view: cells, else tiles, else boxes.

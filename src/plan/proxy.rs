@@ -65,10 +65,15 @@ pub(crate) fn frusta(
     least_pixels: u32,
 ) -> Option<[Vec<Range<u32>>; 2]> {
     let radius = object.profile.radius;
-    if fills_box(object, surface) || surface.hull().touches {
+    let copies = object.placements();
+    let covered: u64 = (copies.iter())
+        .map(|copy| covered_pixels(view, radius, copy))
+        .sum();
+    // Hulls are made for large objects alone.
+    let least = u64::from(least_pixels) * copies.len() as u64;
+    if covered < least || fills_box(object, surface) || surface.hull().touches {
         return None;
     }
-    let copies = object.placements();
     let hull = &surface.hull().hull;
     let seen: Vec<_> = (copies.iter())
         .map(|copy| seen_from(object, copy, view))
@@ -83,10 +88,7 @@ pub(crate) fn frusta(
     };
     let frusta = [cut, whole];
     let drawn: usize = frusta.iter().flatten().map(ExactSizeIterator::len).sum();
-    let covered: u64 = (copies.iter())
-        .map(|copy| covered_pixels(view, radius, copy))
-        .sum();
-    let pays = covered >= u64::from(least_pixels) * (drawn * copies.len()) as u64;
+    let pays = covered >= least * drawn as u64;
     let in_front = |&of: &(DVec3, DVec3)| is_in_front(hull, of, view);
     (pays && seen.iter().all(in_front)).then_some(frusta)
 }

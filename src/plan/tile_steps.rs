@@ -8,6 +8,7 @@ use super::{
 use crate::shader::generated::{MOST_GROUPS, TILE_BINS, TREE_BIN};
 use crate::shader::{BinTile, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
+use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ impl FramePlan {
         if numbers.is_empty() {
             return;
         }
-        let batches: Vec<Batch> = (numbers.iter())
+        let batches: Vec<Batch> = (numbers.par_iter())
             .map(|&n| batch(&objects[n], with))
             .collect();
         let projector = projector(view, objects, with);
@@ -51,12 +52,14 @@ impl FramePlan {
             layer_of.push(layer as u32);
         }
         let layers = layers.all;
-        let has_queues = |layer: &Layer| {
+        let least_queue = |layer: &Layer| {
             let copies = |n: &u32| objects[*n as usize].object.placements().len();
-            let enough = layer.objects.iter().map(copies).sum::<usize>() >= LEAST_QUEUE;
-            enough && Conditions::searches_queues(&layer.variant.technique)
+            let least = LEAST_QUEUE[usize::from(with.casts)];
+            let enough = layer.objects.iter().map(copies).sum::<usize>() >= least;
+            let searches = enough && Conditions::searches_queues(&layer.variant.technique);
+            if searches { least } else { usize::MAX }
         };
-        let queues: Vec<bool> = layers.iter().map(has_queues).collect();
+        let queues: Vec<usize> = layers.iter().map(least_queue).collect();
         let mut tiles = visible.write(with.compute, &layer_of, &queues);
         leave_out_lists(view, objects, &layers, &mut tiles.layers, with);
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
@@ -84,7 +87,7 @@ impl FramePlan {
                 // Both are recorded, even if one is empty: the number of commands follows the content.
                 let quads = step(kind, Call::Tiles(of_layer.quads.clone()));
                 self.steps.push(quads);
-                if queues {
+                if queues < usize::MAX {
                     let tiles = step(Kind::Tiles, Call::Tiles(of_layer.queued.clone()));
                     self.steps.push(tiles);
                 }
@@ -200,10 +203,10 @@ fn batch<'a>(of: &'a PlanObject<'a>, with: &Conditions) -> Batch<'a> {
         object: of.object,
         first: of.first_instance,
         shape: of.shape,
-        inner: inner.and_then(|s| s.inner()),
+        inner: inner.and_then(|s| s.cylinders()).map(|[inner, _]| inner),
         outer: culls
-            .and_then(|s| s.outer())
-            .map(|outer| (outer, 0.0))
+            .and_then(|s| s.cylinders())
+            .map(|[_, outer]| (outer, 0.0))
             .or(of_outline),
         surface,
         permits_lists: with.permits_lists(of),

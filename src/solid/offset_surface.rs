@@ -57,8 +57,7 @@ pub(crate) struct OffsetSurface {
     tables: OnceLock<SearchTable>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
-    inner: OnceLock<Cylinders>,
-    outer: OnceLock<Cylinders>,
+    cylinders: OnceLock<[Cylinders; 2]>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -86,8 +85,7 @@ impl OffsetSurface {
             tables: OnceLock::new(),
             listed: OnceLock::new(),
             hull: OnceLock::new(),
-            inner: OnceLock::new(),
-            outer: OnceLock::new(),
+            cylinders: OnceLock::new(),
             slots: [const { OnceLock::new() }; 3],
         }
     }
@@ -160,16 +158,11 @@ impl OffsetSurface {
         self.hull.get_or_init(make)
     }
 
-    /// Cylinders inside its solid, which hide everything behind them; only for patches.
-    pub fn inner(&self) -> Option<&Cylinders> {
+    /// Cylinders inside its solid, which hide everything behind them, and around it; only for patches.
+    pub fn cylinders(&self) -> Option<&[Cylinders; 2]> {
         let patches = self.quadrics()?;
-        Some(self.inner.get_or_init(|| Cylinders::inner(patches)))
-    }
-
-    /// Cylinders around its solid; only for patches.
-    pub fn outer(&self) -> Option<&Cylinders> {
-        let patches = self.quadrics()?;
-        Some(self.outer.get_or_init(|| Cylinders::outer(patches)))
+        let make = || Cylinders::of_patches(patches);
+        Some(self.cylinders.get_or_init(make))
     }
 
     /// True if it is made of patches.

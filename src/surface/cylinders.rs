@@ -29,19 +29,16 @@ const MANY_ROWS: u32 = 64;
 const ROWS: usize = 64;
 
 impl Cylinders {
-    /// Cylinders within the solid that the patches enclose.
-    pub fn inner(patches: &[QuadricPatch]) -> Self {
-        Self {
-            pieces: cylinders(&solid_radii(patches), COUNTS, false),
+    /// Cylinders within the solid that the patches enclose, and around it.
+    pub fn of_patches(patches: &[QuadricPatch]) -> [Self; 2] {
+        let extents = extents(patches, ROWS);
+        let inner = Self {
+            pieces: cylinders(&solid_radii(patches, &extents), COUNTS, false),
             few: 12,
-        }
-    }
-
-    /// Cylinders around the solid that the patches enclose.
-    pub fn outer(patches: &[QuadricPatch]) -> Self {
+        };
         let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
-        let radii: Vec<f64> = extents(patches, ROWS).iter().map(most).collect();
-        Self::around(&radii)
+        let radii: Vec<f64> = extents.iter().map(most).collect();
+        [inner, Self::around(&radii)]
     }
 
     /// Cylinders around the solid that an outline encloses, within the height of its box.
@@ -89,7 +86,7 @@ const COUNTS: [usize; 3] = [3, 8, 16];
 
 /// The radius within which everything is solid, for each row of equal height over `0 <= z <= 1`.
 /// Object units. Rounded down; 0 if there is no such radius.
-fn solid_radii(patches: &[QuadricPatch]) -> [f64; ROWS] {
+fn solid_radii(patches: &[QuadricPatch], extents: &[[f32; 2]]) -> [f64; ROWS] {
     // A row's middle on the axis is in the solid if an odd number of patches is beside it.
     let mut solid = [false; ROWS];
     for patch in patches.iter().filter(|p| !p.is_plane()) {
@@ -100,7 +97,6 @@ fn solid_radii(patches: &[QuadricPatch]) -> [f64; ROWS] {
             *row = !*row;
         }
     }
-    let extents = extents(patches, ROWS);
     std::array::from_fn(|row| {
         let least = f64::from(extents[row][0]).max(0.0).sqrt();
         if solid[row] && least.is_finite() {
@@ -112,78 +108,68 @@ fn solid_radii(patches: &[QuadricPatch]) -> [f64; ROWS] {
 }
 
 /// For each count, at most that many runs of rows, each with its least (`outer`: largest) radius.
-/// Together they are as close to the radii as possible. Runs of radius 0 are left out.
+/// Neighbouring runs are joined, those first that lose (`outer`: gain) the least area. Runs of radius
+/// 0 are left out.
 fn cylinders<const K: usize>(
     radii: &[f64],
     counts: [usize; K],
     outer: bool,
 ) -> [Vec<CylinderPiece>; K] {
-    let n = radii.len();
+    let n = radii.len() as f64;
     let bound = |a: f64, b: f64| if (a < b) == outer { b } else { a };
-    let sense = if outer { -1.0 } else { 1.0 };
-    // The gain of the run of rows `i..j`, at `j (j - 1) / 2 + i`.
-    let mut gains = Vec::with_capacity(n * (n + 1) / 2);
-    for j in 1..=n {
-        let (first, mut radius) = (gains.len(), radii[j - 1]);
-        gains.resize(first + j, 0.0);
-        for i in (0..j).rev() {
-            radius = bound(radius, radii[i]);
-            gains[first + i] = sense * (j - i) as f64 * radius;
-        }
-    }
-    // The best cover of the first j rows, and the start of the last run. Rows may be left out of
-    // inner cylinders, but not of outer ones.
-    let left_out = |j: usize| {
-        if outer && j > 0 {
-            f64::NEG_INFINITY
-        } else {
-            0.0
-        }
+    // The change of area by joining two runs. Equal runs are joined at no cost.
+    let cost = |a: &Run, b: &Run| {
+        let to = bound(a.radius, b.radius);
+        a.rows() * (a.radius - to).abs() + b.rows() * (b.radius - to).abs()
     };
-    let mut best: Vec<(f64, usize)> = (0..=n).map(|j| (left_out(j), 0)).collect();
-    let most = counts.into_iter().max().unwrap_or(0);
-    let mut steps = Vec::with_capacity(most);
-    for _ in 0..most {
-        let next = |j: usize| {
-            let mut found = (best[j].0, j);
-            let first = j * j.saturating_sub(1) / 2;
-            for (i, gain) in gains[first..first + j].iter().enumerate() {
-                let covered = best[i].0 + gain;
-                if covered > found.0 {
-                    found = (covered, i);
-                }
+    let row = |(row, &radius): (usize, &f64)| Run {
+        begin: row,
+        end: row + 1,
+        radius,
+    };
+    let mut runs: Vec<Run> = radii.iter().enumerate().map(row).collect();
+    let mut costs: Vec<f64> = runs.windows(2).map(|w| cost(&w[0], &w[1])).collect();
+    let mut found = [const { Vec::new() }; K];
+    let mut order: Vec<usize> = (0..K).collect();
+    order.sort_unstable_by_key(|&k| std::cmp::Reverse(counts[k]));
+    for k in order {
+        let solid = |runs: &[Run]| runs.iter().filter(|run| run.radius > 0.0).count();
+        while solid(&runs) > counts[k] {
+            let least = costs.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
+            let Some((at, _)) = least else { break };
+            let next = runs.remove(at + 1);
+            costs.remove(at);
+            runs[at].end = next.end;
+            runs[at].radius = bound(runs[at].radius, next.radius);
+            if at > 0 {
+                costs[at - 1] = cost(&runs[at - 1], &runs[at]);
             }
-            found
+            if let Some(after) = runs.get(at + 1) {
+                costs[at] = cost(&runs[at], after);
+            }
+        }
+        let solid = runs.iter().filter(|run| run.radius > 0.0);
+        let piece = |run: &Run| CylinderPiece {
+            radius: run.radius,
+            low: run.begin as f64 / n,
+            high: run.end as f64 / n,
         };
-        best = (0..=n).map(next).collect();
-        steps.push(best.clone());
+        found[k] = solid.map(piece).collect();
     }
-    counts.map(|count| runs(radii, &steps[..count], bound))
+    found
 }
 
-/// The runs that lead to the best cover of all rows.
-fn runs(
-    radii: &[f64],
-    steps: &[Vec<(f64, usize)>],
-    bound: impl Fn(f64, f64) -> f64,
-) -> Vec<CylinderPiece> {
-    let n = radii.len();
-    let (mut found, mut end) = (Vec::new(), n);
-    for step in steps.iter().rev() {
-        let begin = step[end].1;
-        if let Some(radius) = radii[begin..end].iter().copied().reduce(&bound)
-            && radius > 0.0
-        {
-            found.push(CylinderPiece {
-                radius,
-                low: begin as f64 / n as f64,
-                high: end as f64 / n as f64,
-            });
-        }
-        end = begin;
+/// Consecutive rows that share a cylinder.
+struct Run {
+    begin: usize,
+    end: usize,
+    radius: f64,
+}
+
+impl Run {
+    fn rows(&self) -> f64 {
+        (self.end - self.begin) as f64
     }
-    found.reverse();
-    found
 }
 
 #[cfg(test)]
@@ -248,7 +234,7 @@ mod tests {
             [0.0, 0.6],
         ];
         let patches = patches(&cup);
-        let radii = solid_radii(&patches);
+        let radii = solid_radii(&patches, &extents(&patches, ROWS));
         // Parity of the number of patches beyond a point.
         let is_solid = |r: f64, z: f64| {
             let beyond = patches

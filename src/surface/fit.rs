@@ -179,7 +179,7 @@ impl Cutter {
     /// The largest `|q|` for which 32-bit floats are accurate enough. The terms of `G`, up to `|q|`
     /// in size, are rounded. The error must stay below half of the tolerance times `|grad G|`.
     fn largest_bend(&self, r: f64, slope: f64) -> f64 {
-        0.5 * self.tolerance / EPSILON * (2.0 * r).hypot(slope)
+        0.5 * self.tolerance / EPSILON * DVec2::new(2.0 * r, slope).length()
     }
 
     fn patches(&self, chain: u32, out: &mut Vec<QuadricPatch>) {

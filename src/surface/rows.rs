@@ -19,7 +19,7 @@
 
 use super::QuadricPatch;
 use bytemuck::{Pod, Zeroable};
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 /// Distance by which rows and extents exceed their contents, object units (`r^2`: the order of its
 /// square root): roundings of 32 bits.
@@ -85,16 +85,8 @@ impl Tables {
     #[must_use]
     pub fn new(patches: &[QuadricPatch], rows: u32) -> Self {
         let rows = rows.clamp(1, 4096) as usize;
-        let mut members: Vec<Vec<u32>> = vec![Vec::new(); rows];
-        for (index, patch) in patches.iter().enumerate() {
-            for i in touched(patch, rows) {
-                if members[i].len() < MOST {
-                    members[i].push(index as u32);
-                }
-            }
-        }
         let mut nodes = extents(patches, rows);
-        let (starts, records) = runs(patches, &members);
+        let (starts, records) = runs(patches, &Members::new(patches, rows));
         let mut levels = vec![0];
         let mut from = 0;
         while nodes.len() - from > 4 {
@@ -143,12 +135,58 @@ pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
     nodes
 }
 
+/// The patches of each row: one allocation for all rows.
+struct Members {
+    patches: Vec<u32>,
+    /// The end of each row's patches.
+    ends: Vec<usize>,
+}
+
+impl Members {
+    fn new(patches: &[QuadricPatch], rows: usize) -> Self {
+        let mut ends = vec![0; rows];
+        for patch in patches {
+            for row in touched(patch, rows) {
+                ends[row] += usize::from(ends[row] < MOST);
+            }
+        }
+        let mut end = 0;
+        for row in &mut ends {
+            end += *row;
+            *row = end;
+        }
+        let mut members = Self {
+            patches: vec![0; end],
+            ends,
+        };
+        let begin = |row| members.of(row).start;
+        let mut next: Vec<usize> = (0..rows).map(begin).collect();
+        for (index, patch) in patches.iter().enumerate() {
+            for row in touched(patch, rows) {
+                if next[row] < members.ends[row] {
+                    members.patches[next[row]] = index as u32;
+                    next[row] += 1;
+                }
+            }
+        }
+        members
+    }
+
+    /// The place of a row's patches.
+    fn of(&self, row: usize) -> Range<usize> {
+        row.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[row]
+    }
+}
+
 /// The run of each row, and the records of all runs.
-fn runs(patches: &[QuadricPatch], members: &[Vec<u32>]) -> (Vec<u32>, Vec<GpuPatch>) {
-    let mut starts: Vec<u32> = Vec::with_capacity(members.len());
-    let mut records: Vec<GpuPatch> = Vec::new();
-    for (i, list) in members.iter().enumerate() {
-        if i > 0 && *list == members[i - 1] {
+fn runs(patches: &[QuadricPatch], members: &Members) -> (Vec<u32>, Vec<GpuPatch>) {
+    let rows = members.ends.len();
+    let list = |row| &members.patches[members.of(row)];
+    let mut starts: Vec<u32> = Vec::with_capacity(rows);
+    let mut records: Vec<GpuPatch> = Vec::with_capacity(2 * patches.len());
+    for i in 0..rows {
+        let (list, before) = (list(i), list(i.saturating_sub(1)));
+        if i > 0 && list == before {
             starts.push(starts[i - 1]);
             continue;
         }

@@ -19,7 +19,8 @@
 
 // Other macros are defined or not:
 // - STORED_TABLES: tables are read from the storage buffer even if there is one object;
-// - SINGLE: neither replicas nor shadows, in entries that do not draw them;
+// - SINGLE: no replicas, in entries that do not draw them;
+// - UNSHADOWED: no shadows, in entries that do not draw them;
 // - HOST_SHADING: a function of the host shades; lights and shadows of the library are left out.
 #ifndef SEARCH
 #define SEARCH SEARCH_NONE
@@ -37,9 +38,12 @@
 // All else is specialisation constants. src/shader/frozen.rs makes them plain before a driver reads a module.
 #ifdef SINGLE
 const uint REPLICAS = 0u;
-const uint SHADOW = 0u;
 #else
 layout(constant_id = 0) const uint REPLICAS = 0u; // 1: the box holds several replicas
+#endif
+#ifdef UNSHADOWED
+const uint SHADOW = 0u;
+#else
 layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #endif
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map

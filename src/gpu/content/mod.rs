@@ -15,9 +15,9 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
-use crate::plan::{Conditions, View, plan};
+use crate::plan::{Conditions, FramePlan, View, plan};
 use crate::scene::{Lighting, Shadow};
-use crate::settings::{Planes, SearchSettings, Solver};
+use crate::settings::{Planes, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use entry::Stale;
@@ -161,6 +161,9 @@ impl Content {
         self.make_surfaces(&mut new);
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
         let frame = plan(view, &inputs, &with);
+        if !new.is_empty() {
+            make_vectors(&objects, &frame);
+        }
         let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
         // Without shadows levels differ, and with them all objects have one level.
         let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
@@ -215,19 +218,11 @@ impl Content {
         }
     }
 
-    /// Makes all surfaces that are not made yet, on all cores, with the part that the solver reads.
+    /// Makes all surfaces that are not made yet, on all cores; the list keeps these.
     fn make_surfaces(&mut self, surfaces: &mut Vec<Arc<OffsetSurface>>) {
         surfaces.retain(|surface| !surface.is_made());
-        let part = match (self.settings.solver, self.is_compute()) {
-            (Solver::Exact, false) => Part::Frusta,
-            (Solver::Exact, true) => Part::Patches,
-            _ => Part::Tables,
-        };
         let new = distinct(surfaces);
-        new.par_iter().for_each(|surface| {
-            surface.make();
-            surface.vectors(part);
-        });
+        new.par_iter().for_each(|surface| surface.make());
         self.rebuilds += new.len() as u64;
     }
 
@@ -235,6 +230,19 @@ impl Content {
     pub fn is_parallel(&self) -> bool {
         self.output.planes() == Planes::Depth { parallel: true }
     }
+}
+
+/// Makes the vectors that a frame reads, on all cores.
+fn make_vectors(objects: &[PlannedObject], frame: &FramePlan) {
+    let objects = objects.par_iter().zip(&frame.parts);
+    objects.for_each(|(object, parts)| {
+        let read = Part::ALL.into_iter().zip(parts).filter(|(_, read)| **read);
+        for (part, _) in read {
+            for surface in &object.surfaces {
+                surface.vectors(part);
+            }
+        }
+    });
 }
 
 /// Upper limit on instances: their records are in one storage buffer, with those of the last frame

@@ -196,9 +196,9 @@ impl<'a> Visible<'a> {
     }
 
     /// Distributes the visible copies to tiles, of work groups (`compute`) or fragments.
-    /// `layer_of`: the layer of each batch. `queues`: for each layer, true if fragments may search
-    /// queues.
-    pub fn write(&self, compute: bool, layer_of: &[u32], queues: &[bool]) -> LayeredTiles {
+    /// `layer_of`: the layer of each batch. `queues`: for each layer, the least copies of a tile
+    /// whose queue fragments search.
+    pub fn write(&self, compute: bool, layer_of: &[u32], queues: &[usize]) -> LayeredTiles {
         let lists = |b| compute && self.lists_patches(b);
         let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
         let single = |batch: &Batch| batch.object.placements().len() == 1;

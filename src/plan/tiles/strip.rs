@@ -254,8 +254,8 @@ mod tests {
                         low: 0.0,
                         high: 1.0,
                     },
-                    inner: surface.inner(),
-                    outer: surface.outer().map(|outer| (outer, 0.0)),
+                    inner: surface.cylinders().map(|[inner, _]| inner),
+                    outer: surface.cylinders().map(|[_, outer]| (outer, 0.0)),
                     surface: Some(surface),
                     permits_lists: true,
                 };
@@ -279,7 +279,7 @@ mod tests {
             assert_eq!(found.copies(), plain.copies(), "{eye:?}");
             for compute in [false, true] {
                 let [found, plain] =
-                    [&found, &plain].map(|v| v.write(compute, &[0, 1, 0], &[true, false]));
+                    [&found, &plain].map(|v| v.write(compute, &[0, 1, 0], &[6, usize::MAX]));
                 assert!(!plain.words.is_empty());
                 assert!(found == plain, "{eye:?}");
             }
