@@ -15,9 +15,10 @@ use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
 
 /// Names of parts of the suite.
-const EXTENTS: [(&str, &Extent); 3] = [
+const EXTENTS: [(&str, &Extent); 4] = [
     ("one", &Extent::First(1)),
     ("three", &Extent::First(3)),
+    ("upright", &Extent::UPRIGHT),
     ("all", &Extent::ALL),
 ];
 
@@ -62,8 +63,8 @@ pub struct Lists {
     /// [default: whole]
     #[arg(long, value_name = "FRAMING,...", value_delimiter = ',', value_parser = named(&Framing::NAMES))]
     pub framing: Vec<Framing>,
-    /// How many of the solids that the program carries: one, three or all eight [default: three;
-    /// one with --quick, all with --full]
+    /// How many of the solids that the program carries: one, three, upright (the first eight) or all
+    /// [default: three; one with --quick, all with --full]
     #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
     pub suite: Option<&'static Extent>,
     /// Passes over all pictures, each with everything made anew: intervals are Student's over them

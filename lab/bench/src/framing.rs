@@ -199,7 +199,7 @@ mod tests {
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {
             let settings = MethodSettings::default().sized(width, height);
-            for view in views(&Extent::ALL, &[0.0, 25.0, 60.0]).unwrap() {
+            for view in views(&Extent::UPRIGHT, &[0.0, 25.0, 60.0]).unwrap() {
                 let [whole, close] = [Framing::Whole, Framing::Close].map(|framing| {
                     let scene = view.clone().in_framing(framing).scene;
                     let frame = reference::draw(&scene, &(&settings).into(), &|_, _| {});

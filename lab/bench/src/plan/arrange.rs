@@ -159,7 +159,7 @@ pub(super) fn distant() -> Result<View> {
 
 /// `count` copies of ten solids in turn, each turned; seen from within, over the first heads.
 pub fn army(count: u32) -> Result<View> {
-    let views = suite::views(&Extent::ALL, &[25.0])?;
+    let views = suite::views(&Extent::UPRIGHT, &[25.0])?;
     let mut scene = views[0].scene.clone();
     let mut kinds: Vec<Object> = Vec::new();
     kinds.extend(views.into_iter().flat_map(|view| view.scene.objects));

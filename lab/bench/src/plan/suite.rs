@@ -26,7 +26,7 @@ macro_rules! solid {
 /// The colour of chessmen.
 const WOOD: [f32; 3] = [0.72, 0.52, 0.3];
 
-const SOURCES: [Source; 8] = [
+const SOURCES: [Source; 11] = [
     solid!("vase", "scenes/vase.toml", [0.55, 0.16, 0.08]),
     solid!("pawn", "profiles/pawn.svg", WOOD),
     solid!("bottle", "profiles/bottle.png", [0.03, 0.3, 0.14]),
@@ -35,6 +35,9 @@ const SOURCES: [Source; 8] = [
     solid!("bishop", "profiles/bishop.svg", WOOD),
     solid!("king", "profiles/king.svg", WOOD),
     solid!("sphere", "scenes/sphere.toml", [0.2, 0.42, 0.75]),
+    solid!("table", "scenes/table.toml", WOOD),
+    solid!("plate", "scenes/plate.toml", [0.82, 0.84, 0.86]),
+    solid!("record", "scenes/record.toml", [0.08, 0.08, 0.09]),
 ];
 
 /// Which solids of the suite.
@@ -50,6 +53,8 @@ pub enum Extent {
 impl Extent {
     /// Every solid.
     pub const ALL: Self = Self::First(SOURCES.len());
+    /// The solids that are not flat.
+    pub const UPRIGHT: Self = Self::First(8);
 }
 
 /// The suite's solids in a plan: one word, or a list of names.
@@ -69,9 +74,10 @@ impl TryFrom<Names> for Extent {
             Names::Word(word) => match word.as_str() {
                 "one" => Ok(Self::First(1)),
                 "three" => Ok(Self::First(3)),
+                "upright" => Ok(Self::UPRIGHT),
                 "all" => Ok(Self::ALL),
                 _ => Err(format!(
-                    "{word:?} is not known; give one, three, all or a list of names"
+                    "{word:?} is not known; give one, three, upright, all or a list of names"
                 )),
             },
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
