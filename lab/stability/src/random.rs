@@ -223,7 +223,10 @@ impl Random {
     ) {
         let polygon = &mut object.polygon;
         let mut corner = polygon[0];
-        for _ in 0..3 {
+        // Cuts of a section without thickness give one of rounding errors, of which no search knows.
+        let is_twice = |k: usize| polygon[..k].contains(&polygon[k]);
+        let cuts = if (0..polygon.len()).any(is_twice) { 0 } else { 3 };
+        for _ in 0..cuts {
             let count = polygon.len();
             let n = (self.next() * count as f64) as usize;
             let [before, here, after] = [n + count - 1, n, n + 1].map(|k| polygon[k % count]);
@@ -445,8 +448,8 @@ impl Draft {
     }
 }
 
-/// Draws the scenes of `count` seeds from `seed` on. Each that fails is reduced and written into
-/// `folder` as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
+/// Draws the scenes of `count` seeds from `seed` on. Each that fails is written into `folder` as
+/// `random-SEED-whole.toml`, and reduced as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
 pub fn run(
     device: &Device,
     (seed, count): (u64, u64),
@@ -459,14 +462,20 @@ pub fn run(
             break;
         }
         let draft = Draft::new(seed.wrapping_add(done));
-        if draft.fails(device, folder)?.is_none() {
+        let Some(whole) = draft.fails(device, folder)? else {
             for file in draft.instance_files() {
                 let _ = std::fs::remove_file(folder.join(file.0));
             }
             continue;
-        }
+        };
+        // The smallest scene may fail by another cause, such as corners that touch an edge.
+        write_text(
+            &folder.join(format!("random-{}-whole.toml", draft.seed)),
+            &draft.text(),
+        )?;
         let least = draft.reduced(device, folder)?;
-        let what = least.fails(device, folder)?.unwrap_or_default();
+        let smallest = least.fails(device, folder)?.unwrap_or_default();
+        let what = format!("{whole}; as the smallest scene, {smallest}");
         let file = format!("random-{}.toml", draft.seed);
         write_text(&folder.join(&file), &least.text())?;
         failures.push(Failure {
