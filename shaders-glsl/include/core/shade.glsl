@@ -58,18 +58,18 @@ vec3 shadowed(Look look, Light light, vec3 n, vec3 outward, vec3 view, vec3 albe
     Disc disc = disc_of(light.towards, light.cap, pixel);
     uint open = 0u;
     vec2 angle = disc.first;
-    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+    for (uint k = SPIRAL_BEGIN; k < SPIRAL_END; ++k) {
         vec3 towards = towards_disc(disc, k, angle);
-        open |= min(dot(outward, towards), dot(n, towards)) > 0.0 ? 1u << k : 0u;
+        open |= min(dot(outward, towards), dot(n, towards)) > 0.0 ? 1u << k % LIGHT_RAYS : 0u;
         angle = next_angle(angle);
     }
     vec3 sum = vec3(0.0);
     if (open != 0u) {
         uint lit = reaching(look.position, point, disc, open);
         angle = disc.first;
-        for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+        for (uint k = SPIRAL_BEGIN; k < SPIRAL_END; ++k) {
             light.towards = towards_disc(disc, k, angle);
-            sum += (lit >> k & 1u) != 0u ? blinn_phong(look, light, n, view, albedo) : vec3(0.0);
+            sum += (lit >> k % LIGHT_RAYS & 1u) != 0u ? blinn_phong(look, light, n, view, albedo) : vec3(0.0);
             angle = next_angle(angle);
         }
     }

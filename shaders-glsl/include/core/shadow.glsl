@@ -9,11 +9,18 @@ layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
     CasterNode casters[];
 };
 
-// Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle.
+// Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle. Ray
+// `k` has the bit `k % LIGHT_RAYS`. The last ray leads to the middle, those before it to the rim.
 const uint LIGHT_RAYS = SHADOW == SHADOW_SOFT ? 16u : 1u;
-const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u; // one bit per ray
-const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfc09u : 1u; // rays to the disc's rim and middle
+const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u;
+const uint SPIRAL_BEGIN = 1u;
+const uint SPIRAL_END = SPIRAL_BEGIN + LIGHT_RAYS;
+// The rays of a pass. The first pass traces those from RIM_BEGIN on.
+const uint PASS_RAYS = SHADOW == SHADOW_SOFT ? 8u : 1u;
+const uint RIM_BEGIN = SPIRAL_END - PASS_RAYS;
+const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfe01u : 1u;
 const vec2 GOLDEN_ANGLE = vec2(-0.73736888, 0.67549029); // cosine and sine
+const vec2 RIM_ANGLE = vec2(0.93932130, 0.34303863); // PASS_RAYS golden angles
 
 // The disc of a light, world axes.
 struct Disc {
@@ -21,7 +28,7 @@ struct Disc {
     vec3 u;      // unit; u, v and middle are orthogonal
     vec3 v;
     float cap;   // 1 - cos of the angular radius
-    vec2 first;  // cosine and sine of the spiral's first angle
+    vec2 first;  // cosine and sine of the angle of ray SPIRAL_BEGIN
 };
 
 // Returns the disc of a light; Duff et al. 2017 derive the two vectors orthogonal to the direction.
@@ -47,14 +54,19 @@ Disc disc_of(vec3 towards, float cap, uvec2 pixel)
 // Returns the direction of ray `k` at this angle. All rays represent equal solid angles of the disc.
 vec3 towards_disc(Disc disc, uint k, vec2 angle)
 {
-    float height = disc.cap * (float(k) + 0.5) / float(LIGHT_RAYS);
+    float height = disc.cap * (float(k % LIGHT_RAYS) + 0.5) / float(LIGHT_RAYS);
     float aside = sqrt(height * (2.0 - height));
     return (1.0 - height) * disc.middle + aside * (angle.x * disc.u + angle.y * disc.v);
 }
 
+vec2 rotated(vec2 angle, vec2 by)
+{
+    return vec2(angle.x * by.x - angle.y * by.y, angle.x * by.y + angle.y * by.x);
+}
+
 vec2 next_angle(vec2 angle)
 {
-    return vec2(angle.x * GOLDEN_ANGLE.x - angle.y * GOLDEN_ANGLE.y, angle.x * GOLDEN_ANGLE.y + angle.y * GOLDEN_ANGLE.x);
+    return rotated(angle, GOLDEN_ANGLE);
 }
 
 // The cone of rays from a point to a disc.
@@ -88,16 +100,17 @@ bool may_meet(Cone cone, vec3 middle, vec3 half_size)
     return max(max(near.x, near.y), max(near.z, 0.0)) <= min(far.x, min(far.y, far.z));
 }
 
-// Returns the rays of `left` that the current object does not block.
-uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint left)
+// Returns the rays of `left` that the current object does not block, of the pass that begins with ray `begin`.
+uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 {
     vec3 eye = point_to_axis(i, origin, point);
-    vec2 angle = disc.first;
-    for (uint k = 0u; k < LIGHT_RAYS; ++k) {
+    vec2 angle = begin == SPIRAL_BEGIN ? disc.first : rotated(disc.first, RIM_ANGLE);
+    for (uint k = begin; k < begin + PASS_RAYS; ++k) {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
         Hit hit;
-        if ((left >> k & 1u) != 0u && trace(eye, v, 0.0, EVERYWHERE, hit)) {
-            left &= ~(1u << k);
+        uint ray = 1u << k % LIGHT_RAYS;
+        if ((left & ray) != 0u && trace(eye, v, 0.0, EVERYWHERE, hit)) {
+            left &= ~ray;
         }
         angle = next_angle(angle);
     }
@@ -122,8 +135,8 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, uint co
     return met;
 }
 
-// Returns the rays of `left`, one bit each, that no solid blocks.
-uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
+// Returns the rays of `left`, one bit each, that no solid blocks, of the pass that begins with ray `begin`.
+uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 {
     // The root is in the block of the frame, which software drivers read much faster than the nodes.
     CasterRoot all = frame_block.casters;
@@ -151,7 +164,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint left)
             // gives 0, and a loop's counter an index without a texture.
             shadow_map = int(objects[i.object].object.shape.shadow_map);
 #endif
-            left = unstopped_by(i, origin, point, disc, left);
+            left = unstopped_by(i, origin, point, disc, begin, left);
         }
     }
     return left;
@@ -166,7 +179,7 @@ uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
     uint asked = FIRST_RAYS;
     uint lit = 0u;
     for (uint pass = 0u; asked != 0u; ++pass) {
-        uint left = unstopped(origin, point, disc, open & asked);
+        uint left = unstopped(origin, point, disc, pass == 0u ? RIM_BEGIN : SPIRAL_BEGIN, open & asked);
         bool agree = pass == 0u && (left == asked || left == 0u);
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
