@@ -6,7 +6,7 @@ use crate::calls::{Layer, Mask};
 use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
 use crate::embedding::options;
 use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
-use crate::trouble::grant;
+use crate::least_device::grant;
 use ash::vk;
 use revmap::error::ErrorKind;
 use revmap::gpu::{Device, HostShading, Output, Renderer};

@@ -35,6 +35,7 @@ mod host_shading;
 #[cfg(feature = "shaderc")]
 mod host_shading_faults;
 mod hulls;
+mod least_device;
 mod limits;
 mod memory_types;
 mod offsets;

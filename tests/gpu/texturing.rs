@@ -110,7 +110,7 @@ fn coordinates_are_their_formulas() {
 }
 
 /// A map whose value is a wave around and a wave along, continuous where it repeats.
-fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
+pub fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
     let code = |x: f64| (255.0 * x).round() as u8;
     let texels = (0..width * height)
         .map(|k| {

@@ -16,7 +16,7 @@ use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
 use revmap_offscreen::Offscreen;
 
-fn settings(stage: DrawStage) -> Settings {
+pub fn settings(stage: DrawStage) -> Settings {
     Settings {
         width: 48,
         height: 32,
@@ -189,7 +189,7 @@ fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
     assert_eq!(layer.alive(), 0);
 }
 
-fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
+pub fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
     next_frame(&mut Offscreen::new(device, scene, settings).unwrap())
 }
 
@@ -226,106 +226,6 @@ fn a_device_without_what_is_needed_is_refused() {
         assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
         let named = error.to_string().contains(&format!("lacks {lack}"));
         assert!(named, "{error}");
-    }
-}
-
-/// Grants what renderers need beyond the guaranteed limits of Vulkan.
-pub fn grant(limits: &mut vk::PhysicalDeviceLimits) {
-    limits.max_per_stage_descriptor_storage_buffers = 9;
-    limits.max_fragment_combined_output_resources = 10;
-}
-
-/// A device of the least limits is refused, and the error names what it lacks and by how much.
-#[test]
-fn a_device_of_least_limits_is_refused_by_name() {
-    let (layer, host) = (Layer::take(), open());
-    type Change = fn(&mut vk::PhysicalDeviceLimits);
-    let lacks: [(Change, &str); 10] = [
-        (|_| (), "(it has 4), maxFragmentCombinedOutputResources of"),
-        (|_| (), "lacks maxPerStageDescriptorStorageBuffers of"),
-        (
-            |l| l.max_per_stage_descriptor_samplers = 15,
-            "maxPerStageDescriptorSamplers of 16 (it has 15)",
-        ),
-        (
-            |l| l.max_per_stage_descriptor_sampled_images = 15,
-            "maxPerStageDescriptorSampledImages of 16 (it has 15)",
-        ),
-        (
-            |l| l.max_bound_descriptor_sets = 2,
-            "maxBoundDescriptorSets of 3 (it has 2)",
-        ),
-        (
-            |l| l.max_push_constants_size = 16,
-            "maxPushConstantsSize of 32 (it has 16)",
-        ),
-        (
-            |l| l.max_compute_work_group_invocations = 32,
-            "maxComputeWorkGroupInvocations of 64 (it has 32)",
-        ),
-        (
-            |l| l.max_per_stage_descriptor_storage_images = 3,
-            "maxPerStageDescriptorStorageImages of 4 (it has 3)",
-        ),
-        (
-            |l| l.max_descriptor_set_uniform_buffers_dynamic = 1,
-            "maxDescriptorSetUniformBuffersDynamic of 2 (it has 1)",
-        ),
-        (
-            |l| l.max_uniform_buffer_range = 8192,
-            "maxUniformBufferRange of 16384 (it has 8192)",
-        ),
-    ];
-    for (change, lack) in lacks {
-        let mask = Mask {
-            limits: Some(change),
-            ..Mask::default()
-        };
-        let instance = layer.instance(&host.entry, &host.instance, mask);
-        let Err(error) = borrow_through(&host, &instance, &host.device) else {
-            panic!("taken without {lack}");
-        };
-        assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
-        assert!(error.to_string().contains(lack), "{error}");
-    }
-}
-
-/// With these limits raised, and no other, it draws what the whole device draws.
-#[test]
-fn a_device_of_nearly_least_limits_draws_the_same() {
-    let (layer, host) = (Layer::take(), open());
-    let mut shadows = three();
-    shadows.shadow = Shadow::Hard;
-    let map = Solver::Live;
-    for (stage, solver, scene) in [
-        (DrawStage::Fragment, Solver::Exact, three()),
-        (DrawStage::Compute, Solver::Exact, three()),
-        (DrawStage::Fragment, map, shadows.clone()),
-        (DrawStage::Compute, map, shadows),
-    ] {
-        let settings = Settings {
-            width: 160,
-            height: 120,
-            solver,
-            // Cells need more varyings than the least.
-            proxy_min_pixels: u32::MAX,
-            ..settings(stage)
-        };
-        let whole = borrow_through(&host, &host.instance, &host.device).unwrap();
-        let wanted = picture(&whole, &scene, &settings);
-        let mask = Mask {
-            limits: Some(grant),
-            ..Mask::default()
-        };
-        let instance = layer.instance(&host.entry, &host.instance, mask);
-        let least = borrow_through(&host, &instance, &host.device).unwrap();
-        let found = picture(&least, &scene, &settings);
-        let (hits, edges, far) = apart(&wanted, &found);
-        // Smaller uniform buffers and triangles in place of points change roundings.
-        assert!(
-            hits > 3000 && edges <= 4 && far == 0,
-            "{stage:?}: {hits} {edges} {far}"
-        );
     }
 }
 

@@ -38,7 +38,7 @@ use std::process::ExitCode;
 
 /// Revolution mapping: draws solids of revolution from flat outlines, without a stored mesh.
 #[derive(Parser)]
-#[command(name = "revmap", version = output::VERSION, max_term_width = 110, after_help = AFTER_HELP)]
+#[command(name = "revmap", bin_name = "revmap", version = output::VERSION, max_term_width = 110, after_help = AFTER_HELP)]
 struct Program {
     #[command(subcommand)]
     command: Command,

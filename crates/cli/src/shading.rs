@@ -1,6 +1,7 @@
 //! `revmap shading`: a host's function of shading, checked and written as bytes.
 
 use super::options::named;
+#[cfg(feature = "shaderc")]
 use super::output;
 use clap::Args;
 use revmap::error::Result;

@@ -94,6 +94,11 @@ enum Place {
 
 fn place(target: &Path) -> Result<Place> {
     let failed = |e| file_fault(reason("cannot be written", &e));
+    if cfg!(windows) && is_of_device(target) {
+        return Err(file_fault(
+            "is the name of a device on Windows; name another file",
+        ));
+    }
     let real = destination(target);
     let old = match fs::metadata(target) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => None,
@@ -121,6 +126,18 @@ fn place(target: &Path) -> Result<Place> {
         (Err(e), Some(_)) if e.kind() == io::ErrorKind::PermissionDenied => Ok(Place::Kept(real)),
         (Err(e), _) => Err(file_fault(reason("cannot be created", &e))),
     }
+}
+
+/// Returns true if Windows takes a file's name for a device, whatever its ending and folder.
+fn is_of_device(target: &Path) -> bool {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.split('.').next().unwrap_or_default().trim_end();
+    let name = name.to_ascii_lowercase();
+    let numbered = |port: &str| {
+        let number = name.strip_prefix(port).unwrap_or_default();
+        matches!(number.as_bytes(), [b'1'..=b'9'])
+    };
+    ["con", "prn", "aux", "nul"].contains(&&*name) || numbered("com") || numbered("lpt")
 }
 
 /// Returns true if `new` in place of `old` would have another owner, or leave other names behind.
@@ -254,6 +271,11 @@ impl Drop for Part {
 fn reason(what: &str, error: &io::Error) -> String {
     let why = match error.kind() {
         io::ErrorKind::NotFound => "its folder does not exist; make it first".into(),
+        // Windows says so, too, of a file that another program has open.
+        io::ErrorKind::PermissionDenied if cfg!(windows) => {
+            "no permission, or another program has it open; choose another folder or close it there"
+                .into()
+        }
         io::ErrorKind::PermissionDenied => "no permission; choose another folder".into(),
         io::ErrorKind::StorageFull => {
             "the disk is full; free some space or choose another folder".into()

@@ -172,12 +172,21 @@ impl Modules<'_> {
 pub fn texts(root: &str, sources: &[PathBuf]) -> Fallible<String> {
     let mut files = String::new();
     for path in sources.iter().filter(|_| cfg!(feature = "shaderc")) {
-        let name = path.strip_prefix(root)?;
-        let name = name.strip_prefix("include").unwrap_or(name);
-        let (name, full) = (name.to_string_lossy(), path.canonicalize()?);
+        let (name, full) = (name_in_include(root, path)?, path.canonicalize()?);
         writeln!(files, "({name:?}, include_str!({full:?})),")?;
     }
     Ok(format!("&[{files}]"))
+}
+
+/// The name by which GLSL includes a file of the folder `root`: with `/` also on systems that write
+/// another sign between folders.
+fn name_in_include(root: &str, path: &Path) -> Fallible<String> {
+    let name = path.strip_prefix(root)?;
+    let name = name.strip_prefix("include").unwrap_or(name);
+    let parts = name
+        .components()
+        .map(|part| part.as_os_str().to_string_lossy());
+    Ok(parts.collect::<Vec<_>>().join("/"))
 }
 
 /// The files of a folder with one of these endings, in order.
@@ -284,5 +293,26 @@ impl Fnv {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_includes_have_slashes_on_every_system() {
+        const ROOT: &str = "../shaders";
+        for (parts, wanted) in [
+            (["include/core", "hit.glsl"], "core/hit.glsl"),
+            (["include//stage", "tile.glsl"], "stage/tile.glsl"),
+            ([".", "tree.frag"], "tree.frag"),
+        ] {
+            let mut path = PathBuf::from(ROOT);
+            path.extend(parts);
+            assert_eq!(name_in_include(ROOT, &path).unwrap(), wanted);
+        }
+        assert!(name_in_include(ROOT, Path::new("elsewhere/hit.glsl")).is_err());
     }
 }

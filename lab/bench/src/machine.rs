@@ -1,6 +1,7 @@
 //! The note on the machine that stands beside every result.
 
-use super::surroundings::{self, field};
+use super::surroundings;
+use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Place and time of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,14 +20,9 @@ impl Machine {
     /// This machine, now. `kind` is the device's: discrete, integrated, virtual, cpu. `version` is
     /// that of the program which measures, `command` the one that makes the results again.
     pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
-        let read = |file: &str| std::fs::read_to_string(file).unwrap_or_default();
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let kilobytes = field(&read("/proc/meminfo"), "MemTotal", ':');
-        let kilobytes = kilobytes.and_then(|v| v.trim_end_matches(" kB").parse::<f64>().ok());
-        let memory = kilobytes.map(|kb| format!("{:.0} GB", kb / 1_048_576.0));
-        let system = field(&read("/etc/os-release"), "PRETTY_NAME", '=');
-        let processor = field(&read("/proc/cpuinfo"), "model name", ':');
-        let processor = processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+        let (processor, memory) = hardware();
+        let system = System::long_os_version();
         let date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC");
         let date = date.to_string();
         let mut lines = vec![
@@ -36,7 +32,7 @@ impl Machine {
             ("memory", memory.unwrap_or_default()),
             (
                 "system",
-                system.unwrap_or_else(|| std::env::consts::OS.to_owned()),
+                system.unwrap_or_else(|_| std::env::consts::OS.to_owned()),
             ),
             ("date", date.clone()),
             ("program", format!("revmap {version}")),
@@ -60,6 +56,26 @@ impl Machine {
         let name = label(&self.device, &self.driver).replace(' ', "-");
         format!("{day}-{name}")
     }
+}
+
+/// The processor's name, or its architecture where the system does not tell; and the memory's size.
+fn hardware() -> (String, Option<String>) {
+    let wanted = RefreshKind::nothing()
+        .with_cpu(CpuRefreshKind::nothing())
+        .with_memory(MemoryRefreshKind::nothing().with_ram());
+    let system = System::new_with_specifics(wanted).ok();
+    let brand = system.as_ref().and_then(|s| s.cpus().first());
+    let brand = brand.map_or("", |cpu| cpu.brand().trim());
+    let processor = match brand {
+        "" => std::env::consts::ARCH,
+        brand => brand,
+    };
+    let bytes = system
+        .as_ref()
+        .map(|s| s.total_memory())
+        .filter(|bytes| *bytes > 0);
+    let memory = bytes.map(|bytes| format!("{:.0} GB", bytes as f64 / f64::from(1 << 30)));
+    (processor.to_owned(), memory)
 }
 
 /// A short name of a device and its driver's version: `lavapipe 22.3.6`.

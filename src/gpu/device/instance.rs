@@ -5,6 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::call::{Call, kind_of};
 use ash::ext::debug_utils;
 use ash::{ext, khr, vk};
+use std::env::consts::OS;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
@@ -26,6 +27,33 @@ pub(crate) struct Instance {
     entry: ash::Entry,
 }
 
+/// What to install where Vulkan is missing, as the end of a message.
+pub(crate) struct Packages {
+    /// The loader and a driver.
+    pub driver: &'static str,
+    /// The validation layers.
+    pub layers: &'static str,
+}
+
+/// The packages of a system, by its name in [`OS`].
+pub(crate) fn packages(system: &str) -> Packages {
+    let (driver, layers) = match system {
+        "windows" => (
+            "install the graphics card's driver, which brings Vulkan's loader",
+            "install the Vulkan SDK",
+        ),
+        "macos" => (
+            "install MoltenVK and Vulkan's loader; the Vulkan SDK has both",
+            "install the Vulkan SDK",
+        ),
+        _ => (
+            "install libvulkan1 and a driver such as mesa-vulkan-drivers",
+            "install vulkan-validationlayers",
+        ),
+    };
+    Packages { driver, layers }
+}
+
 type Messages = Mutex<Vec<String>>;
 
 impl Instance {
@@ -34,9 +62,7 @@ impl Instance {
     pub fn new(validate: bool) -> Result<Self> {
         // SAFETY: the loader is the system's; nothing else in this process replaces it meanwhile.
         let entry = unsafe { ash::Entry::load() }.map_err(|e| {
-            let message = format!(
-                "no Vulkan loader ({e}); install libvulkan1 and a driver such as mesa-vulkan-drivers"
-            );
+            let message = format!("no Vulkan loader ({e}); {}", packages(OS).driver);
             Error::new(ErrorKind::Unsupported, message)
         })?;
         // SAFETY: plain query.
@@ -72,7 +98,8 @@ impl Instance {
         // SAFETY: `info` and all it points to live until the call returns.
         let raw = unsafe { entry.create_instance(&info, None) }.map_err(|code| {
             let message = format!(
-                "no Vulkan driver answered (vkCreateInstance: {code:?}); install one, e.g. mesa-vulkan-drivers"
+                "no Vulkan driver answered (vkCreateInstance: {code:?}); {}",
+                packages(OS).driver
             );
             Error::new(kind_of(code), message)
         })?;
@@ -151,7 +178,8 @@ fn require_layer(entry: &ash::Entry) -> Result<()> {
         return Ok(());
     }
     let message = format!(
-        "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; install vulkan-validationlayers"
+        "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; {}",
+        packages(OS).layers
     );
     Err(Error::new(ErrorKind::Unsupported, message))
 }
@@ -176,4 +204,23 @@ unsafe extern "system" fn keep(
         }
     }
     vk::FALSE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Debian's packages help on Linux alone.
+    #[test]
+    fn each_system_is_told_its_own_packages() {
+        for (system, driver, layers) in [
+            ("linux", "mesa-vulkan-drivers", "vulkan-validationlayers"),
+            ("windows", "graphics card", "Vulkan SDK"),
+            ("macos", "MoltenVK", "Vulkan SDK"),
+        ] {
+            let told = packages(system);
+            assert!(told.driver.contains(driver), "{}", told.driver);
+            assert!(told.layers.contains(layers), "{}", told.layers);
+        }
+    }
 }

@@ -2,12 +2,13 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::MAX_PIXELS;
-use crate::gpu::device::instance::{API_VERSION, Instance, is_among};
+use crate::gpu::device::instance::{API_VERSION, Instance, is_among, packages};
 use crate::gpu::device::limits::lacking;
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::pipelines::DeviceConstants;
 use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
 use ash::vk;
+use std::env::consts::OS;
 use std::ffi::{CStr, FromBytesUntilNulError};
 
 /// The environment variable that names the device to open.
@@ -164,7 +165,7 @@ fn variable() -> Option<String> {
 }
 
 fn none() -> Error {
-    let message = "the Vulkan loader found no device; install a driver, e.g. mesa-vulkan-drivers";
+    let message = format!("the Vulkan loader found no device; {}", packages(OS).driver);
     Error::new(ErrorKind::Unsupported, message)
 }
 

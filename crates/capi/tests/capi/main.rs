@@ -73,9 +73,13 @@ macro_rules! defaults {
 
 mod arguments;
 mod header;
+#[cfg(unix)]
 mod layout;
 mod lists;
+#[cfg(unix)]
 mod pictures;
+// Compiles with cc what a script for sh installs and pkg-config finds.
+#[cfg(unix)]
 mod programs;
 mod random;
 mod rays;

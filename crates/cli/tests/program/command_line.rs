@@ -180,3 +180,20 @@ fn the_version_names_the_commit() {
     let wanted = format!("revmap {}{commit}\n", env!("CARGO_PKG_VERSION"));
     assert_eq!(version, wanted);
 }
+
+/// Messages name the program as the documents do, whatever its file is called: on Windows `revmap.exe`.
+#[test]
+fn messages_name_the_program_alike() {
+    let bench = Bench::new();
+    let renamed = bench.path("renamed.exe");
+    std::fs::copy(env!("CARGO_BIN_EXE_revmap"), &renamed).unwrap();
+    for (arguments, wanted) in [
+        ("rendr", "see `revmap --help`"),
+        ("render", "see `revmap render --help`"),
+        ("", "`revmap --help`"),
+    ] {
+        let mut command = std::process::Command::new(&renamed);
+        command.args(arguments.split_whitespace());
+        bench.refused_by(command.current_dir(bench.path("")), 2, &[wanted]);
+    }
+}

@@ -13,6 +13,7 @@ mod memory;
 mod own_search;
 mod pictures;
 mod run;
+#[cfg(target_os = "linux")] // Mesa has the compiler for AMD's GPUs only there
 mod shaders_command;
 #[cfg(feature = "shaderc")]
 mod shading_command;

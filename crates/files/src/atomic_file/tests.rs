@@ -122,3 +122,52 @@ fn what_a_new_file_would_lose_is_kept() {
     }
     assert_eq!(names(&folder), ["a"]);
 }
+
+#[test]
+fn names_that_windows_takes_for_devices() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, device) in [
+        ("nul.png", true),
+        ("NUL", true),
+        ("a/Com1.tar.exr", true),
+        ("lpt9 .png", true),
+        ("null.png", false),
+        ("com.png", false),
+        ("com10.png", false),
+        ("nul/a.png", false),
+    ] {
+        assert_eq!(is_of_device(Path::new(name)), device, "{name}");
+    }
+    // Other systems have no such names.
+    let written = write_bytes(&folder.path().join("nul.png"), b"x");
+    match cfg!(windows) {
+        true => assert!(
+            written
+                .unwrap_err()
+                .to_string()
+                .contains("is the name of a device")
+        ),
+        false => written.unwrap(),
+    }
+}
+
+/// Windows refuses to replace a file that a program has open without sharing it.
+#[cfg(windows)]
+#[test]
+fn a_file_that_is_open_elsewhere_is_named() {
+    use std::os::windows::fs::OpenOptionsExt;
+    let (folder, target) = folder(b"old");
+    let open = OpenOptions::new()
+        .read(true)
+        .share_mode(1)
+        .open(&target)
+        .unwrap();
+    let error = write_bytes(&target, b"new").unwrap_err().to_string();
+    assert!(
+        error.contains("a: ") && (error.contains("open") || error.contains("used by")),
+        "{error}"
+    );
+    drop(open);
+    assert_eq!(fs::read(&target).unwrap(), b"old");
+    assert_eq!(names(&folder), ["a"]);
+}

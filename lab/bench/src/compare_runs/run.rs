@@ -75,7 +75,7 @@ impl Run {
         Ok(Self {
             results,
             samples,
-            processor: surroundings::field(&note, "processor", ':').unwrap_or_default(),
+            processor: surroundings::field(&note, "processor").unwrap_or_default(),
             surroundings: surroundings::of_note(&note),
         })
     }
