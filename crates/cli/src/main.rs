@@ -12,6 +12,7 @@ mod failure;
 mod last_resort;
 mod levels;
 mod lists;
+mod mesh;
 mod options;
 mod output;
 mod overrun;
@@ -75,6 +76,7 @@ commands! {
     Render: render::Render,
     Animate: animate::Animate,
     Bake: bake::Bake,
+    Mesh: mesh::Mesh,
     Bench: bench::Bench,
     Chart: bench::Chart,
     Stability: stability::Stability,

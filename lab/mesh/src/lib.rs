@@ -10,7 +10,6 @@
 
 mod blocks;
 mod layer;
-mod meridian;
 mod placed;
 mod tessellation;
 #[cfg(test)]
