@@ -6,6 +6,7 @@ use glam::Vec3;
 use revmap::error::Result;
 use revmap::scene::Placement;
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Numbers of the format.
@@ -37,6 +38,8 @@ struct File {
     materials: Vec<Value>,
     textures: Vec<Value>,
     images: Vec<Value>,
+    /// The image of the colour map that an object is the first to have.
+    image_of: HashMap<usize, usize>,
     nodes: Vec<Value>,
 }
 
@@ -88,15 +91,19 @@ impl File {
         let own = solid.object.material();
         let [red, green, blue] = solid.object.color.map(|v| v.clamp(0.0, 1.0));
         let mut look = json!({"metallicFactor": own.metalness, "roughnessFactor": own.roughness});
-        if let Some(map) = solid.color_map() {
-            let start = self.buffer.len();
-            self.buffer.extend(png_of(map)?);
-            let view = self.view(start, json!({}));
-            let number = self.images.len();
-            self.images
-                .push(json!({"bufferView": view, "mimeType": "image/png"}));
+        if let Some(owner) = solid.map_owner {
+            if let Some(map) = solid.new_map() {
+                let start = self.buffer.len();
+                self.buffer.extend(png_of(map)?);
+                let view = self.view(start, json!({}));
+                self.image_of.insert(owner, self.images.len());
+                self.images
+                    .push(json!({"bufferView": view, "mimeType": "image/png"}));
+            }
+            let number = self.textures.len();
+            let image = self.image_of.get(&owner);
             self.textures
-                .push(json!({"source": number, "sampler": usize::from(solid.clamps())}));
+                .push(json!({"source": image, "sampler": usize::from(solid.clamps())}));
             look["baseColorTexture"] = json!({"index": number});
         } else {
             look["baseColorFactor"] = json!([red, green, blue, 1.0]);

@@ -17,6 +17,7 @@ use revmap::maps::{ColorMap, Projection};
 use revmap::scene::{Object, Placement, Scene};
 use revmap_tessellation::{Triangles, Vertex};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Endings of the formats.
 pub const MESH_ENDINGS: [&str; 3] = ["glb", "obj", "stl"];
@@ -31,6 +32,8 @@ struct Solid<'a> {
     number: usize,
     object: &'a Object,
     triangles: &'a Triangles,
+    /// The first object with the same colour map.
+    map_owner: Option<usize>,
 }
 
 /// Every file that [`write_meshes`] writes for a scene and a name: the named one first.
@@ -39,9 +42,9 @@ pub fn mesh_files(scene: &Scene, path: &Path) -> Vec<PathBuf> {
     let mut files = vec![path.to_owned()];
     if ending(path) == "obj" {
         files.push(path.with_extension("mtl"));
-        let maps = scene.objects.iter().enumerate();
-        let maps = maps.filter(|(_, object)| object.texturing.color_map.is_some());
-        files.extend(maps.map(|(number, _)| obj::map_file(path, number)));
+        let first = |number: &usize| map_owner(scene, *number) == Some(*number);
+        let owners = (0..scene.objects.len()).filter(first);
+        files.extend(owners.map(|number| obj::map_file(path, number)));
     }
     files
 }
@@ -71,6 +74,7 @@ fn written(scene: &Scene, meshes: &[Triangles], path: &Path) -> Result<()> {
             number,
             object,
             triangles,
+            map_owner: map_owner(scene, number),
         })
         .collect();
     let copies = |s: &Solid| s.object.placements().len();
@@ -99,6 +103,13 @@ fn written(scene: &Scene, meshes: &[Triangles], path: &Path) -> Result<()> {
     }
 }
 
+/// The first object that has the colour map of object `number`.
+fn map_owner(scene: &Scene, number: usize) -> Option<usize> {
+    let map = |object: &Object| object.texturing.color_map.as_ref().map(Arc::as_ptr);
+    let wanted = map(&scene.objects[number])?;
+    scene.objects.iter().position(|o| map(o) == Some(wanted))
+}
+
 fn ending(path: &Path) -> String {
     let ending = path.extension().unwrap_or_default();
     ending.to_string_lossy().to_lowercase()
@@ -123,8 +134,10 @@ impl Solid<'_> {
         look.repeat[1] == 1.0 && look.projection != Projection::Planar
     }
 
-    fn color_map(&self) -> Option<&ColorMap> {
-        self.object.texturing.color_map.as_deref()
+    /// Its colour map, unless an object before it has the same.
+    fn new_map(&self) -> Option<&ColorMap> {
+        let map = self.object.texturing.color_map.as_deref();
+        map.filter(|_| self.map_owner == Some(self.number))
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) fn map_file(path: &Path, number: usize) -> PathBuf {
 /// Writes the file `path` and all beside it.
 pub(super) fn write(solids: &[Solid], path: &Path) -> Result<()> {
     for solid in solids {
-        if let Some(map) = solid.color_map() {
+        if let Some(map) = solid.new_map() {
             write_bytes(&map_file(path, solid.number), &png_of(map)?)?;
         }
     }
@@ -41,7 +41,7 @@ fn materials(solids: &[Solid], path: &Path) -> String {
     let mut text = String::new();
     for solid in solids {
         let object = solid.object;
-        let [red, green, blue] = match solid.color_map() {
+        let [red, green, blue] = match solid.map_owner {
             Some(_) => [1.0; 3],
             None => object.color,
         };
@@ -51,8 +51,8 @@ fn materials(solids: &[Solid], path: &Path) -> String {
             text,
             "newmtl object-{number}\nKd {red} {green} {blue}\nKs {strength} {strength} {strength}\nNs {exponent}"
         );
-        if solid.color_map().is_some() {
-            let file = map_file(path, number);
+        if let Some(owner) = solid.map_owner {
+            let file = map_file(path, owner);
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             let _ = writeln!(text, "map_Kd {name}");
         }

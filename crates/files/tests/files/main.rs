@@ -6,6 +6,7 @@ mod browser_rules;
 mod damaged_files;
 mod drawings;
 mod map_accuracy;
+mod meshes;
 mod profiles;
 mod scenes;
 mod seeming;
