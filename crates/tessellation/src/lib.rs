@@ -17,7 +17,9 @@
 //! axis. `revmap-files` writes [`Triangles`] as files.
 
 mod meridian;
+mod pixels;
 mod triangles;
 
 pub use meridian::{Ring, Strand, strands_of, strands_within};
+pub use pixels::pixel_tolerance;
 pub use triangles::{Triangles, Vertex};

@@ -5,9 +5,9 @@ use glam::{DVec2, DVec3};
 use revmap::error::ErrorKind;
 use revmap::maps::Projection;
 use revmap::profile::Profile;
-use revmap::scene::{Clip, Object, Offset, Placement, Scene};
+use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
 use revmap_reference::{Ray, Reference};
-use revmap_tessellation::{Triangles, strands_within};
+use revmap_tessellation::{Triangles, pixel_tolerance, strands_within};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -324,4 +324,21 @@ fn what_a_mesh_has_not_is_refused() {
     for tolerance in [0.0, -1.0, f64::NAN, 1e-9] {
         assert_eq!(refused(&|_| (), tolerance).0, ErrorKind::Usage);
     }
+}
+
+#[test]
+fn pixels_are_those_on_the_nearest_point_of_a_box() {
+    let mut object = object(&[[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]]);
+    let mut camera = Camera::new(DVec3::new(2.5, 0.0, 0.5), DVec3::ZERO);
+    camera.fov_y = 90.0;
+    let tolerance =
+        |object: &Object, distance| pixel_tolerance(object, &camera, 100, 0.5, distance);
+    // A picture at distance 2 is 4 wide.
+    assert!((tolerance(&object, None).unwrap() - 0.02).abs() < 1e-12);
+    assert!((tolerance(&object, Some(20.0)).unwrap() - 0.2).abs() < 1e-12);
+    object.placement.scale = DVec3::new(2.0, 1.0, -4.0);
+    // The box's face is at 1.5, and its tallest side is 4 times as long.
+    assert!((tolerance(&object, None).unwrap() - 0.01 * (1.5f64.hypot(0.5)) / 4.0).abs() < 1e-12);
+    object.placement.scale = DVec3::splat(6.0);
+    assert_eq!(tolerance(&object, None), None);
 }

@@ -9,6 +9,7 @@ mod command_line;
 mod inputs;
 #[cfg(target_os = "linux")]
 mod memory;
+mod mesh_command;
 #[cfg(feature = "shaderc")]
 mod own_search;
 mod pictures;
