@@ -13,6 +13,7 @@ mod last_resort;
 mod levels;
 mod lists;
 mod mesh;
+mod moving;
 mod options;
 mod output;
 mod overrun;
@@ -25,6 +26,7 @@ mod shading;
 mod shell;
 mod stability;
 mod submit;
+mod vary;
 #[cfg(feature = "viewer")]
 mod view;
 #[cfg(not(feature = "viewer"))]

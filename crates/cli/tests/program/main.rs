@@ -10,6 +10,7 @@ mod inputs;
 #[cfg(target_os = "linux")]
 mod memory;
 mod mesh_command;
+mod moving_pictures;
 #[cfg(feature = "shaderc")]
 mod own_search;
 mod pictures;
