@@ -17,6 +17,7 @@ mod moving;
 mod options;
 mod output;
 mod overrun;
+mod profile;
 mod progress;
 mod render;
 mod run;
@@ -79,6 +80,7 @@ commands! {
     Animate: animate::Animate,
     Bake: bake::Bake,
     Mesh: mesh::Mesh,
+    Profile: profile::Profile,
     Bench: bench::Bench,
     Chart: bench::Chart,
     Stability: stability::Stability,

@@ -11,13 +11,15 @@ use std::path::PathBuf;
 
 /// Writes the solids of a scene as triangles, for modelling, printing and physics
 #[derive(Args)]
-#[command(after_help = "A .glb holds colours, colour maps and a node for each copy, with y up. An .obj holds the \
+#[command(
+    after_help = "A .glb holds colours, colour maps and a node for each copy, with y up. An .obj holds the \
 same, with copies written out, and a .mtl and pictures beside it. An .stl holds the triangles alone, with z up.\n\n\
     Examples:\n  \
     revmap mesh assets/profiles/pawn.svg -o pawn.glb\n  \
     revmap mesh assets/scenes/chess.toml -o chess.glb --tolerance 0.002\n  \
     revmap mesh assets/scenes/pawn.toml -o far.glb --pixels 0.5 --distance 20\n  \
-    revmap mesh pawn.svg -o pawn.stl --set object.0.scale=[40,40,40]")]
+    revmap mesh pawn.svg -o pawn.stl --set object.0.scale=[40,40,40]"
+)]
 pub struct Mesh {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
     /// profile_smooth = "auto"

@@ -22,7 +22,7 @@
 //!
 //! | file | read | written |
 //! |---|---|---|
-//! | profile: SVG, svgz, PNG, JPEG | [`profile`](profile()), [`profile_from_bytes`] | |
+//! | profile: SVG, svgz, PNG, JPEG | [`profile`](profile()), [`profile_from_bytes`] | [`write_outline`] (SVG) |
 //! | scene: TOML, with CSV for copies | [`scene`](scene()), [`SceneFile`] for scenes that differ in some keys | [`SceneFile::text`] |
 //! | textures: PNG, JPEG | [`color_map`], [`displacement_map`] | [`write_displacement_map`] |
 //! | shape map: PNG, EXR | [`shape_map`] | [`write_shape_map`] |
@@ -43,6 +43,7 @@ mod jpeg_end;
 mod maps;
 mod mesh;
 mod openexr;
+mod outline;
 mod picture;
 mod pixels;
 mod profile;
@@ -60,6 +61,7 @@ pub use maps::{
 };
 pub use mesh::{MESH_ENDINGS, mesh_files, write_meshes};
 pub use openexr::{read_exr, write_exr};
+pub use outline::write_outline;
 pub use picture::{Picture, write_png};
 pub use profile::{ProfileAxis, ProfileOptions, Smooth, profile, profile_from_bytes};
 pub use scene::{SceneFile, scene, warnings};

@@ -7,6 +7,7 @@ mod damaged_files;
 mod drawings;
 mod map_accuracy;
 mod meshes;
+mod outlines;
 mod profiles;
 mod scenes;
 mod seeming;
