@@ -16,4 +16,5 @@ mod tessellation;
 mod tests;
 
 pub use layer::{MeshLayer, MeshPipelines};
+pub use placed::check_scene;
 pub use tessellation::{BAND, Mesh, Vertex};
