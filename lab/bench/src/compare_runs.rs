@@ -41,18 +41,25 @@ pub struct Pair {
 /// An error that differs: column, old, new.
 pub type Change = (&'static str, f64, f64);
 
-/// Standard deviation of the logarithm of a ratio of times between two runs of one program, beside
-/// that of the passes within each.
+/// Least standard deviation of the logarithm of a ratio of times between two runs of one program,
+/// beside that of the passes within each.
 const BETWEEN_RUNS: f64 = 0.03;
 /// The quantile of the normal distribution for 95 %.
 const NORMAL: f64 = 1.96;
 
 /// Gives verdicts such that a run against itself has none in 19 of 20 comparisons, whatever the
 /// number of measurements: intervals are wider the more there are (Bonferroni's quantile, within
-/// 3 % up to 1000), and by what differs between runs.
+/// 3 % up to 1000), and by what differs between runs: by as much as the ratios of the published loop
+/// do, which changes with no search.
 fn judge(pairs: &mut [Pair]) {
     let over_baseline = pairs.iter().any(|pair| pair.relative.is_some());
     let wider = (1.0 + 0.47 * (pairs.len() as f64).ln()).sqrt();
+    let loops = pairs.iter().filter(|pair| pair.relative.is_none());
+    let loops: Vec<f64> = loops.filter_map(|p| Some(p.time?.value.ln())).collect();
+    let apart = Some(&loops).filter(|_| over_baseline && loops.len() > 1);
+    let between = apart
+        .map_or(0.0, |loops| stats::deviation(loops))
+        .max(BETWEEN_RUNS);
     for pair in pairs {
         pair.verdict = match (pair.time, pair.relative) {
             (None, _) => Verdict::Unresolved,
@@ -60,7 +67,7 @@ fn judge(pairs: &mut [Pair]) {
             (Some(time), relative) => {
                 let ratio = relative.unwrap_or(time);
                 let within = 0.5 * (ratio.high / ratio.low).ln();
-                let reach = (wider * within.hypot(NORMAL * BETWEEN_RUNS)).exp();
+                let reach = (wider * within.hypot(NORMAL * between)).exp();
                 let value = ratio.value;
                 Interval::new(value, value / reach, value * reach).verdict(f64::INFINITY)
             }
