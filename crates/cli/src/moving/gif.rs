@@ -29,7 +29,7 @@ fn palette(frames: &[Picture]) -> Result<PaletteBuf<Srgb<u8>>> {
     let count: usize = frames.iter().map(|f| f.rgba.len()).sum();
     let pixels = frames.iter().flat_map(|f| &f.rgba);
     // An odd step meets all columns.
-    let pixels = pixels.step_by(count / SAMPLES | 1);
+    let pixels = pixels.step_by((count / SAMPLES) | 1);
     let pixels: Vec<_> = pixels.map(|&[r, g, b, _]| Srgb::new(r, g, b)).collect();
     let pipeline = Pipeline::new().parallel(true);
     let pipeline = pipeline.palette_size(PaletteSize::from_u8_clamped(COLORS));

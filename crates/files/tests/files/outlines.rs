@@ -74,7 +74,7 @@ fn outlines_are_read_again_as_the_same_solid() {
 fn tolerances_are_kept_and_used() {
     let folder = tempfile::tempdir().unwrap();
     let clean = folder.path().join("clean.svg");
-    let bottle = read(&crate::asset("profiles/bottle.png").into());
+    let bottle = read(&crate::asset("profiles/bottle.png"));
     let pieces = |tolerance| -> usize {
         let count = write_outline(&bottle, &clean, tolerance).unwrap();
         let after = profile(&clean, ProfileAxis::Center).unwrap();

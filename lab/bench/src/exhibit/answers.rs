@@ -65,7 +65,7 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
     }
     all.extend(exactness(context));
     let loses = rivals(context, context.rows);
-    all.extend(loses.map(|text| format!("Where it loses: {text}")));
+    all.extend(loses.map(|text| format!("Where it loses, if anywhere: {text}")));
     all
 }
 
