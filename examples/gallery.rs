@@ -9,6 +9,8 @@
 
 #[path = "gallery/method.rs"]
 mod method;
+#[path = "gallery/words.rs"]
+mod words;
 
 use image::{RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};

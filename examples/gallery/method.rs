@@ -22,6 +22,15 @@ const CORNER: DVec2 = DVec2::new(12.0, 12.0);
 /// How far a panel shows the half-plane, object units.
 const REACH: f64 = (PANEL[0] as f64 - CORNER.x) / UNIT;
 const GAP: u32 = 12;
+/// Rows above and below the panels, for their titles and what the colours are.
+const TITLE: u32 = 32;
+const LEGEND: u32 = 36;
+const TITLES: [&str; 4] = [
+    "1 profile",
+    "2 map of distances",
+    "3 ray and steps",
+    "4 solid",
+];
 /// Distance between two lines of equal distance, object units.
 const LEVEL: f64 = 0.05;
 /// How much wider the patches of the picture may be off than those that are drawn: so that an eye
@@ -62,15 +71,53 @@ pub fn draw(device: &Device, root: &Path, target: &Path) -> Result<()> {
         solid_panel(device, profile.clone(), &ray)?,
     ];
     let width = GAP + panels.len() as u32 * (PANEL[0] + GAP);
-    let mut sheet = RgbImage::from_pixel(width, PANEL[1] + 2 * GAP, Rgb([255; 3]));
+    let height = TITLE + PANEL[1] + LEGEND;
+    let mut sheet = RgbImage::from_pixel(width, height, Rgb([255; 3]));
+    let mut words = String::new();
     for (place, panel) in panels.iter().enumerate() {
         let left = GAP + place as u32 * (PANEL[0] + GAP);
-        let (left, top) = (i64::from(left), i64::from(GAP));
+        words += &crate::words::word([left, TITLE - 10], 14, TITLES[place]);
+        let (left, top) = (i64::from(left), i64::from(TITLE));
         image::imageops::overlay(&mut sheet, &panel.picture(), left, top);
     }
+    words += &legend(height - 10);
+    crate::words::over(&mut sheet, &words)?;
     crate::save(&sheet, target)?;
     println!("{}: {} steps", target.display(), ray.steps.len());
     Ok(())
+}
+
+/// What the colours are, in one line whose words stand on row `y`.
+fn legend(y: u32) -> String {
+    let css = |c: [f64; 3]| {
+        let [r, g, b] = c.map(|v| (255.0 * v).round());
+        format!("rgb({r},{g},{b})")
+    };
+    let middle = y - 4;
+    let line = |x: u32, color| {
+        let (end, color) = (x + 22, css(color));
+        format!("<path d='M{x} {middle}H{end}' stroke='{color}' stroke-width='3'/>")
+    };
+    let dot = |x: u32, r: f64, color| {
+        format!(
+            "<circle cx='{x}' cy='{middle}' r='{r}' fill='{}'/>",
+            css(color)
+        )
+    };
+    let word = |x, text| crate::words::word([x, y], 12, text);
+    let [green, violet, blue] = PATCHES;
+    [
+        line(GAP, RAY),
+        dot(GAP + 22, 4.0, RAY),
+        word(GAP + 34, "ray and hit"),
+        dot(142, 3.0, STEP),
+        word(152, "steps by the map's distances, each a circle"),
+        line(452, green),
+        line(474, violet),
+        line(496, blue),
+        word(526, "quadrics of the exact search"),
+    ]
+    .concat()
 }
 
 /// The outline in patches that an eye can tell apart.

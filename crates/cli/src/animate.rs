@@ -1,9 +1,11 @@
-//! `revmap animate`: a turntable, or changing parameters, as numbered pictures with the time of
-//! every frame.
+//! `revmap animate`: a turntable, or changing parameters, as numbered pictures or one that moves, with
+//! the time of every frame.
 
+use super::moving::{self, ENDINGS, Playing};
 use super::options::{Drawing, Samples, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
+use super::vary::Vary;
 use clap::Args;
 use glam::{DQuat, DVec3};
 use revmap::error::{Error, ErrorKind, Result};
@@ -12,15 +14,17 @@ use revmap::scene::{Camera, Scene};
 use revmap::settings::Planes;
 use revmap_bench::method::Edges;
 use revmap_bench::renderer::{MethodDevice, MethodRenderer};
-use revmap_files::SceneFile;
 use revmap_files::scene::blank;
+use revmap_files::{Picture, SceneFile};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Draws a turntable or a sweep of parameters: numbered pictures, and what each frame took
+/// Draws a turntable or a sweep of parameters: a moving picture, or numbered ones, and what each frame took
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
+    revmap animate pawn.svg --frames 50 --turn 360 -o pawn.gif --set background=[1,1,1,1]\n  \
+    revmap animate pawn.svg --frames 50 --turn 360 --turntable --vary object.0.extend=0:0.05 --bounce -o pawn.webp\n  \
     revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
@@ -33,16 +37,26 @@ pub struct Animate {
     /// Turns the camera about its target by so many degrees in all
     #[arg(long, value_name = "DEGREES")]
     turn: Option<f64>,
+    /// Turns the scene in place of the camera: the lights stay as the camera sees them
+    #[arg(long, requires = "turn")]
+    turntable: bool,
     /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or
     /// lists of numbers; may be given more than once
     #[arg(long, value_name = "KEY=FROM:TO")]
     vary: Vec<String>,
-    /// The folder that frame-0000.png and so on go into; it is made if it is not there
-    #[arg(long, short, value_name = "DIR")]
+    /// There and back: the values of --vary return to the first, and so does a --turn that is no
+    /// whole number of turns. The last frame is one step before the first
+    #[arg(long)]
+    bounce: bool,
+    /// One moving picture, which ends in .gif, .webp or .apng; or the folder that frame-0000.png
+    /// and so on go into, which is made if it is not there
+    #[arg(long, short, value_name = "FILE_OR_DIR")]
     output: Option<PathBuf>,
     /// Replace the frames that the folder of --output holds
     #[arg(long, requires = "output")]
     overwrite: bool,
+    #[command(flatten)]
+    playing: Playing,
     /// A CSV file for the times of each frame
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
@@ -50,14 +64,6 @@ pub struct Animate {
     samples: Samples,
     #[command(flatten)]
     drawing: Drawing,
-}
-
-/// A key whose value changes from frame to frame.
-struct Vary {
-    key: String,
-    from: Vec<f64>,
-    to: Vec<f64>,
-    list: bool,
 }
 
 /// A line of the times.
@@ -73,6 +79,16 @@ struct Row {
 /// The number of a frame that shows nothing, and why.
 type Blank = (u32, String);
 
+/// What was drawn.
+#[derive(Default)]
+struct Drawn {
+    rows: Vec<Row>,
+    /// Frames that were read and show nothing.
+    blanks: Vec<Blank>,
+    /// Frames of a moving picture.
+    pictures: Vec<Picture>,
+}
+
 impl Animate {
     pub fn run(self) -> Result<()> {
         let Tracing::Device(_) = self.drawing.stage else {
@@ -84,13 +100,7 @@ impl Animate {
         if self.turn.is_some_and(|turn| !turn.is_finite()) {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
-        let moving = ["gif", "webp", "apng", "png", "mp4", "webm", "avi"];
-        let ending = self.output.as_ref().and_then(|path| path.extension());
-        let mut moving = moving.iter();
-        if ending.is_some_and(|ending| moving.any(|name| ending.eq_ignore_ascii_case(name))) {
-            let message = "is no folder; give one for frame-0000.png and so on, and join these with another program";
-            return Err(usage("--output", message));
-        }
+        let moving = self.destination()?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
@@ -98,55 +108,100 @@ impl Animate {
         let mut file = SceneFile::open(&self.scene)?;
         let first = self.scene_at(&mut file, &varied, 0)?;
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
-        written.extend((0..self.frames).filter_map(|n| self.picture(n)));
-        let old = self.output.as_deref().map_or(Vec::new(), frames_in);
+        let folder = self.output.as_deref().filter(|_| !moving);
+        match folder {
+            Some(folder) => written.extend((0..self.frames).map(|n| self.picture(folder, n))),
+            None => written.extend(self.output.clone()),
+        }
+        let old = folder.map_or(Vec::new(), frames_in);
         output::spare(file.files(), written.iter().chain(&old), "--output")?;
         let (device, kept) = self.drawing.open()?;
-        if let Some(folder) = &self.output {
+        if let Some(folder) = folder {
             claim(folder, &old, self.overwrite)?;
         }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
-        let (rows, blanks) = self.draw(&device, &mut file, &varied, &first, &progress)?;
-        drop(progress);
+        let drawn = self.draw(&device, &mut file, &varied, &first, folder, &progress)?;
+        let Drawn { rows, blanks, .. } = &drawn;
         device.check()?;
         kept.save(&device);
+        if let Some(path) = self.output.as_deref().filter(|_| moving) {
+            progress.say(&format!("writing {}", path.display()));
+            self.playing.write(path, &drawn.pictures)?;
+        }
+        drop(progress);
         if let Some(path) = &self.times {
-            write_times(path, &rows)?;
+            write_times(path, rows)?;
         }
         if !self.drawing.quiet {
-            let mut warnings = self.drawing.warnings(&first);
-            if self.samples.count > 1 && self.output.is_none() {
-                warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
-            }
-            let moves = |v: &Vary| v.from != v.to;
-            if self.frames > 1 && self.turn.unwrap_or(0.0) == 0.0 && !varied.iter().any(moves) {
-                warnings.push(
-                    "nothing moves, so all frames are equal; give --turn or --vary".to_owned(),
-                );
-            }
-            if let Some((n, why)) = blanks.first() {
-                let (count, all) = (blanks.len(), self.frames);
-                warnings.push(format!(
-                    "{count} of {all} frames are empty, the first is frame {n}: {why}"
-                ));
-            }
+            let warnings = self.warnings(&first, &varied, blanks, moving);
             warnings.iter().for_each(|w| output::warn(w));
         }
-        self.tell(&device, &rows);
+        self.tell(&device, rows, moving);
         Ok(())
     }
 
+    /// Checks the output, before any work. Returns true if it is a moving picture.
+    fn destination(&self) -> Result<bool> {
+        let path = self.output.as_deref();
+        let moving = self.playing.check(path, self.frames, self.drawing.size)?;
+        if moving {
+            output::check(&self.output, "--output", &ENDINGS, &[&self.scene])?;
+        }
+        let other = ["png", "mp4", "webm", "avi", "mov", "mkv"];
+        let is = |ending: &&str| path.is_some_and(|path| output::has_ending(path, ending));
+        if other.iter().any(is) {
+            let message = format!(
+                "is no folder; a moving picture ends in .{}, and a folder of frames is what other programs take",
+                ENDINGS.join(", .")
+            );
+            return Err(usage("--output", message));
+        }
+        Ok(moving)
+    }
+
+    fn warnings(
+        &self,
+        first: &Scene,
+        varied: &[Vary],
+        blanks: &[Blank],
+        moving: bool,
+    ) -> Vec<String> {
+        let mut warnings = self.drawing.warnings(first);
+        if self.samples.count > 1 && self.output.is_none() {
+            warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
+        }
+        if self.frames > 1 && self.turn.unwrap_or(0.0) == 0.0 && !varied.iter().any(Vary::moves) {
+            warnings
+                .push("nothing moves, so all frames are equal; give --turn or --vary".to_owned());
+        }
+        if let Some((n, why)) = blanks.first() {
+            let (count, all) = (blanks.len(), self.frames);
+            warnings.push(format!(
+                "{count} of {all} frames are empty, the first is frame {n}: {why}"
+            ));
+        }
+        let gif = self
+            .output
+            .as_ref()
+            .filter(|path| moving && output::has_ending(path, "gif"));
+        if gif.is_some() && first.background[3] < 1.0 {
+            warnings.push("background: a GIF has no soft edges, so white is behind what is transparent; give another with --set background=[r,g,b,1], or write .webp".to_owned());
+        }
+        warnings
+    }
+
     /// Draws every frame: the scene is updated and drawn, and it is read back after its times were
-    /// measured. Returns the times, and a warning for each frame that was read and shows nothing.
+    /// measured. Frames go into `folder`, or are returned for a moving picture.
     fn draw(
         &self,
         device: &Device,
         file: &mut SceneFile,
         varied: &[Vary],
         first: &Scene,
+        folder: Option<&Path>,
         progress: &Progress,
-    ) -> Result<(Vec<Row>, Vec<Blank>)> {
+    ) -> Result<Drawn> {
         let mut settings = self.drawing.settings(Planes::Color);
         // Silhouettes are smoothed only if pictures are written.
         if self.samples.antialias(false) && self.output.is_some() {
@@ -155,7 +210,7 @@ impl Animate {
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.offscreen.prewarm()?;
-        let (mut rows, mut blanks) = (Vec::new(), Vec::new());
+        let mut drawn = Drawn::default();
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
             let scene = self.scene_at(file, varied, n)?;
@@ -173,42 +228,51 @@ impl Animate {
                 row.frame_ms += times.frame_ms;
                 Ok(())
             };
-            match self.picture(n) {
-                Some(picture) => {
+            match &self.output {
+                Some(path) => {
                     let frame = self.samples.draw(&scene, |scene| {
                         draw(&mut renderer, scene)?;
                         renderer.read()
                     })?;
-                    revmap_files::write_png(&frame, picture)?;
-                    blanks.extend(blank(&scene, &frame).map(|why| (n, why)));
+                    match folder {
+                        Some(folder) => revmap_files::write_png(&frame, self.picture(folder, n))?,
+                        None => drawn.pictures.push(moving::picture(path, &frame)?),
+                    }
+                    drawn
+                        .blanks
+                        .extend(blank(&scene, &frame).map(|why| (n, why)));
                 }
                 None => {
                     draw(&mut renderer, &scene)?;
                     if n == 0 {
-                        blanks.extend(blank(&scene, &renderer.read()?).map(|why| (n, why)));
+                        let why = blank(&scene, &renderer.read()?);
+                        drawn.blanks.extend(why.map(|why| (n, why)));
                     }
                 }
             }
             let counts = (device.pipelines_compiled(), renderer.rebuild_count());
             (row.compiled, row.rebuilt) = (counts.0 - compiled, counts.1 - rebuilt);
             (compiled, rebuilt) = counts;
-            rows.push(row);
+            drawn.rows.push(row);
             progress.report(n as usize + 1, self.frames as usize);
         }
-        Ok((rows, blanks))
+        Ok(drawn)
     }
 
-    /// The file of frame `n`, if pictures are written.
-    fn picture(&self, n: u32) -> Option<PathBuf> {
-        let folder = self.output.as_ref()?;
+    /// The file of frame `n` in a folder.
+    fn picture(&self, folder: &Path, n: u32) -> PathBuf {
         // Numbers of one width: names are in the order of the frames.
         let width = (self.frames - 1).to_string().len().max(4);
-        Some(folder.join(format!("frame-{n:0width$}.png")))
+        folder.join(format!("frame-{n:0width$}.png"))
     }
 
     fn scene_at(&self, file: &mut SceneFile, varied: &[Vary], n: u32) -> Result<Scene> {
-        let last = (self.frames - 1).max(1);
-        let part = f64::from(n) / f64::from(last);
+        // The last frame of a loop is one step before the first is repeated.
+        let around = f64::from(n) / f64::from(self.frames);
+        let part = match self.bounce {
+            true => 1.0 - (1.0 - 2.0 * around).abs(),
+            false => f64::from(n) / f64::from((self.frames - 1).max(1)),
+        };
         let mut sets = self.drawing.set.clone();
         sets.extend(varied.iter().map(|v| v.at(part)));
         let mut scene = file.scene(&sets).map_err(|mut e| {
@@ -219,14 +283,18 @@ impl Animate {
             e
         })?;
         if let Some(turn) = self.turn {
-            // The last frame is one step before the first is repeated.
-            let angle = (turn * f64::from(n) / f64::from(self.frames)).to_radians();
-            turn_about_target(&mut scene.camera, angle);
+            let returns = self.bounce && turn % 360.0 != 0.0;
+            let angle = (turn * if returns { part } else { around }).to_radians();
+            let about = turn_about_target(&mut scene.camera, angle);
+            if self.turntable {
+                let lights = scene.lights.iter_mut();
+                lights.for_each(|light| light.direction = about * light.direction);
+            }
         }
         Ok(scene)
     }
 
-    fn tell(&self, device: &Device, rows: &[Row]) {
+    fn tell(&self, device: &Device, rows: &[Row], moving: bool) {
         if self.drawing.quiet {
             return;
         }
@@ -247,9 +315,13 @@ impl Animate {
                 format!(", {late} of them after the tenth"),
             ),
         };
-        let kept = match self.output {
-            Some(_) => "",
-            None => "; no pictures are kept (--output DIR keeps them)",
+        let kept = match &self.output {
+            Some(path) if moving => {
+                let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
+                format!("; {}: {bytes} bytes", path.display())
+            }
+            Some(_) => String::new(),
+            None => "; no pictures are kept (--output FILE.webp or DIR keeps them)".to_owned(),
         };
         output::result(&format!(
             "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}{kept}",
@@ -259,10 +331,11 @@ impl Animate {
     }
 }
 
-/// Turns a camera about its target by an angle in radians.
-pub fn turn_about_target(camera: &mut Camera, angle: f64) {
+/// Turns a camera about its target by an angle in radians; returns the turn.
+pub fn turn_about_target(camera: &mut Camera, angle: f64) -> DQuat {
     let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
     camera.eye = camera.target + about * (camera.eye - camera.target);
+    about
 }
 
 /// Frames in a folder, `frame-` and a number of four digits or more, in order.
@@ -300,56 +373,6 @@ fn claim(folder: &Path, old: &[PathBuf], overwrite: bool) -> Result<()> {
     })
 }
 
-impl Vary {
-    fn parse(text: &str) -> Result<Self> {
-        let wrong = |what: &str| {
-            let example = "write KEY=FROM:TO, as in object.0.extend=0:0.1";
-            usage("--vary", format!("{text:?} {what}; {example}"))
-        };
-        let parts = text.split_once('=');
-        let (key, range) = parts.ok_or_else(|| wrong("names no values"))?;
-        let parts = range.split_once(':');
-        let (from, to) = parts.ok_or_else(|| wrong("has no second value"))?;
-        let list = from.trim().starts_with('[');
-        let numbers = |text: &str| {
-            let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
-            let number = |n: &str| n.trim().parse().ok().filter(|n: &f64| n.is_finite());
-            let parsed: Option<Vec<f64>> = inner.split(',').map(number).collect();
-            parsed.ok_or_else(|| wrong("holds what is no number"))
-        };
-        let (from, to) = (numbers(from)?, numbers(to)?);
-        if from.len() != to.len() {
-            return Err(wrong("has lists of two lengths"));
-        }
-        if !list && from.len() != 1 {
-            return Err(wrong(
-                "has a comma outside of brackets, and numbers have points",
-            ));
-        }
-        Ok(Self {
-            key: key.trim().to_owned(),
-            from,
-            to,
-            list,
-        })
-    }
-
-    /// The assignment at the fraction `part`, 0 to 1.
-    fn at(&self, part: f64) -> String {
-        let pairs = self.from.iter().zip(&self.to);
-        let values: Vec<f64> = pairs.map(|(a, b)| a + (b - a) * part).collect();
-        // Keys of whole numbers take no 10.0.
-        let whole = |x: &f64| x.fract() == 0.0 && x.abs() < 1e15;
-        let texts = values.iter().map(|x| match whole(x) {
-            true => format!("{x}"),
-            false => format!("{x:?}"),
-        });
-        let bare = texts.collect::<Vec<_>>().join(", ");
-        let list = format!("[{bare}]");
-        format!("{}={}", self.key, if self.list { list } else { bare })
-    }
-}
-
 fn write_times(path: &Path, rows: &[Row]) -> Result<()> {
     let mut text =
         String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
@@ -361,30 +384,4 @@ fn write_times(path: &Path, rows: &[Row]) -> Result<()> {
         );
     }
     revmap_files::write_bytes(path, text.as_bytes())
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    #[test]
-    fn keys_move_from_value_to_value() {
-        let one = Vary::parse("object.0.extend=0:0.1").unwrap();
-        assert_eq!(one.at(0.5), "object.0.extend=0.05");
-        let three = Vary::parse("camera.eye=[1, 2, -3]:[0,0,0]").unwrap();
-        assert_eq!(three.at(0.0), "camera.eye=[1, 2, -3]");
-        for bad in [
-            "a",
-            "a=1",
-            "a=1:b",
-            "a=[1,2]:3",
-            "a=nan:1",
-            "a=0,1:0,2",
-            "a=0:0,2",
-        ] {
-            let error = Vary::parse(bad).err().unwrap();
-            assert_eq!(error.kind, ErrorKind::Usage, "{bad}");
-        }
-    }
 }

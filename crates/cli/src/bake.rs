@@ -6,6 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{BakeOptions, MapSource, Projection, ShapeMap, SlopeFilter};
+use revmap::profile::Profile;
 use revmap::scene::Object;
 use revmap_files::{ProfileAxis, ProfileOptions, Smooth, mark_projection, projection_of};
 use std::path::{Path, PathBuf};
@@ -17,8 +18,8 @@ use std::time::Instant;
     revmap bake assets/profiles/pawn.svg -o pawn-map.png\n  \
     revmap bake assets/profiles/bottle.png -o bottle.exr --height-map assets/heights/brick.png")]
 pub struct Bake {
-    /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
-    profile: PathBuf,
+    #[command(flatten)]
+    profile: ProfileArguments,
     /// File of the shape map: .png (8-bit RGBA: gradient, distance, form) or .exr (32-bit floats,
     /// without loss)
     #[arg(long, short, value_name = "MAP")]
@@ -29,19 +30,6 @@ pub struct Bake {
     /// Source of distances [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&revmap_files::MAP_SOURCES))]
     map_source: Option<MapSource>,
-    /// Position of the axis: left (half a profile), center (a silhouette), or a fraction of the width
-    #[arg(long, value_name = "AXIS", default_value = "center")]
-    profile_axis: ProfileAxis,
-    /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
-    #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
-    profile_threshold: f64,
-    /// Light is solid, dark is empty
-    #[arg(long)]
-    profile_invert: bool,
-    /// Blurs noise of a picture away by a Gaussian of this standard deviation; auto: as wide as the
-    /// noise needs, none for a clean picture
-    #[arg(long, value_name = "PIXELS|auto", default_value = "0", value_parser = smooth)]
-    profile_smooth: Smooth,
     /// Puts the projection of textures into the map's file name, as in vase.spherical.png
     #[arg(long, value_name = "NAME", value_parser = named(&Projection::NAMES))]
     projection: Option<Projection>,
@@ -54,6 +42,42 @@ pub struct Bake {
     quiet: bool,
 }
 
+/// A profile and how it is read
+#[derive(Args)]
+pub struct ProfileArguments {
+    /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
+    pub profile: PathBuf,
+    /// Position of the axis: left (half a profile), center (a silhouette), or a fraction of the width
+    #[arg(long, value_name = "AXIS", default_value = "center")]
+    profile_axis: ProfileAxis,
+    /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
+    #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
+    profile_threshold: f64,
+    /// Light is solid, dark is empty
+    #[arg(long)]
+    profile_invert: bool,
+    /// Blurs noise of a picture away by a Gaussian of this standard deviation; auto: as wide as the
+    /// noise needs, none for a clean picture [default: 0 in bake, auto in profile]
+    #[arg(long, value_name = "PIXELS|auto", value_parser = smooth)]
+    profile_smooth: Option<Smooth>,
+}
+
+impl ProfileArguments {
+    /// Reads the profile; `smooth` holds where no option says otherwise.
+    pub fn read(&self, smooth: Smooth) -> Result<Profile> {
+        let options = ProfileOptions {
+            axis: self.profile_axis,
+            threshold: self.profile_threshold,
+            invert: self.profile_invert,
+            smooth: self.profile_smooth.unwrap_or(smooth),
+        };
+        revmap_files::profile(&self.profile, options).map_err(|mut e| {
+            e.message = with_options(&e.message);
+            e
+        })
+    }
+}
+
 impl Bake {
     pub fn run(self) -> Result<()> {
         let map_file = match self.projection {
@@ -61,26 +85,18 @@ impl Bake {
             None => self.output.clone(),
         };
         let slopes_file = self.height_map.as_ref().map(|_| beside(&map_file));
-        let mut inputs = vec![self.profile.as_path()];
+        let mut inputs = vec![self.profile.profile.as_path()];
         inputs.extend(self.height_map.as_deref());
         output::check([&map_file], "--output", &["png", "exr"], &inputs)?;
         output::check(&slopes_file, "--output", &["png"], &inputs)?;
 
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
-        let options = ProfileOptions {
-            axis: self.profile_axis,
-            threshold: self.profile_threshold,
-            invert: self.profile_invert,
-            smooth: self.profile_smooth,
-        };
-        let profile = revmap_files::profile(&self.profile, options).map_err(|mut e| {
-            e.message = with_options(&e.message);
-            e
-        })?;
+        let profile = self.profile.read(Smooth::Pixels(0.0))?;
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
-        let map = ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile))?;
+        let map =
+            ShapeMap::bake(&profile, &options).map_err(|e| e.in_file(&self.profile.profile))?;
         let slopes = self.height_map.as_ref();
         let slopes = slopes.map(|f| revmap_files::displacement_map(f, SlopeFilter::default()));
         let slopes = slopes.transpose()?;
@@ -116,7 +132,7 @@ impl Bake {
 }
 
 /// A message with options in place of the keys of a scene file.
-fn with_options(message: &str) -> String {
+pub fn with_options(message: &str) -> String {
     let mut text = message.replace("profile_invert = true", "profile_invert");
     for key in ["axis", "invert", "smooth", "threshold"] {
         let (key, option) = (format!("profile_{key}"), format!("--profile-{key}"));

@@ -10,7 +10,7 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::DrawStage;
 use revmap_bench::flight::{self, FlightTimes};
-use revmap_bench::measure::{Measured, Observer, measure};
+use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
 use revmap_bench::pictures::{Album, Sheets};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan_file::{PlanFile, embedded};
@@ -269,6 +269,11 @@ struct Session<'a> {
 impl Session<'_> {
     /// Measures with a progress bar; an interrupt ends early and keeps what there is.
     fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album)> {
+        if !self.results.quiet {
+            refused_meshes(plan)
+                .iter()
+                .for_each(|text| output::warn(text));
+        }
         let styles = SeriesStyles::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.run.out, styles, file.heat_maps)?;
         let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.run.out));

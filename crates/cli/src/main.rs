@@ -12,9 +12,12 @@ mod failure;
 mod last_resort;
 mod levels;
 mod lists;
+mod mesh;
+mod moving;
 mod options;
 mod output;
 mod overrun;
+mod profile;
 mod progress;
 mod render;
 mod run;
@@ -24,6 +27,7 @@ mod shading;
 mod shell;
 mod stability;
 mod submit;
+mod vary;
 #[cfg(feature = "viewer")]
 mod view;
 #[cfg(not(feature = "viewer"))]
@@ -75,6 +79,8 @@ commands! {
     Render: render::Render,
     Animate: animate::Animate,
     Bake: bake::Bake,
+    Mesh: mesh::Mesh,
+    Profile: profile::Profile,
     Bench: bench::Bench,
     Chart: bench::Chart,
     Stability: stability::Stability,

@@ -26,6 +26,10 @@ impl Progress {
     pub fn start(what: &str, quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         bar.set_message(what.to_owned());
+        // Until the first report its length is not known.
+        if let Ok(style) = ProgressStyle::with_template("{msg} {spinner} {elapsed}") {
+            bar.set_style(style);
+        }
         let shown = !quiet && std::io::stderr().is_terminal();
         let watcher = shown.then(|| {
             let (sender, receiver) = channel();

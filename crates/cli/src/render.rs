@@ -136,12 +136,14 @@ impl Render {
     ) -> Result<Picture> {
         let method_device = MethodDevice::new(device.clone())?;
         let mut renderer = method_device.renderer(scene, settings)?;
+        let all = 1 + self.samples.count as usize;
         renderer.draw()?;
+        progress.report(1, all);
         let mut times = Vec::new();
         let frame = self.samples.draw(scene, |scene| {
             renderer.update(scene)?;
             times.push(renderer.draw()?);
-            progress.report(times.len(), 1 + self.samples.count as usize);
+            progress.report(1 + times.len(), all);
             renderer.read()
         })?;
         let costs = renderer.offscreen.renderer().object_costs();

@@ -22,11 +22,12 @@
 //!
 //! | file | read | written |
 //! |---|---|---|
-//! | profile: SVG, svgz, PNG, JPEG | [`profile`](profile()), [`profile_from_bytes`] | |
+//! | profile: SVG, svgz, PNG, JPEG | [`profile`](profile()), [`profile_from_bytes`] | [`write_outline`] (SVG) |
 //! | scene: TOML, with CSV for copies | [`scene`](scene()), [`SceneFile`] for scenes that differ in some keys | [`SceneFile::text`] |
 //! | textures: PNG, JPEG | [`color_map`], [`displacement_map`] | [`write_displacement_map`] |
 //! | shape map: PNG, EXR | [`shape_map`] | [`write_shape_map`] |
 //! | frame: PNG (colour), EXR (all planes) | [`read_exr`] | [`write_png`], [`write_exr`] |
+//! | mesh: glTF, OBJ, STL | | [`write_meshes`] |
 //!
 //! A failure is an [`Error`] that names file, key and remedy. No file is left half
 //! written ([`write_atomically`]).
@@ -40,7 +41,9 @@ mod exif;
 mod faults;
 mod jpeg_end;
 mod maps;
+mod mesh;
 mod openexr;
+mod outline;
 mod picture;
 mod pixels;
 mod profile;
@@ -56,7 +59,9 @@ pub use maps::{
     BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
     shape_map, write_displacement_map, write_shape_map,
 };
+pub use mesh::{MESH_ENDINGS, mesh_files, write_meshes};
 pub use openexr::{read_exr, write_exr};
+pub use outline::write_outline;
 pub use picture::{Picture, write_png};
 pub use profile::{ProfileAxis, ProfileOptions, Smooth, profile, profile_from_bytes};
 pub use scene::{SceneFile, scene, warnings};

@@ -10,6 +10,7 @@ use super::surroundings::differences;
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Number of columns that name the measurement, the first of all: rows that agree in them are the same measurement.
@@ -28,6 +29,9 @@ pub struct Pair {
     /// The same, each time first put over the RBM baseline's of the same picture, stage and run.
     /// `None` where a run lacks that loop, and for the loop itself.
     pub relative: Option<Interval>,
+    /// The change of its time: in proportion to the RBM baseline where both runs have it. The loop
+    /// itself, with others over it, has none.
+    pub verdict: Verdict,
     /// The errors that have grown.
     pub worse: Vec<Change>,
     /// The errors that have shrunk.
@@ -37,12 +41,59 @@ pub struct Pair {
 /// An error that differs: column, old, new.
 pub type Change = (&'static str, f64, f64);
 
-impl Pair {
-    /// The change of its time: in proportion to the RBM baseline where both runs have it.
-    pub fn verdict(&self) -> Verdict {
-        let time = self.relative.or(self.time);
-        time.map_or(Verdict::Unresolved, |t| t.verdict(f64::INFINITY))
+/// Least standard deviation of the logarithm of a ratio of times between two runs of one program,
+/// beside that of the passes within each.
+const BETWEEN_RUNS: f64 = 0.03;
+/// The quantile of the normal distribution for 95 %.
+const NORMAL: f64 = 1.96;
+
+/// Gives verdicts such that a run against itself has none in 19 of 20 comparisons, whatever the
+/// number of measurements: intervals are wider the more there are (Bonferroni's quantile, within
+/// 3 % up to 1000), and by what differs between runs: by as much as the ratios of the published loop
+/// do, which changes with no search.
+fn judge(pairs: &mut [Pair]) {
+    let over_baseline = pairs.iter().any(|pair| pair.relative.is_some());
+    let wider = (1.0 + 0.47 * (pairs.len() as f64).ln()).sqrt();
+    let loops = pairs.iter().filter(|pair| pair.relative.is_none());
+    let loops: Vec<f64> = loops.filter_map(|p| Some(p.time?.value.ln())).collect();
+    let apart = Some(&loops).filter(|_| over_baseline && loops.len() > 1);
+    let between = apart
+        .map_or(0.0, |loops| stats::deviation(loops))
+        .max(BETWEEN_RUNS);
+    for pair in pairs {
+        pair.verdict = match (pair.time, pair.relative) {
+            (None, _) => Verdict::Unresolved,
+            (Some(_), None) if over_baseline => Verdict::Even,
+            (Some(time), relative) => {
+                let ratio = relative.unwrap_or(time);
+                let within = 0.5 * (ratio.high / ratio.low).ln();
+                let reach = (wider * within.hypot(NORMAL * between)).exp();
+                let value = ratio.value;
+                Interval::new(value, value / reach, value * reach).verdict(f64::INFINITY)
+            }
+        };
     }
+}
+
+/// What only one of two runs has among the values of a column, as a warning.
+fn other_methods(old: &Run, new: &Run) -> Option<String> {
+    let all = |run: &Run| -> BTreeSet<String> {
+        let records = run.results.records.iter();
+        records.map(|r| run.at(r, "solver").to_owned()).collect()
+    };
+    let (old, new) = (all(old), all(new));
+    let only = |a: &BTreeSet<String>, b: &BTreeSet<String>, name: &str| {
+        let names: Vec<&str> = a.difference(b).map(String::as_str).collect();
+        (!names.is_empty()).then(|| format!("only the {name} one has {}", names.join(", ")))
+    };
+    let found = [only(&old, &new, "old"), only(&new, &old, "new")];
+    let found: Vec<String> = found.into_iter().flatten().collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "the runs are of other methods: {}; methods measured in turn change each other's times, so measure the same ones",
+            found.join(", ")
+        )
+    })
 }
 
 /// Two runs side by side.
@@ -54,7 +105,7 @@ pub struct Against {
     pub alone: (usize, usize),
     /// Device and driver of each.
     pub devices: [String; 2],
-    /// A warning for each of device, driver, processor and surroundings that differs.
+    /// A warning for each of device, driver, processor, surroundings and methods that differs.
     pub warnings: Vec<String>,
 }
 
@@ -82,12 +133,14 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
             key: record[..KEY].to_vec(),
             time: stats::ratio(&after.medians(number), &before.medians(twin)),
             relative: relative.and_then(|(a, b)| stats::ratio(&a, &b)),
+            verdict: Verdict::Unresolved,
             worse,
             better,
         })
     };
     let records = after.results.records.iter().enumerate();
-    let pairs: Vec<Pair> = records.filter_map(pair).collect();
+    let mut pairs: Vec<Pair> = records.filter_map(pair).collect();
+    judge(&mut pairs);
     if pairs.is_empty() {
         return Err(Error::new(ErrorKind::Content, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
     }
@@ -105,7 +158,10 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let others = differences(&before.surroundings, &after.surroundings);
     Ok(Against {
         alone: (alone(&before), alone(&after)),
-        warnings: machines.chain(others).collect(),
+        warnings: machines
+            .chain(others)
+            .chain(other_methods(&before, &after))
+            .collect(),
         devices: [old, new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
         pairs,
     })
@@ -146,7 +202,7 @@ pub fn as_text(against: &Against) -> String {
         let ends = i.map(|t| t.ends().map_or("unknown".to_owned(), range));
         ends.unwrap_or_default()
     };
-    let verdict = |pair: &Pair| match pair.verdict() {
+    let verdict = |pair: &Pair| match pair.verdict {
         Verdict::Slower => "slower",
         Verdict::Faster => "faster",
         Verdict::Even => "",
@@ -182,11 +238,11 @@ pub fn as_text(against: &Against) -> String {
 /// How many became slower and faster, and whether the machine did.
 fn counts(against: &Against) -> String {
     let pairs = &against.pairs;
-    let count = |v: Verdict| pairs.iter().filter(|p| p.verdict() == v).count();
+    let count = |v: Verdict| pairs.iter().filter(|p| p.verdict == v).count();
     let ratios: Vec<f64> = pairs.iter().filter_map(|p| Some(p.time?.value)).collect();
     let mean = stats::geometric(&ratios).map(|i| number(i.value, 3));
     let mut out = format!(
-        "\n{} in common: {} slower, {} faster, {} within their intervals; geometric mean of new / old: {}; {} only in the old run, {} only in the new one\n",
+        "\n{} in common: {} slower, {} faster, {} within what two runs of one program differ by; geometric mean of new / old: {}; {} only in the old run, {} only in the new one\n",
         pairs.len(),
         count(Verdict::Slower),
         count(Verdict::Faster),

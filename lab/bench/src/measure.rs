@@ -84,6 +84,34 @@ pub fn measure(
     })
 }
 
+/// Meshes that will be left out because of what their scenes hold: a sentence for each method and
+/// reason, before anything is drawn.
+#[must_use]
+pub fn refused_meshes(plan: &Plan) -> Vec<String> {
+    let mut found: Vec<(String, String, usize)> = Vec::new();
+    for case in &plan.cases {
+        let is_mesh = matches!(
+            case.settings.method,
+            Method::Mesh { .. } | Method::MeshLevels
+        );
+        let view = plan.views.get(case.view).filter(|_| is_mesh);
+        let Some(Err(error)) = view.map(|view| revmap_mesh::check_scene(&view.scene)) else {
+            continue;
+        };
+        let (method, why) = (case.settings.method.to_string(), error.to_string());
+        match found.iter_mut().find(|f| f.0 == method && f.1 == why) {
+            Some(known) => known.2 += 1,
+            None => found.push((method, why, 1)),
+        }
+    }
+    let sentence = |(method, why, count): (String, String, usize)| {
+        format!(
+            "{method} will be left out of {count} measurements: {why}; other values by --set, as in --set 'shadow=\"off\"'"
+        )
+    };
+    found.into_iter().map(sentence).collect()
+}
+
 struct Run<'a> {
     plan: &'a Plan,
     bench: &'a mut dyn Bench,

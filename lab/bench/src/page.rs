@@ -144,9 +144,9 @@ impl Page {
                 body {
                     h1 { (self.title) }
                     @for text in &self.lead { p { (words(text)) } }
-                    nav { ul { @for (id, name) in &self.contents {
+                    nav { details { summary { "Contents" } ul { @for (id, name) in &self.contents {
                         li { a href=(format!("#{id}")) { (name) } }
-                    } } }
+                    } } } }
                     (PreEscaped(&self.body))
                 }
             }

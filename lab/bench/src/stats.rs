@@ -71,6 +71,11 @@ pub fn median(values: &[f64]) -> Option<f64> {
     }
 }
 
+/// The standard deviation of values; 0 below two.
+pub fn deviation(values: &[f64]) -> f64 {
+    mean_and_error(values).map_or(0.0, |(_, error)| error * (values.len() as f64).sqrt())
+}
+
 /// Mean and standard deviation of the mean; `None` below two values.
 fn mean_and_error(values: &[f64]) -> Option<(f64, f64)> {
     if values.len() < 2 {

@@ -10,11 +10,11 @@
 
 mod blocks;
 mod layer;
-mod meridian;
 mod placed;
 mod tessellation;
 #[cfg(test)]
 mod tests;
 
 pub use layer::{MeshLayer, MeshPipelines};
+pub use placed::check_scene;
 pub use tessellation::{BAND, Mesh, Vertex};

@@ -66,14 +66,11 @@ impl SceneMeshes {
     /// # Errors
     /// [`ErrorKind::Content`] for what meshes do not draw, and for a profile without a contour.
     pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Vec<PlacedMesh>> {
-        if scene.shadow != Shadow::Off {
-            return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
-        }
+        check_scene(scene)?;
         let mut used = Vec::new();
         let mut placed = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let under = |key: &str| format!("object.{number}.{key}");
-            check_object(object).map_err(|(key, error)| error.at_key(under(key)))?;
             let grown = self.grown.grown(object);
             let growth = Growth::of(object);
             let object = grown.as_ref().map_or(object, |g| &g.object);
@@ -210,6 +207,26 @@ fn refused(what: &str) -> Error {
         ErrorKind::Content,
         format!("a mesh {what}, or take a search"),
     )
+}
+
+/// Refuses a scene that meshes do not draw, by its content alone: a mesh that leaves its box is found
+/// when it is made.
+///
+/// # Errors
+/// [`ErrorKind::Content`] with the scene's key, for shadows, replicas, maps of colours and heights,
+/// and coordinates along the profile.
+pub fn check_scene(scene: &Scene) -> Result<()> {
+    if scene.shadow != Shadow::Off {
+        return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
+    }
+    scene
+        .objects
+        .iter()
+        .enumerate()
+        .try_for_each(|(number, object)| {
+            let fail = |(key, error): KeyError| error.at_key(format!("object.{number}.{key}"));
+            check_object(object).map_err(fail)
+        })
 }
 
 /// Refuses what the baseline does not draw.

@@ -11,10 +11,10 @@
 //! * Indices run in bands of [`BAND`] segments: a ring of a band is still in the vertex cache when
 //!   the next one is drawn. Vertices are in the order of their first use.
 
-use super::meridian::{Strand, meridian};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use revmap::surface::Contour;
+use revmap_tessellation::{Strand, strands_of};
 use std::f64::consts::{PI, TAU};
 
 /// Segments that are drawn side by side from one end of the meridian to the other.
@@ -49,7 +49,7 @@ pub struct Mesh {
 impl Mesh {
     /// A contour in `segments` steps around and at most `rings` along, more if it has more corners.
     pub fn new(contour: &Contour, segments: u32, rings: u32) -> Self {
-        let strands = meridian(contour, rings as usize);
+        let strands = strands_of(contour, rings as usize);
         let points = || contour.chains.iter().flat_map(|c| &c.points);
         let mut builder = Builder::new(segments);
         let sets: Vec<_> = strands.iter().map(|s| builder.vertices(s)).collect();

@@ -1,7 +1,7 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On
 //! a real device, small and brief.
 
-use crate::run::{Bench, lines};
+use crate::run::{Bench, CAMERA, CONE, lines};
 use revmap_bench::columns;
 use revmap_bench::table::Table;
 use std::process::{Command, Stdio};
@@ -69,6 +69,29 @@ fn a_brief_run_measures_every_combination() {
 }
 
 /// A mesh has neither a budget nor a map, and no place in compute.
+#[test]
+fn meshes_that_are_left_out_are_named_first() {
+    let bench = Bench::new();
+    bench.file("scene.toml", format!("shadow = \"soft\"\n{CAMERA}{CONE}"));
+    let command =
+        "bench scene.toml --quick --size 64x48 --solver circle,mesh:16x32 --stage fragment";
+    let said = lines(&bench.done(&format!("{command} --out m"))).join("\n");
+    let words = [
+        "mesh:16x32 will be left out of 1 measurements",
+        "shadow",
+        "--set 'shadow=\"off\"'",
+    ];
+    words
+        .iter()
+        .for_each(|word| assert!(said.contains(word), "{said}"));
+    let set = "--set shadow=\"off\"";
+    let said = lines(&bench.done(&format!("{command} --out n {set}"))).join("\n");
+    assert!(!said.contains("left out of"), "{said}");
+    assert!(
+        load(&bench, "n/results.csv").records.len() > load(&bench, "m/results.csv").records.len()
+    );
+}
+
 #[test]
 fn a_mesh_stands_beside_the_searches() {
     let bench = Bench::new();

@@ -16,7 +16,6 @@ fn wrong_usage() {
         "render scene.toml -o a.png --size 0x0               | --size | 0
          render scene.toml -o a.png --size 100000x100000     | --size | 100000
          render scene.toml -o a.png --size 800               | --size | 800x600
-         animate scene.toml --frames 2 -o turn.gif            | --output | is no folder
          render scene.toml -o a.png --solver magic           | --solver | circle
          bench scene.toml --solver exact,magic               | mesh:SEGMENTSxRINGS, floor | circle
          chart scene.toml --solver magic                     | mesh:SEGMENTSxRINGS, floor | default,

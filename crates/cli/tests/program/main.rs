@@ -9,6 +9,8 @@ mod command_line;
 mod inputs;
 #[cfg(target_os = "linux")]
 mod memory;
+mod mesh_command;
+mod moving_pictures;
 #[cfg(feature = "shaderc")]
 mod own_search;
 mod pictures;

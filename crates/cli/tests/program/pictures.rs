@@ -110,3 +110,30 @@ fn samples_average_colours_alone() {
     }
     assert!(error[1] < 1e-3 && error[1] < 0.5 * error[0], "{error:?}");
 }
+
+/// A traced picture becomes a drawing of few curves, and is drawn as before.
+#[test]
+fn outlines_are_drawings_again() {
+    let bench = Bench::new();
+    let said = bench.said("profile @profiles/bottle.png -o clean.svg --tolerance 0.0001");
+    let numbers: Vec<usize> = said.split(' ').filter_map(|w| w.parse().ok()).collect();
+    assert!(
+        matches!(numbers[..], [lines, curves, points] if 5 * (lines + curves) < points),
+        "{said}"
+    );
+    let draw = |name: &str| {
+        bench.done(&format!("render {name} -o a.exr --size 64x48 -q"));
+        read_exr(bench.path("a.exr")).unwrap()
+    };
+    let (before, after) = (draw("@profiles/bottle.png"), draw("clean.svg"));
+    let pairs = before.distance.iter().zip(&after.distance);
+    let off = pairs.filter(|(a, b)| (*a - *b).abs() > 1e-3 && (a.is_finite() || b.is_finite()));
+    assert!(off.count() < 4);
+    bench.refuses(
+        2,
+        "profile @profiles/bottle.png -o a.png                     | a.png | .svg
+         profile clean.svg -o clean.svg                            | clean.svg | is read as well
+         profile clean.svg -o a.svg --tolerance 0                  | --tolerance | object units or more",
+    );
+    bench.refused("profile none.jpg -o a.svg", 1, &["none.jpg"]);
+}

@@ -3,8 +3,7 @@
 use crate::run::Bench;
 use serde_json::Value;
 
-const COMMANDS: &str =
-    "render animate bake bench chart stability submit shaders devices compare view completions man";
+const COMMANDS: &str = "render animate mesh profile bake bench chart stability submit shaders devices compare view completions man";
 
 /// Every example is a command line that the program takes.
 #[test]

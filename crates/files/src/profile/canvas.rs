@@ -12,7 +12,7 @@ use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use std::cell::Cell;
 
 /// Largest distance between a curve and its chords, object units.
-pub(super) const FLATNESS: f64 = 1e-5;
+pub(crate) const FLATNESS: f64 = 1e-5;
 
 /// Paint is cut by an edge of the page if it reaches this far to both sides, object units.
 const CUT: f64 = 5e-3;

@@ -15,6 +15,7 @@ mod svg;
 mod tile;
 mod transparency;
 
+pub(crate) use canvas::FLATNESS;
 pub(crate) use gaps::hints as gap_hints;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions};

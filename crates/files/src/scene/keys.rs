@@ -4,6 +4,7 @@
 use crate::content_fault;
 use glam::DVec3;
 use revmap::error::{Error, Result};
+use revmap::frame::linear_from_srgb;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -164,6 +165,22 @@ impl<'a> Keys<'a> {
         })
     }
 
+    /// Replaces `slot` with the colour of the key: three linear numbers, or `"#rrggbb"` in sRGB.
+    pub(super) fn color(&self, key: &str, slot: &mut [f32; 3]) -> Result<()> {
+        let Some(text) = self.table.get(key).and_then(Value::as_str) else {
+            return self.set(key, slot);
+        };
+        let is_hex = |d: &&str| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit());
+        let digits = text.strip_prefix('#').filter(is_hex);
+        let code = |at: usize| u8::from_str_radix(digits?.get(at..at + 2)?, 16).ok();
+        let [Some(red), Some(green), Some(blue)] = [0, 2, 4].map(code) else {
+            let wanted = "3 numbers, or \"#rrggbb\"";
+            return Err(self.wrong(key, wanted, &format!("the text {text:?}")));
+        };
+        *slot = [red, green, blue].map(|v| linear_from_srgb(f64::from(v) / 255.0) as f32);
+        Ok(())
+    }
+
     fn text(&self, key: &str) -> Result<Option<&'a str>> {
         self.read(key, "text in quotes", Value::as_str)
     }
@@ -315,8 +332,8 @@ pub fn decimal_comma(text: &str) -> Option<String> {
 pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
     profile_smooth radius map_rows color color_map specular shininess roughness \
     metalness height_map bump bump_form \
-    projection texture_repeat extend bevel chamfer clip axis repeat mirror position rotation scale \
-    instances";
+    projection texture_repeat extend bevel chamfer clip axis repeat mirror position turn rotation \
+    scale instances";
 
 fn is_of_object(key: &str) -> bool {
     OBJECT.split_whitespace().any(|known| known == key)

@@ -8,6 +8,7 @@ use crate::{
     ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, profile_from_bytes,
     projection_of,
 };
+use glam::DQuat;
 use revmap::error::{Error, Result};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::profile::Profile;
@@ -28,7 +29,7 @@ pub(super) const CAMERA: &str = "eye target up fov_y";
 /// Keys of `[[light]]`.
 pub(super) const LIGHT: &str = "direction color radius";
 /// Keys that place one copy.
-const PLACEMENT: [&str; 3] = ["position", "rotation", "scale"];
+const PLACEMENT: [&str; 4] = ["position", "turn", "rotation", "scale"];
 /// `R` of a polygon's box unless the file gives another.
 const RADIUS: f64 = 0.5;
 
@@ -124,7 +125,7 @@ impl Reader {
         let keys = Keys::new(table, format!("object.{index}"), OBJECT)?;
         let mut object = self.profile(&keys)?;
         keys.set("map_rows", &mut object.map_rows)?;
-        keys.set("color", &mut object.color)?;
+        keys.color("color", &mut object.color)?;
         let Specular {
             strength,
             shininess,
@@ -310,7 +311,7 @@ fn light((index, table): (usize, &Table)) -> Result<Light> {
     let keys = Keys::new(table, format!("light.{index}"), LIGHT)?;
     let mut light = Light::default();
     keys.set("direction", &mut light.direction)?;
-    keys.set("color", &mut light.color)?;
+    keys.color("color", &mut light.color)?;
     keys.set("radius", &mut light.radius)?;
     Ok(light)
 }
@@ -322,6 +323,11 @@ fn placement(keys: &Keys) -> Result<Placement> {
     if let Some(xyzw) = keys.get("rotation")? {
         let unit = instances::unit(xyzw);
         placement.rotation = unit.map_err(|e| e.at_key(keys.place("rotation")))?;
+    }
+    let mut turn = 0.0f64;
+    keys.set("turn", &mut turn)?;
+    if turn != 0.0 {
+        placement.rotation *= DQuat::from_rotation_z(turn.to_radians());
     }
     Ok(placement)
 }

@@ -375,6 +375,7 @@ fn keys_without_effect_are_refused() {
     let folder = folder();
     for line in [
         "position = [1, 1, 1]",
+        "turn = 60",
         "rotation = [0, 0, 0, 1]",
         "scale = [1, 1, 1]",
     ] {
@@ -382,5 +383,23 @@ fn keys_without_effect_are_refused() {
         let lines = format!("{CAMERA_LINES}{CONE}instances = \"copies.csv\"\n{line}");
         let words = format!("object.0.{key}: stands beside instances");
         fault(parse(&lines, folder.path(), &[]), &words);
+    }
+}
+
+#[test]
+fn turns_come_before_rotations_and_colours_may_be_texts() {
+    let at = |lines: &str| cone(lines).unwrap().objects[0].placement.rotation;
+    let turned = at("turn = 90") * glam::DVec3::X;
+    assert!(turned.distance(glam::DVec3::Y) < 1e-12);
+    // Half a turn about x after it.
+    let turned = at("rotation = [1, 0, 0, 0]\nturn = 90") * glam::DVec3::X;
+    assert!(turned.distance(glam::DVec3::NEG_Y) < 1e-12);
+    fault(cone("turn = \"a\""), "object.0.turn");
+    let scene = cone("color = \"#Ff8000\"\n[[light]]\ncolor = \"#000033\"").unwrap();
+    let [red, green, blue] = scene.objects[0].color;
+    assert!(red == 1.0 && (green - 0.215_861).abs() < 1e-6 && blue == 0.0);
+    assert!((scene.lights[0].color[2] - 0.033_105).abs() < 1e-6);
+    for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "red", "#+f8000"] {
+        fault(cone(&format!("color = \"{text}\"")), "object.0.color");
     }
 }

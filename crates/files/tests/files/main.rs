@@ -6,6 +6,8 @@ mod browser_rules;
 mod damaged_files;
 mod drawings;
 mod map_accuracy;
+mod meshes;
+mod outlines;
 mod profiles;
 mod scenes;
 mod seeming;

@@ -5,9 +5,10 @@ use super::super::row::Row;
 use super::super::row::tests::row;
 use super::*;
 use crate::columns::results;
+use crate::method::Method;
 use crate::plan::rbm_baseline;
 use crate::view::tests::spindle;
-use revmap::settings::DrawStage;
+use revmap::settings::{DrawStage, Solver};
 
 /// The folder of a run of these rows.
 pub(super) fn folder_of(rows: &[Row], device: &str, driver: &str) -> tempfile::TempDir {
@@ -23,7 +24,7 @@ fn run(rows: &[Row]) -> tempfile::TempDir {
 }
 
 fn verdicts(found: &Against) -> Vec<Verdict> {
-    found.pairs.iter().map(Pair::verdict).collect()
+    found.pairs.iter().map(|pair| pair.verdict).collect()
 }
 
 fn timed(times: [f64; 4], stage: DrawStage) -> Row {
@@ -52,7 +53,7 @@ fn planted_changes_are_found() {
     let worse = "less exact: fragment: missed 0 to 40";
     assert!(text.contains(worse), "{text}");
     let back = compare(new.path(), old.path()).unwrap();
-    assert_eq!(back.pairs[0].verdict(), Verdict::Faster);
+    assert_eq!(back.pairs[0].verdict, Verdict::Faster);
     assert_eq!(back.pairs[0].better.len(), 1);
 }
 
@@ -81,10 +82,72 @@ fn a_slower_machine_is_told_from_a_slower_search() {
         search([15.0, 15.2, 14.8, 15.0], 40),
     ]);
     let found = compare(old.path(), new.path()).unwrap();
-    let wanted = [Verdict::Slower, Verdict::Even, Verdict::Slower];
+    let wanted = [Verdict::Even, Verdict::Even, Verdict::Slower];
     assert_eq!(verdicts(&found), wanted);
     assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
     assert!(as_text(&found).contains("the RBM baseline itself differs"));
+}
+
+/// Forty measurements of one program, each run with a drift of its own: nothing is named in nineteen of
+/// twenty comparisons, and a change by a fifth in every one.
+#[test]
+fn a_run_against_itself_names_nothing() {
+    let mut seed = 1u64;
+    let mut normal = || -> f64 {
+        let mut uniform = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    };
+    let mut rows = |changed: f64| -> Vec<Row> {
+        let row = |steps: u32| {
+            let own = 10.0 * (0.02 * normal()).exp() * if steps == 7 { changed } else { 1.0 };
+            let times = [0; 4].map(|_| own * (0.02 * normal()).exp());
+            let mut row = timed(times, DrawStage::Fragment);
+            row.settings.max_steps = Some(steps + 1);
+            row
+        };
+        (0..40).map(row).collect()
+    };
+    let (mut silent, mut found) = (0, 0);
+    for _ in 0..40 {
+        let old = run(&rows(1.0));
+        let [same, slow] = [run(&rows(1.0)), run(&rows(1.35))];
+        let changed = |new: &tempfile::TempDir| {
+            let verdicts = verdicts(&compare(old.path(), new.path()).unwrap());
+            let is_named = |(_, v): &(usize, Verdict)| !matches!(v, Verdict::Even);
+            verdicts
+                .into_iter()
+                .enumerate()
+                .filter(is_named)
+                .map(|(k, _)| k)
+                .collect::<Vec<_>>()
+        };
+        silent += usize::from(changed(&same).is_empty());
+        found += usize::from(changed(&slow).contains(&7));
+    }
+    assert!(silent >= 38 && found >= 38, "{silent} {found}");
+}
+
+#[test]
+fn runs_of_other_methods_are_said() {
+    let with = |steps: u32, search: Solver| {
+        let mut row = timed([10.0; 4], DrawStage::Fragment);
+        row.settings.method = Method::Search(search);
+        row.settings.max_steps = Some(steps);
+        row
+    };
+    let both = run(&[with(3, Solver::Exact), with(3, Solver::Live)]);
+    let one = run(&[with(3, Solver::Exact)]);
+    let warnings = compare(both.path(), one.path()).unwrap().warnings;
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("only the old one has live"),
+        "{warnings:?}"
+    );
+    assert_eq!(compare(one.path(), one.path()).unwrap().warnings, [""; 0]);
 }
 
 #[test]

@@ -5,7 +5,8 @@ use revmap::surface::{Chain, Contour};
 
 /// A ring of vertices, seen in the half-plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ring {
+pub struct Ring {
+    /// `(r, z)`.
     pub point: DVec2,
     /// Unit outward normals of the surface before it and after it; equal where there is no crease.
     pub normals: [DVec2; 2],
@@ -13,8 +14,10 @@ pub(super) struct Ring {
 
 /// The rings of one chain; a closed one ends with the ring that it begins with.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Strand {
+pub struct Strand {
+    /// At least two, in the order of the chain: the solid is on the left.
     pub rings: Vec<Ring>,
+    /// True if the chain is closed. Otherwise both ends are on the axis.
     pub closed: bool,
 }
 
@@ -28,9 +31,10 @@ const SHARED: f64 = 4.0 * std::f64::consts::PI / 180.0;
 /// The least and the largest tolerance, object units.
 const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 
-/// All chains, in at most `most` chords together if corners allow.
-pub(super) fn meridian(contour: &Contour, most: usize) -> Vec<Strand> {
-    let lines: Vec<Line> = contour.chains.iter().filter_map(Line::new).collect();
+/// All chains as strands of at most `most` chords together, or more if corners need them.
+#[must_use]
+pub fn strands_of(contour: &Contour, most: usize) -> Vec<Strand> {
+    let lines = lines(contour);
     let count =
         |tolerance: f64| -> usize { lines.iter().map(|l| l.thinned(tolerance).len() - 1).sum() };
     let [mut low, mut high] = TOLERANCES;
@@ -46,6 +50,49 @@ pub(super) fn meridian(contour: &Contour, most: usize) -> Vec<Strand> {
         }
     }
     lines.iter().map(|l| l.strand(high)).collect()
+}
+
+/// All chains as strands that are nowhere farther than `tolerance` from the contour, and do not
+/// cross each other where walls are thin.
+#[must_use]
+pub fn strands_within(contour: &Contour, tolerance: f64) -> Vec<Strand> {
+    let lines = lines(contour);
+    // Chords pass within this of all points, and rings are moved by at most half of it.
+    let mut chords = tolerance / 1.5;
+    loop {
+        let strands: Vec<Strand> = lines.iter().map(|l| l.strand(chords)).collect();
+        // The finest strands are the contour, whose chains may touch.
+        if chords < TOLERANCES[0] || !crosses(&strands) {
+            return strands;
+        }
+        chords *= 0.5;
+    }
+}
+
+fn lines(contour: &Contour) -> Vec<Line> {
+    contour.chains.iter().filter_map(Line::new).collect()
+}
+
+/// Returns true if any two chords cross. Chords that only touch do not.
+fn crosses(strands: &[Strand]) -> bool {
+    let chords = strands.iter().flat_map(|s| s.rings.windows(2));
+    let mut chords: Vec<[DVec2; 2]> = chords.map(|r| [r[0].point, r[1].point]).collect();
+    let low = |c: &[DVec2; 2]| c[0].y.min(c[1].y);
+    chords.sort_by(|a, b| low(a).total_cmp(&low(b)));
+    let mut beside: Vec<[DVec2; 2]> = Vec::new();
+    chords.iter().any(|chord| {
+        beside.retain(|c| c[0].y.max(c[1].y) > low(chord));
+        let found = beside.iter().any(|other| cross(chord, other));
+        beside.push(*chord);
+        found
+    })
+}
+
+fn cross([a, b]: &[DVec2; 2], [c, d]: &[DVec2; 2]) -> bool {
+    let sides = |a: &DVec2, b: &DVec2, c: &DVec2, d: &DVec2| {
+        (b - a).perp_dot(c - a) * (b - a).perp_dot(d - a) < 0.0
+    };
+    sides(a, b, c, d) && sides(c, d, a, b)
 }
 
 /// A chain from its first point to its last; a closed one begins at a crease if it has any.

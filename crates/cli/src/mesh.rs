@@ -1,0 +1,142 @@
+//! `revmap mesh`: the solids of a scene as triangles.
+
+use super::output::{self, usage};
+use super::progress::Progress;
+use clap::Args;
+use revmap::error::{Error, Result};
+use revmap::scene::{Object, Scene};
+use revmap_files::{MESH_ENDINGS, SceneFile, mesh_files, write_meshes};
+use revmap_tessellation::{Triangles, pixel_tolerance};
+use std::path::PathBuf;
+
+/// Writes the solids of a scene as triangles, for modelling, printing and physics
+#[derive(Args)]
+#[command(
+    after_help = "A .glb holds colours, colour maps and a node for each copy, with y up. An .obj holds the \
+same, with copies written out, and a .mtl and pictures beside it. An .stl holds the triangles alone, with z up.\n\n\
+    Examples:\n  \
+    revmap mesh assets/profiles/pawn.svg -o pawn.glb\n  \
+    revmap mesh assets/scenes/chess.toml -o chess.glb --tolerance 0.002\n  \
+    revmap mesh assets/scenes/pawn.toml -o far.glb --pixels 0.5 --distance 20\n  \
+    revmap mesh pawn.svg -o pawn.stl --set object.0.scale=[40,40,40]"
+)]
+pub struct Mesh {
+    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
+    /// profile_smooth = "auto"
+    scene: PathBuf,
+    /// The file: .glb, .obj or .stl
+    #[arg(long, short, value_name = "FILE")]
+    output: PathBuf,
+    /// Largest distance between the triangles and the solid, object units (1 is the height of the
+    /// box, before scale)
+    #[arg(long, value_name = "LENGTH", default_value_t = 5e-4)]
+    tolerance: f64,
+    /// The largest distance in pixels, in place of --tolerance: those in the middle of a picture
+    /// through the scene's camera
+    #[arg(long, value_name = "PIXELS", conflicts_with = "tolerance")]
+    pixels: Option<f64>,
+    /// World units from the eye to the solids, for --pixels [default: to the nearest copy of each, as
+    /// the scene has it]
+    #[arg(long, value_name = "LENGTH", requires = "pixels")]
+    distance: Option<f64>,
+    /// Rows of the picture, for --pixels [default: 1080]
+    #[arg(long, value_name = "N", requires = "pixels", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    rows: Option<u32>,
+    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Say nothing but failures
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl Mesh {
+    pub fn run(self) -> Result<()> {
+        output::check([&self.output], "--output", &MESH_ENDINGS, &[&self.scene])?;
+        let mut file = SceneFile::open(&self.scene)?;
+        let scene = file.scene(&self.set)?;
+        let written = mesh_files(&scene, &self.output);
+        output::spare(file.files(), &written, "--output")?;
+        let progress = Progress::start("making triangles", self.quiet);
+        let mut meshes = Vec::new();
+        for (number, object) in scene.objects.iter().enumerate() {
+            let made = Triangles::new(object, self.tolerance_of(&scene, object)?);
+            meshes.push(made.map_err(|e| self.named(e, number))?);
+            progress.report(number + 1, scene.objects.len());
+        }
+        write_meshes(&scene, &meshes, &self.output)?;
+        drop(progress);
+        if self.quiet {
+            return Ok(());
+        }
+        warnings(&scene).iter().for_each(|w| output::warn(w));
+        for file in &written[1..] {
+            output::note(&format!("beside it: {}", file.display()));
+        }
+        let count: usize = meshes.iter().map(|m| m.indices.len() / 3).sum();
+        let copies: usize = scene.objects.iter().map(|o| o.placements().len()).sum();
+        let bytes = std::fs::metadata(&self.output).map_or(0, |m| m.len());
+        let within = match self.pixels {
+            Some(pixels) => format!("{pixels} pixels"),
+            None => format!("{} object units", self.tolerance),
+        };
+        output::result(&format!(
+            "{}: {count} triangles of {} solids, {copies} copies, within {within}; {bytes} bytes",
+            self.output.display(),
+            meshes.len(),
+        ));
+        Ok(())
+    }
+
+    /// The tolerance of an object of the scene, object units.
+    fn tolerance_of(&self, scene: &Scene, object: &Object) -> Result<f64> {
+        let Some(pixels) = self.pixels else {
+            return Ok(self.tolerance);
+        };
+        let above_0 = |length: f64| length > 0.0 && length.is_finite();
+        if !above_0(pixels) {
+            return Err(usage("--pixels", "is no length; give a number above 0"));
+        }
+        if self.distance.is_some_and(|d| !above_0(d)) {
+            return Err(usage("--distance", "is no length; give a number above 0"));
+        }
+        let rows = self.rows.unwrap_or(1080);
+        pixel_tolerance(object, &scene.camera, rows, pixels, self.distance).ok_or_else(|| {
+            let message = format!(
+                "{}: the eye is within its box; give a distance",
+                object.name
+            );
+            usage("--distance", message)
+        })
+    }
+
+    /// A failure with the option or the object's key, and the scene's file.
+    fn named(&self, error: Error, number: usize) -> Error {
+        match error.key.clone() {
+            Some(key) if key == "tolerance" => {
+                let option = self.pixels.map_or("--tolerance", |_| "--pixels");
+                usage(option, error.message)
+            }
+            Some(key) => Error {
+                key: Some(format!("object.{number}.{key}")),
+                ..error.in_file(&self.scene)
+            },
+            None => error.in_file(&self.scene),
+        }
+    }
+}
+
+/// Parts of the scene that no mesh has.
+fn warnings(scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    for (number, object) in scene.objects.iter().enumerate() {
+        let warnings = object.profile.warnings.iter();
+        found.extend(warnings.map(|w| format!("object.{number}: {w}")));
+        if object.texturing.displacement_map.is_some() && object.texturing.bump != 0.0 {
+            found.push(format!(
+                "object.{number}.height_map: a mesh has no bumps; they are left out"
+            ));
+        }
+    }
+    found
+}

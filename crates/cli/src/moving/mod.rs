@@ -1,0 +1,152 @@
+//! Moving pictures: GIF, WebP and APNG.
+//!
+//! | format | crate | colours | 48 frames of 640 x 360 |
+//! |---|---|---|---|
+//! | `.gif` | `gif`, palette by `quantette` | 255 for all frames, dithered; no soft transparency | 1.73 MB, 1.6 s |
+//! | `.webp` | `webp-animation` | all, with losses by `--quality` (90) | 0.43 MB, 0.4 s |
+//! | `.apng` | `png` | all | 2.90 MB, 0.4 s |
+//!
+//! Not taken: `imagequant` (GPL), `zenwebp` (AGPL), `image-webp` (writes no animation), `webp`
+//! (an older libwebp).
+
+mod apng;
+mod gif;
+mod webp;
+
+use super::output::{self, usage};
+use clap::Args;
+use revmap::error::{Error, ErrorKind, Result};
+use revmap::frame::{Frame, MAX_PIXELS};
+use revmap_files::{Picture, write_bytes};
+use std::path::Path;
+
+/// Endings of the formats.
+pub const ENDINGS: [&str; 3] = ["gif", "webp", "apng"];
+
+/// How a moving picture plays
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Playing {
+    /// Frames a second of a moving picture, 1 to 100; a GIF has 50 at most [default: 25]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    fps: Option<u16>,
+    /// How often a moving picture plays; 0 is for ever [default: 0]
+    #[arg(long, value_name = "N")]
+    loops: Option<u16>,
+    /// Quality of a .webp, 1 to 100, where 100 is without loss [default: 90]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100))]
+    quality: Option<u8>,
+}
+
+/// All frames of a moving picture, and how it plays.
+struct Moving<'a> {
+    width: u32,
+    height: u32,
+    frames: &'a [Picture],
+    fps: u16,
+    /// 0 is for ever.
+    loops: u16,
+    /// Parts of a hundred; 100 is without loss.
+    quality: u8,
+}
+
+impl Playing {
+    /// Checks the options against the output `path` (`None`: frames are not kept), before any
+    /// work. Returns true if it is a moving picture.
+    pub fn check(
+        self,
+        path: Option<&Path>,
+        frames: u32,
+        (width, height): (u32, u32),
+    ) -> Result<bool> {
+        let is = |ending| path.is_some_and(|path| output::has_ending(path, ending));
+        if !ENDINGS.into_iter().any(is) {
+            let given = [
+                ("--fps", self.fps.is_some()),
+                ("--loops", self.loops.is_some()),
+                ("--quality", self.quality.is_some()),
+            ];
+            return match given.into_iter().find(|(_, is)| *is) {
+                Some((option, _)) => Err(usage(
+                    option,
+                    "is of moving pictures; give --output a .gif, .webp or .apng",
+                )),
+                None => Ok(false),
+            };
+        }
+        if is("gif") && self.fps.is_some_and(|fps| fps > 50) {
+            return Err(usage(
+                "--fps",
+                "is more than the 50 that a GIF can have; give 50, or write .webp",
+            ));
+        }
+        if self.quality.is_some() && !is("webp") {
+            return Err(usage("--quality", "is of .webp; other formats have none"));
+        }
+        if is("webp") && width.max(height) > webp::MAX_SIDE {
+            let message = format!(
+                "is more than {} on a side, the most of a .webp; give less",
+                webp::MAX_SIDE
+            );
+            return Err(usage("--size", message));
+        }
+        // All frames are in memory until the last is drawn.
+        let pixels = u64::from(frames) * u64::from(width) * u64::from(height);
+        if pixels > MAX_PIXELS {
+            let message = format!(
+                "{frames} frames of {width}x{height} are {pixels} pixels, and a moving picture has {MAX_PIXELS} at most; give fewer or smaller frames, or a folder"
+            );
+            return Err(usage("--frames", message));
+        }
+        Ok(true)
+    }
+
+    /// Writes the file.
+    pub fn write(self, path: &Path, frames: &[Picture]) -> Result<()> {
+        let Some(first) = frames.first() else {
+            return Ok(()); // there is at least one frame
+        };
+        let moving = Moving {
+            width: first.width,
+            height: first.height,
+            frames,
+            fps: self.fps.unwrap_or(25),
+            loops: self.loops.unwrap_or(0),
+            quality: self.quality.unwrap_or(90),
+        };
+        let bytes = match path {
+            _ if output::has_ending(path, "gif") => gif::bytes(&moving),
+            _ if output::has_ending(path, "webp") => webp::bytes(&moving),
+            _ => apng::bytes(&moving),
+        };
+        write_bytes(path, &bytes.map_err(|e| e.in_file(path))?)
+    }
+}
+
+impl Moving<'_> {
+    /// When frame `n` begins, in the given parts of a second, so that the error does not grow.
+    fn start(&self, n: usize, parts: u64) -> u64 {
+        (n as u64 * parts + u64::from(self.fps) / 2) / u64::from(self.fps)
+    }
+}
+
+/// A frame for a file that `path` names. A GIF has no soft edges, so white is put behind it.
+pub fn picture(path: &Path, frame: &Frame) -> Result<Picture> {
+    if !output::has_ending(path, "gif") {
+        return Picture::of(frame);
+    }
+    let mut frame = frame.clone();
+    for [red, green, blue, alpha] in &mut frame.color {
+        let behind = 1.0 - alpha.clamp(0.0, 1.0);
+        (*red, *green, *blue) = (*red + behind, *green + behind, *blue + behind);
+        *alpha = 1.0;
+    }
+    Picture::of(&frame)
+}
+
+/// A failure of an encoder.
+fn failed(why: impl std::fmt::Display) -> Error {
+    Error::new(
+        ErrorKind::Other,
+        format!("cannot be made ({why}); write another format"),
+    )
+}

@@ -1,0 +1,57 @@
+//! `revmap profile`: the outline that is drawn, as a drawing of a few curves.
+
+use super::bake::{ProfileArguments, with_options};
+use super::output::{self, usage};
+use clap::Args;
+use revmap::error::Result;
+use revmap_files::{Smooth, write_outline};
+use std::path::PathBuf;
+
+/// Writes the outline of a drawing or picture as an SVG of a few curves, to be changed by hand
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    revmap profile photo.jpg -o clean.svg --tolerance 0.001\n  \
+    revmap profile assets/profiles/bottle.png -o bottle.svg\n  \
+    revmap render bottle.svg -o bottle.png")]
+pub struct Profile {
+    #[command(flatten)]
+    profile: ProfileArguments,
+    /// The drawing
+    #[arg(long, short, value_name = "FILE.svg")]
+    output: PathBuf,
+    /// Largest distance between the curves and the outline, object units (1 is the height)
+    #[arg(long, value_name = "LENGTH", default_value_t = 1e-5)]
+    tolerance: f64,
+    /// Say nothing but failures
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+impl Profile {
+    pub fn run(self) -> Result<()> {
+        output::check(
+            [&self.output],
+            "--output",
+            &["svg"],
+            &[&self.profile.profile],
+        )?;
+        // As `render` reads a profile in place of a scene.
+        let profile = self.profile.read(Smooth::Auto)?;
+        let [lines, curves] =
+            write_outline(&profile, &self.output, self.tolerance).map_err(|e| match &e.key {
+                Some(_) => usage("--tolerance", e.message),
+                None => e,
+            })?;
+        if !self.quiet {
+            let warnings = profile.warnings.iter();
+            warnings.for_each(|w| output::warn(&with_options(w)));
+            let points: usize = profile.outline.loops.iter().map(Vec::len).sum();
+            output::result(&format!(
+                "{}: {lines} lines and {curves} curves for {points} points, within {} of the height",
+                self.output.display(),
+                self.tolerance
+            ));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,176 @@
+//! `revmap animate`: moving pictures, read again, and how things move in them.
+
+use crate::run::{Bench, lines};
+use std::fs::File;
+use std::io::BufReader;
+
+const SMALL: &str = "animate scene.toml --size 48x36 --frames 6";
+
+/// Frames in RGBA, and when each ends, milliseconds.
+type Read = Vec<(u32, Vec<u8>)>;
+
+fn read_gif(bench: &Bench, name: &str) -> (Read, gif::Repeat) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let file = File::open(bench.path(name)).unwrap();
+    let mut decoder = options.read_info(file).unwrap();
+    let (mut frames, mut canvas, mut end) = (Vec::new(), Vec::new(), 0);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        assert_eq!((frame.width, frame.height), (48, 36));
+        canvas.resize(frame.buffer.len(), 0);
+        for (old, new) in canvas.chunks_exact_mut(4).zip(frame.buffer.chunks_exact(4)) {
+            if new[3] != 0 {
+                old.copy_from_slice(new);
+            }
+        }
+        end += 10 * u32::from(frame.delay);
+        frames.push((end, canvas.clone()));
+    }
+    (frames, decoder.repeat())
+}
+
+fn read_webp(bench: &Bench, name: &str) -> Read {
+    let bytes = bench.read(name);
+    let decoder = webp_animation::Decoder::new(&bytes).unwrap();
+    assert_eq!(decoder.dimensions(), (48, 36));
+    let frame = |f: webp_animation::Frame| (f.timestamp() as u32, f.data().to_vec());
+    decoder.into_iter().map(frame).collect()
+}
+
+fn read_apng(bench: &Bench, name: &str) -> (Read, png::AnimationControl) {
+    let file = BufReader::new(File::open(bench.path(name)).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let control = *reader.info().animation_control().unwrap();
+    let mut end = 0.0;
+    let frame = |_| {
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+        let shown = reader.info().frame_control().unwrap();
+        end += 1e3 * f64::from(shown.delay_num) / f64::from(shown.delay_den);
+        (end as u32, bytes)
+    };
+    ((0..control.num_frames).map(frame).collect(), control)
+}
+
+#[test]
+fn moving_pictures_show_the_frames_of_a_folder() {
+    let bench = Bench::new();
+    let animate = |options: &str| {
+        bench.done(&format!("{SMALL} --vary object.0.extend=0:0.1 {options}"));
+    };
+    let opaque = "--set background=[0.2,0.3,0.4,1]";
+    animate(&format!("-o folder {opaque}"));
+    let folder: Vec<Vec<u8>> = (0..6)
+        .map(|n| image::open(bench.path(&format!("folder/frame-000{n}.png"))).unwrap())
+        .map(|picture| picture.to_rgba8().into_raw())
+        .collect();
+    animate(&format!("-o a.gif --fps 7 --loops 3 {opaque}"));
+    animate(&format!("-o a.webp --fps 7 --quality 100 {opaque}"));
+    animate(&format!("-o lossy.webp --fps 7 {opaque}"));
+    animate(&format!("-o a.apng --fps 7 --loops 3 {opaque}"));
+
+    let (apng, control) = read_apng(&bench, "a.apng");
+    assert_eq!((apng.len(), control.num_plays), (6, 3));
+    for ((end, frame), wanted) in apng.iter().zip(&folder) {
+        let colors = wanted.chunks_exact(4).flat_map(|p| &p[..3]);
+        assert!(frame.iter().eq(colors), "{end}");
+    }
+    assert_eq!(apng[5].0, 857);
+    let webp = read_webp(&bench, "a.webp");
+    assert_eq!(
+        webp.iter().map(|(_, f)| f).collect::<Vec<_>>(),
+        folder.iter().collect::<Vec<_>>()
+    );
+    assert_eq!(webp[5].0, 857);
+    let (gif, repeat) = read_gif(&bench, "a.gif");
+    assert_eq!(
+        (gif.len(), gif[5].0, repeat),
+        (6, 860, gif::Repeat::Finite(2))
+    );
+    let mean = |read: &[(u32, Vec<u8>)]| {
+        let pairs = read
+            .iter()
+            .zip(&folder)
+            .flat_map(|((_, a), b)| a.iter().zip(b));
+        let off: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum();
+        f64::from(off) / (6 * 48 * 36 * 4) as f64
+    };
+    let (lossy, gif) = (mean(&read_webp(&bench, "lossy.webp")), mean(&gif));
+    assert!(lossy > 0.0 && lossy < 2.0 && gif < 1.0, "{lossy} {gif}");
+    animate(&format!("-o once.gif --loops 1 {opaque}"));
+    animate(&format!("-o ever.gif {opaque}"));
+    assert_eq!(read_gif(&bench, "once.gif").1, gif::Repeat::Finite(0));
+    assert_eq!(read_gif(&bench, "ever.gif").1, gif::Repeat::Infinite);
+}
+
+#[test]
+fn edges_stay_soft_or_get_a_ground() {
+    let bench = Bench::new();
+    let said = lines(&bench.done(&format!("{SMALL} --turn 90 -o a.gif"))).join("\n");
+    assert!(
+        said.contains("background") && said.contains("white"),
+        "{said}"
+    );
+    let (gif, _) = read_gif(&bench, "a.gif");
+    let corner = |frame: &[u8]| frame[..4].to_vec();
+    assert_eq!(corner(&gif[3].1), [255, 255, 255, 255]);
+    let said = lines(&bench.done(&format!("{SMALL} --turn 90 -o a.webp --quality 100"))).join("\n");
+    assert!(!said.contains("white"), "{said}");
+    for frame in [read_webp(&bench, "a.webp").remove(3).1, {
+        bench.done(&format!("{SMALL} --turn 90 -o a.apng"));
+        read_apng(&bench, "a.apng").0.remove(3).1
+    }] {
+        assert_eq!(corner(&frame), [0, 0, 0, 0]);
+        let soft = frame.chunks_exact(4).filter(|p| !matches!(p[3], 0 | 255));
+        assert!(soft.count() > 20);
+    }
+}
+
+#[test]
+fn sweeps_go_there_and_back_while_the_scene_turns() {
+    let bench = Bench::new();
+    let frames = |options: &str| -> Vec<Vec<u8>> {
+        let light = "light=[{direction=[-1,0.5,-1]}]";
+        bench.done(&format!("{SMALL} -o f --overwrite --set {light} {options}"));
+        (0..6)
+            .map(|n| bench.read(&format!("f/frame-000{n}.png")))
+            .collect()
+    };
+    let sweep = "--vary object.0.extend=0:0.1";
+    let [there, back] = [frames(sweep), frames(&format!("{sweep} --bounce"))];
+    assert_eq!(back[0], there[0]);
+    // Half of the way up, and down again; the highest is the fourth.
+    assert_eq!((&back[1], &back[2]), (&back[5], &back[4]));
+    assert_eq!(back[3], there[5]);
+    assert!(back[1] != back[2] && back[2] != back[3]);
+    // A solid on the table's axis looks the same from all sides, if its light does.
+    let table = frames("--turn 360 --turntable");
+    assert!(table.iter().all(|frame| *frame == table[0]));
+    let camera = frames("--turn 360");
+    assert!(camera.iter().skip(1).all(|frame| *frame != camera[0]));
+    let both = frames(&format!("--turn 360 {sweep} --bounce"));
+    assert!(both[0] == camera[0] && both[1] != both[5] && both[2] != camera[2]);
+    let swing = frames("--turn 90 --bounce");
+    assert!(swing[1] == swing[5] && swing[1] != swing[0] && swing[3] != swing[2]);
+}
+
+#[test]
+fn what_does_not_move_is_refused_first() {
+    let bench = Bench::new();
+    bench.refuses(
+        2,
+        "animate scene.toml --frames 2 -o a.mp4                   | --output | .gif, .webp, .apng
+         animate scene.toml --frames 2 -o a --fps 10               | --fps | .webp
+         animate scene.toml --frames 2 --loops 2                   | --loops | .webp
+         animate scene.toml --frames 2 -o a.gif --fps 60           | --fps | 50
+         animate scene.toml --frames 2 -o a.gif --quality 60       | --quality | .webp
+         animate scene.toml --frames 2 -o a.webp --size 16384x2    | --size | 16383
+         animate scene.toml --frames 280 -o a.apng                 | --frames | 134400000 pixels | 134217728
+         animate scene.toml --frames 2 -o a.gif --turntable        | --turn",
+    );
+    bench.refused(
+        "animate scene.toml --frames 2 -o none/a.gif",
+        1,
+        &["none/a.gif", "--output"],
+    );
+}
