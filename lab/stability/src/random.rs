@@ -225,8 +225,8 @@ impl Random {
         let mut corner = polygon[0];
         // Cuts of a section without thickness give one of rounding errors, of which no search knows.
         let is_twice = |k: usize| polygon[..k].contains(&polygon[k]);
-        let cuts = if (0..polygon.len()).any(is_twice) { 0 } else { 3 };
-        for _ in 0..cuts {
+        let is_thin = (0..polygon.len()).any(is_twice);
+        for _ in 0..3 * u32::from(!is_thin) {
             let count = polygon.len();
             let n = (self.next() * count as f64) as usize;
             let [before, here, after] = [n + count - 1, n, n + 1].map(|k| polygon[k % count]);
