@@ -14,10 +14,10 @@ layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
 const uint LIGHT_RAYS = SHADOW == SHADOW_SOFT ? 16u : 1u;
 const uint ALL_RAYS = SHADOW == SHADOW_SOFT ? 0xffffu : 1u;
 const uint SPIRAL_BEGIN = 1u;
-const uint SPIRAL_END = SPIRAL_BEGIN + LIGHT_RAYS;
+const uint SPIRAL_END = SHADOW == SHADOW_SOFT ? 17u : 2u;
 // The rays of a pass. The first pass traces those from RIM_BEGIN on.
 const uint PASS_RAYS = SHADOW == SHADOW_SOFT ? 8u : 1u;
-const uint RIM_BEGIN = SPIRAL_END - PASS_RAYS;
+const uint RIM_BEGIN = SHADOW == SHADOW_SOFT ? 9u : SPIRAL_BEGIN;
 const uint FIRST_RAYS = SHADOW == SHADOW_SOFT ? 0xfe01u : 1u;
 const vec2 GOLDEN_ANGLE = vec2(-0.73736888, 0.67549029); // cosine and sine
 const vec2 RIM_ANGLE = vec2(0.93932130, 0.34303863); // PASS_RAYS golden angles
