@@ -24,7 +24,7 @@ use std::time::Instant;
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap animate pawn.svg --frames 50 --turn 360 -o pawn.gif --set background=[1,1,1,1]\n  \
-    revmap animate pawn.svg --frames 50 --turntable --vary object.0.bevel=0:1 --bounce -o pawn.webp\n  \
+    revmap animate pawn.svg --frames 50 --turn 360 --vary object.0.bevel=0:1 --bounce -o pawn.webp\n  \
     revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
