@@ -124,6 +124,13 @@ fn place(target: &Path) -> Result<Place> {
         (Ok(part), Some(old)) if loses(&old, &part.file).map_err(failed)? => Ok(Place::Kept(real)),
         (Ok(part), _) => Ok(Place::New(part, real)),
         (Err(e), Some(_)) if e.kind() == io::ErrorKind::PermissionDenied => Ok(Place::Kept(real)),
+        // Windows finds no folder there.
+        (Err(e), _)
+            if e.kind() == io::ErrorKind::NotFound && real.ancestors().any(Path::is_file) =>
+        {
+            let error = io::ErrorKind::NotADirectory.into();
+            Err(file_fault(reason("cannot be created", &error)))
+        }
         (Err(e), _) => Err(file_fault(reason("cannot be created", &e))),
     }
 }
@@ -269,10 +276,13 @@ impl Drop for Part {
 
 /// What failed, the system's reason, and a remedy if that is plain.
 fn reason(what: &str, error: &io::Error) -> String {
+    /// Windows' number of an error that has no kind: another program has the file open.
+    const SHARING_VIOLATION: i32 = 32;
+    let is_shared = error.raw_os_error() == Some(SHARING_VIOLATION);
     let why = match error.kind() {
         io::ErrorKind::NotFound => "its folder does not exist; make it first".into(),
         // Windows says so, too, of a file that another program has open.
-        io::ErrorKind::PermissionDenied if cfg!(windows) => {
+        kind if cfg!(windows) && (is_shared || kind == io::ErrorKind::PermissionDenied) => {
             "no permission, or another program has it open; choose another folder or close it there"
                 .into()
         }
