@@ -1,7 +1,7 @@
 //! `revmap animate`: a turntable, or changing parameters, as numbered pictures or one that moves, with
 //! the time of every frame.
 
-use super::moving::{self, ENDINGS, Playing};
+use super::moving::{ENDINGS, Format, Playing};
 use super::options::{Drawing, Samples, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
@@ -20,7 +20,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Draws a turntable or a sweep of parameters: a moving picture, or numbered ones, and what each frame took
+/// Draws a turntable or a sweep of parameters, as a moving picture or numbered ones
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap animate pawn.svg --frames 50 --turn 360 -o pawn.gif --set background=[1,1,1,1]\n  \
@@ -79,6 +79,13 @@ struct Row {
 /// The number of a frame that shows nothing, and why.
 type Blank = (u32, String);
 
+/// Where pictures go.
+#[derive(Clone, Copy)]
+enum Target<'a> {
+    Folder(&'a Path),
+    Moving(Format, &'a Path),
+}
+
 /// What was drawn.
 #[derive(Default)]
 struct Drawn {
@@ -100,7 +107,7 @@ impl Animate {
         if self.turn.is_some_and(|turn| !turn.is_finite()) {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
-        let moving = self.destination()?;
+        let target = self.destination()?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
@@ -108,44 +115,47 @@ impl Animate {
         let mut file = SceneFile::open(&self.scene)?;
         let first = self.scene_at(&mut file, &varied, 0)?;
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
-        let folder = self.output.as_deref().filter(|_| !moving);
-        match folder {
-            Some(folder) => written.extend((0..self.frames).map(|n| self.picture(folder, n))),
-            None => written.extend(self.output.clone()),
+        let mut old = Vec::new();
+        match target {
+            Some(Target::Folder(folder)) => {
+                written.extend((0..self.frames).map(|n| self.picture(folder, n)));
+                old = frames_in(folder);
+            }
+            Some(Target::Moving(_, path)) => written.push(path.to_owned()),
+            None => {}
         }
-        let old = folder.map_or(Vec::new(), frames_in);
         output::spare(file.files(), written.iter().chain(&old), "--output")?;
         let (device, kept) = self.drawing.open()?;
-        if let Some(folder) = folder {
+        if let Some(Target::Folder(folder)) = target {
             claim(folder, &old, self.overwrite)?;
         }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
-        let drawn = self.draw(&device, &mut file, &varied, &first, folder, &progress)?;
+        let drawn = self.draw(&device, &mut file, &varied, &first, target, &progress)?;
         let Drawn { rows, blanks, .. } = &drawn;
         device.check()?;
         kept.save(&device);
-        if let Some(path) = self.output.as_deref().filter(|_| moving) {
+        if let Some(Target::Moving(format, path)) = target {
             progress.say(&format!("writing {}", path.display()));
-            self.playing.write(path, &drawn.pictures)?;
+            self.playing.write(format, path, &drawn.pictures)?;
         }
         drop(progress);
         if let Some(path) = &self.times {
             write_times(path, rows)?;
         }
         if !self.drawing.quiet {
-            let warnings = self.warnings(&first, &varied, blanks, moving);
+            let warnings = self.warnings(&first, &varied, blanks, target);
             warnings.iter().for_each(|w| output::warn(w));
         }
-        self.tell(&device, rows, moving);
+        self.tell(&device, rows, target);
         Ok(())
     }
 
-    /// Checks the output, before any work. Returns true if it is a moving picture.
-    fn destination(&self) -> Result<bool> {
+    /// Checks the output, before any work.
+    fn destination(&self) -> Result<Option<Target<'_>>> {
         let path = self.output.as_deref();
-        let moving = self.playing.check(path, self.frames, self.drawing.size)?;
-        if moving {
+        let format = self.playing.check(path, self.frames, self.drawing.size)?;
+        if format.is_some() {
             output::check(&self.output, "--output", &ENDINGS, &[&self.scene])?;
         }
         let other = ["png", "mp4", "webm", "avi", "mov", "mkv"];
@@ -157,7 +167,10 @@ impl Animate {
             );
             return Err(usage("--output", message));
         }
-        Ok(moving)
+        Ok(path.map(|path| match format {
+            Some(format) => Target::Moving(format, path),
+            None => Target::Folder(path),
+        }))
     }
 
     fn warnings(
@@ -165,7 +178,7 @@ impl Animate {
         first: &Scene,
         varied: &[Vary],
         blanks: &[Blank],
-        moving: bool,
+        target: Option<Target>,
     ) -> Vec<String> {
         let mut warnings = self.drawing.warnings(first);
         if self.samples.count > 1 && self.output.is_none() {
@@ -181,30 +194,26 @@ impl Animate {
                 "{count} of {all} frames are empty, the first is frame {n}: {why}"
             ));
         }
-        let gif = self
-            .output
-            .as_ref()
-            .filter(|path| moving && output::has_ending(path, "gif"));
-        if gif.is_some() && first.background[3] < 1.0 {
+        if matches!(target, Some(Target::Moving(Format::Gif, _))) && first.background[3] < 1.0 {
             warnings.push("background: a GIF has no soft edges, so white is behind what is transparent; give another with --set background=[r,g,b,1], or write .webp".to_owned());
         }
         warnings
     }
 
     /// Draws every frame: the scene is updated and drawn, and it is read back after its times were
-    /// measured. Frames go into `folder`, or are returned for a moving picture.
+    /// measured. Frames of a moving picture are returned.
     fn draw(
         &self,
         device: &Device,
         file: &mut SceneFile,
         varied: &[Vary],
         first: &Scene,
-        folder: Option<&Path>,
+        target: Option<Target>,
         progress: &Progress,
     ) -> Result<Drawn> {
         let mut settings = self.drawing.settings(Planes::Color);
         // Silhouettes are smoothed only if pictures are written.
-        if self.samples.antialias(false) && self.output.is_some() {
+        if self.samples.antialias(false) && target.is_some() {
             settings.edges = Edges::Silhouettes;
         }
         let methods = MethodDevice::new(device.clone())?;
@@ -228,15 +237,17 @@ impl Animate {
                 row.frame_ms += times.frame_ms;
                 Ok(())
             };
-            match &self.output {
-                Some(path) => {
+            match target {
+                Some(target) => {
                     let frame = self.samples.draw(&scene, |scene| {
                         draw(&mut renderer, scene)?;
                         renderer.read()
                     })?;
-                    match folder {
-                        Some(folder) => revmap_files::write_png(&frame, self.picture(folder, n))?,
-                        None => drawn.pictures.push(moving::picture(path, &frame)?),
+                    match target {
+                        Target::Folder(folder) => {
+                            revmap_files::write_png(&frame, self.picture(folder, n))?;
+                        }
+                        Target::Moving(format, _) => drawn.pictures.push(format.picture(&frame)?),
                     }
                     drawn
                         .blanks
@@ -294,7 +305,7 @@ impl Animate {
         Ok(scene)
     }
 
-    fn tell(&self, device: &Device, rows: &[Row], moving: bool) {
+    fn tell(&self, device: &Device, rows: &[Row], target: Option<Target>) {
         if self.drawing.quiet {
             return;
         }
@@ -315,12 +326,12 @@ impl Animate {
                 format!(", {late} of them after the tenth"),
             ),
         };
-        let kept = match &self.output {
-            Some(path) if moving => {
+        let kept = match target {
+            Some(Target::Moving(_, path)) => {
                 let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
                 format!("; {}: {bytes} bytes", path.display())
             }
-            Some(_) => String::new(),
+            Some(Target::Folder(_)) => String::new(),
             None => "; no pictures are kept (--output FILE.webp or DIR keeps them)".to_owned(),
         };
         output::result(&format!(

@@ -23,6 +23,37 @@ use std::path::Path;
 /// Endings of the formats.
 pub const ENDINGS: [&str; 3] = ["gif", "webp", "apng"];
 
+/// A format of moving pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Gif,
+    Webp,
+    Apng,
+}
+
+impl Format {
+    /// The format that a file's ending says.
+    pub fn of(path: &Path) -> Option<Self> {
+        let mut all = ENDINGS.into_iter().zip([Self::Gif, Self::Webp, Self::Apng]);
+        let is = |(ending, _): &(&str, Self)| output::has_ending(path, ending);
+        all.find(is).map(|(_, format)| format)
+    }
+
+    /// A frame for a file. A GIF has no soft edges, so white is put behind it.
+    pub fn picture(self, frame: &Frame) -> Result<Picture> {
+        if self != Self::Gif {
+            return Picture::of(frame);
+        }
+        let mut frame = frame.clone();
+        for [red, green, blue, alpha] in &mut frame.color {
+            let behind = 1.0 - alpha.clamp(0.0, 1.0);
+            (*red, *green, *blue) = (*red + behind, *green + behind, *blue + behind);
+            *alpha = 1.0;
+        }
+        Picture::of(&frame)
+    }
+}
+
 /// How a moving picture plays
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Playing {
@@ -51,15 +82,14 @@ struct Moving<'a> {
 
 impl Playing {
     /// Checks the options against the output `path` (`None`: frames are not kept), before any
-    /// work. Returns true if it is a moving picture.
+    /// work. Returns the format of a moving picture.
     pub fn check(
         self,
         path: Option<&Path>,
         frames: u32,
         (width, height): (u32, u32),
-    ) -> Result<bool> {
-        let is = |ending| path.is_some_and(|path| output::has_ending(path, ending));
-        if !ENDINGS.into_iter().any(is) {
+    ) -> Result<Option<Format>> {
+        let Some(format) = path.and_then(Format::of) else {
             let given = [
                 ("--fps", self.fps.is_some()),
                 ("--loops", self.loops.is_some()),
@@ -70,19 +100,19 @@ impl Playing {
                     option,
                     "is of moving pictures; give --output a .gif, .webp or .apng",
                 )),
-                None => Ok(false),
+                None => Ok(None),
             };
-        }
-        if is("gif") && self.fps.is_some_and(|fps| fps > 50) {
+        };
+        if format == Format::Gif && self.fps.is_some_and(|fps| fps > 50) {
             return Err(usage(
                 "--fps",
                 "is more than the 50 that a GIF can have; give 50, or write .webp",
             ));
         }
-        if self.quality.is_some() && !is("webp") {
+        if self.quality.is_some() && format != Format::Webp {
             return Err(usage("--quality", "is of .webp; other formats have none"));
         }
-        if is("webp") && width.max(height) > webp::MAX_SIDE {
+        if format == Format::Webp && width.max(height) > webp::MAX_SIDE {
             let message = format!(
                 "is more than {} on a side, the most of a .webp; give less",
                 webp::MAX_SIDE
@@ -97,11 +127,11 @@ impl Playing {
             );
             return Err(usage("--frames", message));
         }
-        Ok(true)
+        Ok(Some(format))
     }
 
     /// Writes the file.
-    pub fn write(self, path: &Path, frames: &[Picture]) -> Result<()> {
+    pub fn write(self, format: Format, path: &Path, frames: &[Picture]) -> Result<()> {
         let Some(first) = frames.first() else {
             return Ok(()); // there is at least one frame
         };
@@ -113,10 +143,10 @@ impl Playing {
             loops: self.loops.unwrap_or(0),
             quality: self.quality.unwrap_or(90),
         };
-        let bytes = match path {
-            _ if output::has_ending(path, "gif") => gif::bytes(&moving),
-            _ if output::has_ending(path, "webp") => webp::bytes(&moving),
-            _ => apng::bytes(&moving),
+        let bytes = match format {
+            Format::Gif => gif::bytes(&moving),
+            Format::Webp => webp::bytes(&moving),
+            Format::Apng => apng::bytes(&moving),
         };
         write_bytes(path, &bytes.map_err(|e| e.in_file(path))?)
     }
@@ -127,20 +157,6 @@ impl Moving<'_> {
     fn start(&self, n: usize, parts: u64) -> u64 {
         (n as u64 * parts + u64::from(self.fps) / 2) / u64::from(self.fps)
     }
-}
-
-/// A frame for a file that `path` names. A GIF has no soft edges, so white is put behind it.
-pub fn picture(path: &Path, frame: &Frame) -> Result<Picture> {
-    if !output::has_ending(path, "gif") {
-        return Picture::of(frame);
-    }
-    let mut frame = frame.clone();
-    for [red, green, blue, alpha] in &mut frame.color {
-        let behind = 1.0 - alpha.clamp(0.0, 1.0);
-        (*red, *green, *blue) = (*red + behind, *green + behind, *blue + behind);
-        *alpha = 1.0;
-    }
-    Picture::of(&frame)
 }
 
 /// A failure of an encoder.
