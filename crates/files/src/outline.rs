@@ -17,8 +17,8 @@ const FINEST: f64 = 1e-7;
 const ROUNDS: usize = 8;
 
 /// Writes the outline of a profile as an SVG drawing of lines and cubic curves. Read again, it is
-/// nowhere farther than `tolerance` object units from the profile's. The right half is one path. The left half refers
-/// to it, so that only one is changed. Returns the number of lines and curves.
+/// nowhere farther than `tolerance` object units from the profile's. The right half is one path. The
+/// left half refers to it, so that only one is changed. Returns the number of lines and curves.
 ///
 /// It is read with [`ProfileAxis::Center`](crate::ProfileAxis::Center).
 ///

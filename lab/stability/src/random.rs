@@ -449,7 +449,8 @@ impl Draft {
 }
 
 /// Draws the scenes of `count` seeds from `seed` on. Each that fails is written into `folder` as
-/// `random-SEED-whole.toml`, and reduced as `random-SEED.toml`. `progress` is told how many are done, and ends it by `false`.
+/// `random-SEED-whole.toml`, and reduced as `random-SEED.toml`. `progress` is told how many are
+/// done, and ends it by `false`.
 pub fn run(
     device: &Device,
     (seed, count): (u64, u64),
