@@ -3,8 +3,9 @@
 //!
 //! Each scene of assets/gallery/ becomes one picture. Pixels are the mean light of 3 x 3 rays. The
 //! line `# size WIDTHxHEIGHT`, with which a scene begins, says how large; each line `# beside
-//! KEY=VALUE` adds the same scene once more to the right, with that key set. Two pictures have no
-//! scene: `maps`, and `method` of the README.
+//! KEY=VALUE` adds the same scene once more to the right, with that key set. Lines `# word X Y TEXT`
+//! are words in the picture. Three pictures have no scene: `maps`, and `method` and
+//! `strip-drawing` of the README.
 #![allow(clippy::expect_used)]
 
 #[path = "gallery/method.rs"]
@@ -12,7 +13,7 @@ mod method;
 #[path = "gallery/words.rs"]
 mod words;
 
-use image::{RgbaImage, imageops};
+use image::{Rgb, RgbImage, RgbaImage, imageops};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::Device;
@@ -46,6 +47,9 @@ fn main() -> Result<()> {
     }
     if takes("method") {
         method::draw(&device, root, &pictures.join("method.png"))?;
+    }
+    if takes("strip-drawing") {
+        drawing(root, &pictures.join("strip-drawing.png"))?;
     }
     Ok(())
 }
@@ -100,7 +104,22 @@ fn draw(device: &Device, scene: &Path, target: &Path) -> Result<[u64; 2]> {
         shrink(&drawn.frame, &mut picture, place as u32 * across);
     }
     write_png(&picture, target)?;
+    let words: String = line("# word ").filter_map(placed).collect();
+    if !words.is_empty() {
+        let picture = image::open(target).map_err(|e| fault(e.to_string()).in_file(target))?;
+        let mut picture = picture.into_rgb8();
+        words::over(&mut picture, &words)?;
+        save(&picture, target)?;
+    }
     Ok(bytes)
+}
+
+/// The element of a line `X Y TEXT`.
+fn placed(line: &str) -> Option<String> {
+    let mut parts = line.splitn(3, ' ');
+    let mut number = || parts.next()?.parse().ok();
+    let at = [number()?, number()?];
+    Some(words::word(at, 15, parts.next()?))
 }
 
 /// The means of `RAYS` x `RAYS` pixels of `large` into `small`, from the column `left` on.
@@ -118,6 +137,18 @@ fn shrink(large: &Frame, small: &mut Frame, left: u32) {
             small.color[(y * small.width + left + x) as usize] = sum;
         }
     }
+}
+
+/// The drawing of a pawn as it is.
+fn drawing(root: &Path, target: &Path) -> Result<()> {
+    let file = root.join("assets/profiles/pawn.svg");
+    let text = std::fs::read_to_string(&file)
+        .map_err(|e| fault(format!("cannot be read ({e})")).in_file(&file))?;
+    let mut picture = RgbImage::from_pixel(320, 320, Rgb([255; 3]));
+    let drawn = text.find("<svg").map_or("", |at| &text[at..]);
+    let middle = format!("<g transform='translate(54 34) scale(1.2)'>{drawn}</g>");
+    words::over(&mut picture, &middle)?;
+    save(&picture, target)
 }
 
 /// A shape map's channels and a displacement map's, each beside the whole, as the program's `bake`

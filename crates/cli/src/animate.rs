@@ -2,7 +2,7 @@
 //! the time of every frame.
 
 use super::moving::{ENDINGS, Format, Playing};
-use super::options::{Drawing, Samples, Tracing};
+use super::options::{Drawing, Samples, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
 use super::vary::Vary;
@@ -60,6 +60,8 @@ pub struct Animate {
     /// A CSV file for the times of each frame
     #[arg(long, value_name = "FILE")]
     times: Option<PathBuf>,
+    #[command(flatten)]
+    surroundings: Surroundings,
     #[command(flatten)]
     samples: Samples,
     #[command(flatten)]
@@ -293,6 +295,7 @@ impl Animate {
             }
             e
         })?;
+        self.surroundings.add_to(&mut scene)?;
         if let Some(turn) = self.turn {
             let returns = self.bounce && turn % 360.0 != 0.0;
             let angle = (turn * if returns { part } else { around }).to_radians();

@@ -26,6 +26,7 @@ mod shaders;
 mod shading;
 mod shell;
 mod stability;
+mod studio;
 mod submit;
 mod vary;
 #[cfg(feature = "viewer")]

@@ -166,6 +166,25 @@ impl Drawing {
     }
 }
 
+/// What a picture shows beside the scene
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Surroundings {
+    /// Puts a ground below the objects, and replaces lights and background: soft light from the
+    /// upper left of the camera, and a plain light grey
+    #[arg(long)]
+    studio: bool,
+}
+
+impl Surroundings {
+    /// Adds them to a scene.
+    pub fn add_to(self, scene: &mut Scene) -> Result<()> {
+        match self.studio {
+            true => super::studio::furnish(scene),
+            false => Ok(()),
+        }
+    }
+}
+
 /// Smoothing of edges
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Samples {

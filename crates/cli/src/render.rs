@@ -1,6 +1,6 @@
 //! `revmap render`: one frame, off screen.
 
-use super::options::{self, Drawing, Samples, Tracing};
+use super::options::{self, Drawing, Samples, Surroundings, Tracing};
 use super::progress::Progress;
 use super::{levels, output};
 use clap::Args;
@@ -41,6 +41,8 @@ pub struct Render {
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
     #[command(flatten)]
+    surroundings: Surroundings,
+    #[command(flatten)]
     samples: Samples,
     #[command(flatten)]
     drawing: Drawing,
@@ -67,7 +69,8 @@ impl Render {
         output::check(&self.levels, "--levels", &["png"], &[])?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
-        let scene = file.scene(&self.drawing.set)?;
+        let mut scene = file.scene(&self.drawing.set)?;
+        self.surroundings.add_to(&mut scene)?;
         output::spare(file.files(), &self.output, "--output")?;
         output::spare(file.files(), &self.levels, "--levels")?;
         let loading = milliseconds(begin);
