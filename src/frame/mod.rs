@@ -31,7 +31,7 @@ pub struct Frame {
     pub shading_normal: Vec<[f32; 3]>,
     /// Colour of the surface before light, linear.
     pub albedo: Vec<[f32; 3]>,
-    /// Texture coordinates before the texture's repetition.
+    /// Texture coordinates before the texture's repetition and offset.
     pub uv: Vec<[f32; 2]>,
     /// Look-ups that the search made.
     pub steps: Vec<f32>,

@@ -23,6 +23,7 @@ instances = "copies.csv"
 polygon = [[0, 0.1], [0.4, 0.5], [0, 0.9]]
 color_map = "map.png"
 texture_repeat = [2, 1]
+texture_offset = [0.25, 0.125]
 position = [3, 0, 0]
 [[object]]
 polygon = [[0.2, 0.1], [0.4, 0.5], [0.2, 0.9]]
