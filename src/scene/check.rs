@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn values_out_of_range_are_refused() {
         type Case = (&'static str, fn(&mut Scene));
-        let cases: [Case; 19] = [
+        let cases: [Case; 20] = [
             ("camera.eye", |s| s.camera.eye.x = f64::NAN),
             ("camera.eye", |s| s.camera.eye.x = 1e300),
             ("camera.target", |s| s.camera.target = s.camera.eye),

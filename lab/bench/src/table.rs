@@ -197,7 +197,7 @@ fn wrap(out: &mut String, indent: &str, parts: &[String], width: usize) {
     let mut line = indent.to_owned();
     for (place, part) in parts.iter().enumerate() {
         let comma = if place + 1 < parts.len() { "," } else { "" };
-        let full = line.chars().count() + 1 + part.chars().count() + comma.len() > width;
+        let full = line.chars().count() + part.chars().count() + comma.len() > width;
         if full && !line.trim().is_empty() {
             *out += &format!("{}\n", line.trim_end());
             line = indent.to_owned();

@@ -205,7 +205,6 @@ pub fn write(
     let csv = results(cases, outcome, machine).csv();
     write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
-    page.facts(&machine.lines);
     errors(cases, outcome)
         .iter()
         .for_each(|line| page.note(line));
@@ -252,6 +251,8 @@ pub fn write(
             case.name
         ));
     }
+    page.chapter("How this was measured");
+    page.facts(&machine.lines);
     write_text(&pictures.join("captions.csv"), &captions.csv())?;
     write_text(&folder.join("report.html"), &page.html())
 }
