@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::host_memory::{filled, zeroed};
+use std::ops::Range;
 
 /// Largest number of pixels in a frame: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
 /// is 9 GB.
@@ -30,7 +31,7 @@ pub struct Frame {
     pub shading_normal: Vec<[f32; 3]>,
     /// Colour of the surface before light, linear.
     pub albedo: Vec<[f32; 3]>,
-    /// Texture coordinates before the texture's repetition.
+    /// Texture coordinates before the texture's repetition and offset.
     pub uv: Vec<[f32; 2]>,
     /// Look-ups that the search made.
     pub steps: Vec<f32>,
@@ -186,6 +187,7 @@ impl Frame {
 
     /// The first bit difference of `self` and `other`, or `None` if they are equal in all channels.
     ///
+    /// `steps` counts if all other channels are equal: searches that hit the same points differ in it.
     /// Bits are compared, so `0.0` and `-0.0` differ and a NaN equals itself.
     #[must_use]
     pub fn first_difference(&self, other: &Self) -> Option<Difference> {
@@ -195,16 +197,21 @@ impl Frame {
                 [other.width, other.height],
             ));
         }
-        (0..self.pixels()).find_map(|index| {
-            let (a, b) = (self.pixel(index), other.pixel(index));
-            let channel = (0..CHANNELS.len()).find(|&c| a[c].to_bits() != b[c].to_bits())?;
-            Some(Difference::Value {
-                channel: CHANNELS[channel],
-                x: (index % self.width as usize) as u32,
-                y: (index / self.width as usize) as u32,
-                values: [a[channel], b[channel]],
+        let differing = |channels: Range<usize>| {
+            (0..self.pixels()).find_map(|index| {
+                let (a, b) = (self.pixel(index), other.pixel(index));
+                let mut channels = channels.clone();
+                let channel = channels.find(|&c| a[c].to_bits() != b[c].to_bits())?;
+                Some(Difference::Value {
+                    channel: CHANNELS[channel],
+                    x: (index % self.width as usize) as u32,
+                    y: (index / self.width as usize) as u32,
+                    values: [a[channel], b[channel]],
+                })
             })
-        })
+        };
+        let steps = CHANNELS.len() - 1;
+        differing(0..steps).or_else(|| differing(steps..CHANNELS.len()))
     }
 }
 
@@ -316,6 +323,11 @@ mod tests {
             base.first_difference(&other).unwrap().to_string(),
             "N.Y at pixel (0, 0): 0.0 and -0.0"
         );
+        // A pixel with other steps is before it.
+        let mut searched = base.clone();
+        (searched.steps[0], searched.distance[6]) = (1.0, 2.0);
+        let found = base.first_difference(&searched).unwrap().to_string();
+        assert!(found.starts_with("Z at pixel (2, 1)"), "{found}");
         let wide = Frame::new(5, 3, [0.0; 4]).unwrap();
         assert_eq!(
             base.first_difference(&wide).unwrap().to_string(),

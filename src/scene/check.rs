@@ -8,6 +8,8 @@ use std::ops::{Bound, RangeBounds};
 
 /// Lengths beyond this leave too few digits to 32-bit floats.
 const FAR: f64 = 1e9;
+/// Largest offset of a texture, in textures: four digits behind the point are left in single precision.
+const MOST_TEXTURES: f64 = 1000.0;
 /// Factors of scale and texture repetition are between `1 / LARGE` and `LARGE`.
 const LARGE: f64 = 1e6;
 /// Largest difference between a rotation's length and 1.
@@ -108,6 +110,9 @@ impl Object {
         }
         number("bump", &[self.texturing.bump])?;
         factors("texture_repeat", &self.texturing.repeat)?;
+        let offset = -MOST_TEXTURES..=MOST_TEXTURES;
+        let give = || format!("-{MOST_TEXTURES} to {MOST_TEXTURES}");
+        within("texture_offset", &self.texturing.offset, offset, give)?;
         self.offset.check()?;
         within(
             "axis",
@@ -239,7 +244,7 @@ mod tests {
     #[test]
     fn values_out_of_range_are_refused() {
         type Case = (&'static str, fn(&mut Scene));
-        let cases: [Case; 19] = [
+        let cases: [Case; 20] = [
             ("camera.eye", |s| s.camera.eye.x = f64::NAN),
             ("camera.eye", |s| s.camera.eye.x = 1e300),
             ("camera.target", |s| s.camera.target = s.camera.eye),
@@ -266,6 +271,9 @@ mod tests {
             ("object.0.bump", |s| s.objects[0].texturing.bump = f64::NAN),
             ("object.0.texture_repeat", |s| {
                 s.objects[0].texturing.repeat[1] = 0.0;
+            }),
+            ("object.0.texture_offset", |s| {
+                s.objects[0].texturing.offset[0] = -1001.0;
             }),
             ("object.0.radius", |s| {
                 Arc::make_mut(&mut s.objects[0].profile).radius = 0.0;

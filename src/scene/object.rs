@@ -88,7 +88,8 @@ impl Object {
             (
                 (of.color, of.specular, of.material, of.offset, of.axis),
                 (of.map_rows, of.repeat, of.mirror, of.clip),
-                (look.bump, look.bump_form, look.projection, look.repeat),
+                (look.bump, look.bump_form, look.projection),
+                (look.repeat, look.offset),
             )
         };
         let named = (&self.name, &self.file) == (&other.name, &other.file);
@@ -229,6 +230,9 @@ pub struct Texturing {
     pub projection: Projection,
     /// Repetitions of the texture along `xi` and `eta`.
     pub repeat: [f64; 2],
+    /// By how much of itself the texture is moved along rising `xi`, counter-clockwise from above,
+    /// and rising `eta`.
+    pub offset: [f64; 2],
 }
 
 impl Default for Texturing {
@@ -241,6 +245,7 @@ impl Default for Texturing {
             bump_form: BumpForm::SurfaceGradient,
             projection: Projection::Cylindrical,
             repeat: [1.0; 2],
+            offset: [0.0; 2],
         }
     }
 }

@@ -186,6 +186,7 @@ fn covered(maps: &Maps, projection: Projection, bump_form: BumpForm) -> Texturin
         bump_form,
         projection,
         repeat: [2.0, 1.0],
+        offset: [0.3, 0.1],
     }
 }
 

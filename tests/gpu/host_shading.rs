@@ -72,6 +72,7 @@ pub fn scene() -> Scene {
     object.texturing.displacement_map = Some(Arc::new(bumps));
     object.texturing.bump = 0.02;
     object.texturing.repeat = [3.0, 2.0];
+    object.texturing.offset = [-0.25, 0.125];
     object.texturing.projection = Projection::Arc;
     scene.objects[1].material = Some(Material {
         roughness: 0.75,
@@ -258,6 +259,7 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
     }
     let forward = view_forward(&scene);
     let repeat = |n: usize| scene.objects[n].texturing.repeat.map(|r| r as f32);
+    let offset = |n: usize| scene.objects[n].texturing.offset.map(|o| o as f32);
     let number = |id: f32| ids.iter().position(|i| i.number() as f32 == id).unwrap();
     let (mut hits, mut wrong, mut copies) = (0, 0, HashSet::new());
     for n in (0..frame.pixels()).filter(|n| frame.hits(*n) && all[4][*n][3] == 1.0) {
@@ -267,7 +269,7 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
         let three = |v: [f32; 4]| Vec3::new(v[0], v[1], v[2]);
         let object = number(identity[0]);
         copies.insert((object, identity[1] as u32));
-        let [across, down] = repeat(object);
+        let ([across, down], [left, up]) = (repeat(object), offset(object));
         let facing = Vec3::from(frame.normal[n]).dot(three(to_eye)).signum();
         let material = scene.objects[object].material();
         let pixel = [n as u32 % options().width, n as u32 / options().width];
@@ -280,8 +282,8 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
             (three(normal) - facing * Vec3::from(frame.normal[n])).length(),
             (three(bumped) - Vec3::from(frame.shading_normal[n])).length(),
             (three(base) - Vec3::from(frame.albedo[n])).length(),
-            uv[0] - frame.uv[n][0] * across,
-            uv[1] - (1.0 - frame.uv[n][1]) * down,
+            uv[0] - (frame.uv[n][0] * across - left),
+            uv[1] - ((1.0 - frame.uv[n][1]) * down + up),
             uv[2] - pixel[0] as f32 - 0.5,
             uv[3] - pixel[1] as f32 - 0.5,
         ];

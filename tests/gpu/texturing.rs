@@ -2,7 +2,7 @@
 
 use crate::common::ways::STAGES;
 use crate::common::{draw, eye, placement, reference, scene_of, shapes, sized};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use revmap::frame::Frame;
 use revmap::maps::{ArcLength, ColorMap, DisplacementMap, MapFormat, Projection};
 use revmap::profile::Profile;
@@ -237,6 +237,9 @@ fn colours_and_bumps_are_the_references() {
             look.bump_form = form;
             look.projection = projection;
             look.repeat = [2.0, 1.0];
+            if form == BumpForm::Papers {
+                look.offset = [-0.3, 0.15];
+            }
             let truth = reference(&scene, &settings());
             let frame = draw(&scene, &settings());
             let (mut angles, mut colors) = (Vec::new(), Vec::new());
@@ -263,6 +266,49 @@ fn colours_and_bumps_are_the_references() {
             assert!(half.0 < 0.15 && half.1 < 0.012, "{what}");
             assert!(most.0 < 0.4 && most.1 < 0.025, "{what}");
         }
+    }
+}
+
+/// A texture that is moved around the axis is that of a turned solid, by whole textures its own; one
+/// that is moved upwards has its lower edge below.
+#[test]
+fn an_offset_moves_the_texture_around_and_up() {
+    let albedo = |offset: [f64; 2], turn: f64, stage| {
+        let mut scene = scene_of(shapes::vase(), eye(15.0, 2.0));
+        let object = &mut scene.objects[0];
+        object.texturing.color_map = Some(waves(256, 128, 1.0));
+        object.texturing.offset = offset;
+        object.placement.rotation = DQuat::from_rotation_z(TAU * turn);
+        let settings = Settings {
+            stage,
+            ..settings()
+        };
+        draw(&scene, &settings)
+    };
+    let apart = |a: &Frame, b: &Frame| {
+        let hits = (0..a.pixels()).filter(|&i| a.hits(i) && b.hits(i));
+        let worst = hits.flat_map(|i| [0, 1, 2].map(|c| (a.albedo[i][c] - b.albedo[i][c]).abs()));
+        worst.fold(0.0, f32::max)
+    };
+    for stage in STAGES {
+        let own = albedo([0.0; 2], 0.0, stage);
+        let moved = albedo([0.2, 0.0], 0.0, stage);
+        let turned = albedo([0.0; 2], 0.2, stage);
+        assert!(apart(&moved, &turned) < 0.02 && apart(&moved, &own) > 0.5);
+        assert_eq!(apart(&albedo([-3.0, 0.0], 0.0, stage), &own), 0.0);
+        // The wave along the solid is half a period of a cosine, brightest at the lower edge. Rims at
+        // a slant read smaller mip levels.
+        let up = albedo([0.0, 0.25], 0.0, stage);
+        let hits = (0..up.pixels()).filter(|&i| up.hits(i));
+        let errors = hits.map(|i| {
+            let eta = (f64::from(up.uv[i][1]) - 0.25).max(0.0);
+            (srgb(up.albedo[i][2]) - 0.5 - 0.4 * (PI * eta).cos()).abs()
+        });
+        let mut errors: Vec<f64> = errors.collect();
+        errors.sort_by(f64::total_cmp);
+        let p90 = errors[errors.len() * 9 / 10];
+        println!("{stage:?}: {} pixels, p90 {p90:.4}", errors.len());
+        assert!(p90 < 0.02, "{p90}");
     }
 }
 

@@ -207,6 +207,7 @@ impl<'a> Palette<'a> {
         look.bump_form = dice.pick(&[BumpForm::SurfaceGradient, BumpForm::Papers]);
         look.projection = dice.pick(&Projection::NAMES.map(|(_, projection)| projection));
         look.repeat = dice.pick(&[[1.0; 2], [2.0, 1.0], [1.0, 3.0]]);
+        look.offset = dice.pick(&[[0.0; 2], [0.0; 2], [0.3, 0.0], [-1.6, 0.4]]);
     }
 
     pub fn offset(&self, dice: &mut Dice) -> Offset {

@@ -220,7 +220,7 @@ enum RevmapPlane
     REVMAP_PLANE_SHADING_NORMAL = 4,
     /// 3 floats a pixel: colour of the surface before light, linear.
     REVMAP_PLANE_ALBEDO = 5,
-    /// 2 floats a pixel: texture coordinates before the texture's repetition.
+    /// 2 floats a pixel: texture coordinates before the texture's repetition and offset.
     REVMAP_PLANE_UV = 6,
     /// 1 float a pixel: look-ups that the search made.
     REVMAP_PLANE_STEPS = 7,
@@ -618,6 +618,9 @@ typedef struct RevmapObjectInfo {
     float metalness;
     /// Not read.
     uint32_t padding_end;
+    /// By how much of themselves textures are moved around the solid, counter-clockwise from above,
+    /// and upwards.
+    double texture_offset[2];
 } RevmapObjectInfo;
 
 /// Settings of the search. Defaults: revmap_search_defaults().

@@ -132,7 +132,7 @@ pub enum RevmapPlane {
     ShadingNormal = 4,
     /// 3 floats a pixel: colour of the surface before light, linear.
     Albedo = 5,
-    /// 2 floats a pixel: texture coordinates before the texture's repetition.
+    /// 2 floats a pixel: texture coordinates before the texture's repetition and offset.
     Uv = 6,
     /// 1 float a pixel: look-ups that the search made.
     Steps = 7,

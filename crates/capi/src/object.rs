@@ -70,6 +70,9 @@ pub struct RevmapObjectInfo {
     pub metalness: f32,
     /// Not read.
     pub padding_end: u32,
+    /// By how much of themselves textures are moved around the solid, counter-clockwise from above,
+    /// and upwards.
+    pub texture_offset: [f64; 2],
 }
 
 described!(RevmapObjectInfo {
@@ -79,6 +82,7 @@ described!(RevmapObjectInfo {
         mirror, clip, padding_2, placement, instances, instance_count,
     ]
     1 => [has_material, roughness, metalness, padding_end]
+    4 => [texture_offset]
 });
 
 impl RevmapObjectInfo {
@@ -109,6 +113,7 @@ impl RevmapObjectInfo {
             bump_form: enums::bump_form(self.bump_form)?,
             projection: enums::projection(self.projection)?,
             repeat: self.texture_repeat,
+            offset: self.texture_offset,
         };
         object.offset = self.offset.into();
         object.axis = self.axis;

@@ -151,7 +151,7 @@ impl Bench {
         if let [old, new] = what.compare.as_slice() {
             let found = compare_runs::compare(old, new)?;
             found.warnings.iter().for_each(|text| output::warn(text));
-            print(&compare_runs::as_text(&found));
+            print(&compare_runs::as_text(&found, output::width()));
             return Ok(());
         }
         if !what.drivers.is_empty() {
@@ -205,7 +205,7 @@ fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
 fn gather(files: &[PathBuf], lists: &Lists) -> Result<()> {
     let all = submission::gather::load(files)?;
     let out = lists.results.folder("submitted", files)?;
-    print(&submission::gather::write(&all, &out)?);
+    print(&submission::gather::write(&all, &out, output::width())?);
     let (report, count) = (out.join("report.html"), all.len());
     output::result(&format!("{}: {count} submissions", report.display()));
     Ok(())
@@ -247,7 +247,7 @@ fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
         album: &album,
         flights: &flights,
     };
-    print(report.write(out)?.trim_end());
+    print(report.write(out, output::width())?.trim_end());
     let summary = out.join("charts/summary-depth-error.png");
     if summary.exists() {
         output::result(&summary.display().to_string());

@@ -21,6 +21,13 @@ pub fn result(line: &str) {
     keep_fault(writeln!(std::io::stdout(), "{line}"));
 }
 
+/// The characters in a line of the terminal that shows standard output, 80 if it does not tell; none
+/// for a file or a pipe.
+pub fn width() -> Option<usize> {
+    let terminal = console::Term::stdout();
+    terminal.is_term().then(|| terminal.size().1.into())
+}
+
 /// Notes a fault of standard output for [`end`]. A reader that closes the pipe early, such as `head`,
 /// causes none.
 pub fn keep_fault(written: std::io::Result<()>) {

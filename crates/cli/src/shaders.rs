@@ -113,7 +113,12 @@ impl Shaders {
         let known: Vec<&str> = known.collect();
         let shown = if known.is_empty() { said } else { known };
         output::result(&format!("{}, {}\n", device.name, device.driver));
-        markdown(&table(&shown, &WORDS[..5], &[]));
+        let table = table(&shown, &WORDS[..5], &[]);
+        let (mut text, width) = (markdown(&table), output::width());
+        if width.is_some_and(|width| text.lines().any(|line| line.chars().count() > width)) {
+            text = table.within(width, "`--csv`");
+        }
+        text.lines().for_each(output::result);
         Ok(())
     }
 }
@@ -203,8 +208,9 @@ fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
     names.iter().map(text).collect()
 }
 
-/// Prints a table in Markdown, each column as wide as its widest cell.
-fn markdown(table: &Table) {
+/// A table in Markdown, each column as wide as its widest cell.
+fn markdown(table: &Table) -> String {
+    let mut out = String::new();
     let lines = || std::iter::once(&table.header).chain(&table.records);
     let widest = |column: usize| lines().map(|line| line[column].len()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..table.header.len()).map(widest).collect();
@@ -214,12 +220,13 @@ fn markdown(table: &Table) {
             Err(_) => format!("{cell:width$}"),
         };
         let cells: Vec<_> = line.iter().zip(&widths).map(cell).collect();
-        output::result(&format!("| {} |", cells.join(" | ")));
+        out += &format!("| {} |\n", cells.join(" | "));
         if number == 0 {
             let rules: Vec<_> = widths.iter().map(|&width| "-".repeat(width + 2)).collect();
-            output::result(&format!("|{}|", rules.join("|")));
+            out += &format!("|{}|\n", rules.join("|"));
         }
     }
+    out
 }
 
 fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {

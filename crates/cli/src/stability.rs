@@ -78,7 +78,8 @@ impl Stability {
         ];
         output::result(report::HEADLINE);
         for table in tables.iter().flatten() {
-            table.aligned().lines().for_each(output::result);
+            let text = table.within(output::width(), "report.html");
+            text.lines().for_each(output::result);
         }
         for line in report::errors(&chosen, &outcome) {
             output::warn(&line);

@@ -7,7 +7,7 @@ use super::ratios::{Over, above_floor, baseline_stage, between};
 use super::row::{Clocks, Row};
 use super::series_style::SeriesStyles;
 use super::stats::{self, Interval};
-use super::table::Table;
+use super::table::{NO_VALUE, Table};
 use crate::method::{Edges, Method};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::{Offset, Shadow};
@@ -246,7 +246,7 @@ impl Cell {
     /// Its text in tables.
     pub fn shown(&self) -> String {
         match self {
-            Self::Empty => "–".to_owned(),
+            Self::Empty => NO_VALUE.to_owned(),
             Self::Number(value) => number(*value, 3),
             Self::Share(share) => percent(*share),
             Self::Known(i) => match i.ends() {

@@ -184,8 +184,9 @@ fn grown(name: &str, a: f64, b: f64) -> bool {
     b > a * (1.0 + ERROR_CHANGE) + slack
 }
 
-/// The comparison as text: all ratios, then what became slower, then what became less exact.
-pub fn as_text(against: &Against) -> String {
+/// The comparison as text, for a terminal of this width if it is for one: all ratios, then what
+/// became slower, then what became less exact.
+pub fn as_text(against: &Against, width: Option<usize>) -> String {
     let pairs = &against.pairs;
     let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
     let mut columns: Vec<usize> = (0..KEY).filter(differs).collect();
@@ -212,11 +213,11 @@ pub fn as_text(against: &Against) -> String {
         pairs,
         &[
             ("measurement", &name),
+            ("verdict", &|p| verdict(p).to_owned()),
             ("new / old", &|p| value(p.time)),
             ("95 % interval", &|p| ends(p.time)),
             ("over the RBM baseline", &|p| value(p.relative)),
             ("95 % interval", &|p| ends(p.relative)),
-            ("", &|p| verdict(p).to_owned()),
         ],
     );
     let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
@@ -229,7 +230,8 @@ pub fn as_text(against: &Against) -> String {
         changed.map(line).collect()
     };
     let [old, new] = &against.devices;
-    let (table, counts) = (table.aligned(), counts(against));
+    let table = table.within(width, "`| less -S`");
+    let counts = counts(against);
     let worse = changes("less exact", |p| &p.worse);
     let better = changes("more exact", |p| &p.better);
     format!("old: {old}\nnew: {new}\n\n{table}{counts}{worse}{better}")

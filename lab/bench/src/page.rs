@@ -20,8 +20,8 @@ pub struct Page {
     figures: usize,
 }
 
-/// One column as wide as a chart reads well; tables that scroll by themselves, their first column
-/// staying; in print nothing cut apart that fits a page, two charts side by side.
+/// Text as wide as it reads well, charts side by side where there is room; tables that scroll by
+/// themselves, their first column staying; in print nothing cut apart that fits a page, two charts side by side.
 const STYLE: &str = include_str!("page.css");
 
 impl Page {
@@ -86,8 +86,10 @@ impl Page {
         });
     }
 
-    /// A table. Words are aligned left, and sentences wrap; numbers and names stay in one line.
+    /// A table, without the columns that have no value. Words are aligned left, and sentences wrap;
+    /// numbers and names stay in one line.
     pub fn table(&mut self, table: &Table) {
+        let table = table.filled();
         let any = |c: usize, is: &dyn Fn(&str) -> bool| {
             let mut fields = table.records.iter().filter_map(|r| r.get(c));
             fields.any(|f| is(f))
@@ -172,8 +174,8 @@ mod tests {
         page.chapter("First");
         page.text("1 < 2, `code`");
         page.note("<script>alert(1)</script>");
-        let records = vec![vec!["\"x\"".into(), "1".into()]];
-        page.table(&Table::new(["a<b", "n"], records));
+        let records = vec![vec!["\"x\"".into(), "–".into(), "1".into()]];
+        page.table(&Table::new(["a<b", "empty", "n"], records));
         let html = page.html();
         for wanted in [
             "A &lt;title&gt; &amp; more",
@@ -184,6 +186,7 @@ mod tests {
         ] {
             assert!(html.contains(wanted), "{wanted}");
         }
+        assert!(!html.contains("empty"), "a column without a value");
         for foreign in ["<script", "http://", "https://", "src=\"/", "@import"] {
             assert!(!html.contains(foreign), "{foreign}");
         }

@@ -36,8 +36,9 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Writes page, charts and tables; returns the text of the tables that are printed.
-    pub fn write(&self, folder: &Path) -> Result<String> {
+    /// Writes page, charts and tables; returns the text of the tables that are printed, for a
+    /// terminal of this width if it is for one.
+    pub fn write(&self, folder: &Path, width: Option<usize>) -> Result<String> {
         let rows: Vec<&Row> = self.measured.rows.iter().collect();
         let resolved = self.file.time.resolved;
         let context = Context::new(&rows, self.plan, self.machine, resolved);
@@ -55,6 +56,7 @@ impl Run<'_> {
         let mut writer = Writer {
             run: self,
             folder,
+            width,
             page,
             text: String::new(),
             chapter: None,
@@ -129,6 +131,7 @@ impl Run<'_> {
 struct Writer<'a> {
     run: &'a Run<'a>,
     folder: &'a Path,
+    width: Option<usize>,
     page: Page,
     text: String,
     /// A chapter and its paragraphs, and a heading: they begin with the first thing to show.
@@ -250,7 +253,7 @@ impl<'a> Writer<'a> {
                 // The answer has it above.
                 (true, Some(_)) => String::new(),
             };
-            self.text += &format!("{}\n", shown.aligned());
+            self.text += &format!("{}\n", shown.within(self.width, "report.html"));
         }
         Ok(())
     }

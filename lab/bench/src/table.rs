@@ -12,6 +12,12 @@ pub struct Table {
     pub records: Vec<Vec<String>>,
 }
 
+/// The text of a cell without a value, in tables that are read by people.
+pub const NO_VALUE: &str = "–";
+
+/// The space between columns.
+const GAP: usize = 2;
+
 /// A column's name, and its text for what a record is of.
 pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 
@@ -50,13 +56,36 @@ impl Table {
         String::from_utf8(bytes.unwrap_or_default()).unwrap_or_default()
     }
 
-    /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
-    pub fn aligned(&self) -> String {
+    /// The columns whose place `keep` takes.
+    fn columns(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept = |line: &Vec<String>| -> Vec<String> {
+            let fields = line.iter().enumerate().filter(|(column, _)| keep(*column));
+            fields.map(|(_, field)| field.clone()).collect()
+        };
+        Self::new(kept(&self.header), self.records.iter().map(kept).collect())
+    }
+
+    /// The table for readers: without the columns that have no value in any record.
+    pub fn filled(&self) -> Self {
+        let has_value = |field: &String| !matches!(field.as_str(), "" | NO_VALUE);
+        self.columns(|column| {
+            let mut fields = self.records.iter().filter_map(|record| record.get(column));
+            self.records.is_empty() || fields.any(has_value)
+        })
+    }
+
+    /// The characters of each column's longest field.
+    fn widths(&self) -> Vec<usize> {
         let width = |column: usize| {
             let fields = self.lines().filter_map(|line| line.get(column));
             fields.map(|f| f.chars().count()).max().unwrap_or(0)
         };
-        let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        (0..self.header.len()).map(width).collect()
+    }
+
+    /// Its text in aligned columns: the first to the left, numbers and the rest to the right.
+    pub fn aligned(&self) -> String {
+        let widths = self.widths();
         let pad = |(column, (field, &width)): (usize, (&String, &usize))| match column {
             0 => format!("{field:width$}"),
             _ => format!("{field:>width$}"),
@@ -65,8 +94,58 @@ impl Table {
         for line in self.lines() {
             let fields = line.iter().zip(&widths).enumerate();
             let padded: Vec<String> = fields.map(pad).collect();
-            out += padded.join("  ").trim_end();
+            out += padded.join(&" ".repeat(GAP)).trim_end();
             out.push('\n');
+        }
+        out
+    }
+
+    /// Its text for readers, whose terminal is so many characters wide if it is one.
+    ///
+    /// A wider table has as many of its first columns as fit, then the names of the others, which
+    /// are in `whole`. If no column of figures fits, each record is a paragraph.
+    pub fn within(&self, width: Option<usize>, whole: &str) -> String {
+        let table = self.filled();
+        let width = width.unwrap_or(usize::MAX);
+        let ends = table.widths().into_iter().scan(0, |end, column| {
+            *end += column + GAP;
+            Some(*end - GAP)
+        });
+        let fit = ends.take_while(|end| *end <= width).count();
+        if fit == table.header.len() {
+            return table.aligned();
+        }
+        if fit <= table.words() {
+            return table.paragraphs(width);
+        }
+        let mut out = table.columns(|column| column < fit).aligned();
+        let mut others = table.header[fit..].to_vec();
+        others[0].insert_str(0, &format!("wider than the terminal; {whole} also has: "));
+        wrap(&mut out, "", &others, width);
+        out
+    }
+
+    /// The number of columns before the first one of figures.
+    fn words(&self) -> usize {
+        let is_word = |record: &Vec<String>, column: usize| {
+            let field = record.get(column);
+            field.is_some_and(|field| field.starts_with(char::is_alphabetic))
+        };
+        let columns = 0..self.header.len();
+        let words = |&column: &usize| self.records.iter().all(|record| is_word(record, column));
+        columns.take_while(words).count()
+    }
+
+    /// A paragraph for each record: its words, then its figures with their names.
+    fn paragraphs(&self, width: usize) -> String {
+        let words = self.words();
+        let mut out = String::new();
+        for record in &self.records {
+            wrap(&mut out, "", &record[..words], width);
+            let named = self.header.iter().zip(record).skip(words);
+            let named = named.filter(|(_, field)| !field.is_empty());
+            let named: Vec<String> = named.map(|(name, f)| format!("{name}: {f}")).collect();
+            wrap(&mut out, "  ", &named, width);
         }
         out
     }
@@ -113,6 +192,21 @@ impl Table {
     }
 }
 
+/// Appends parts with commas between them, in lines of at most `width` if their parts are shorter.
+fn wrap(out: &mut String, indent: &str, parts: &[String], width: usize) {
+    let mut line = indent.to_owned();
+    for (place, part) in parts.iter().enumerate() {
+        let comma = if place + 1 < parts.len() { "," } else { "" };
+        let full = line.chars().count() + part.chars().count() + comma.len() > width;
+        if full && !line.trim().is_empty() {
+            *out += &format!("{}\n", line.trim_end());
+            line = indent.to_owned();
+        }
+        line += &format!("{part}{comma} ");
+    }
+    *out += &format!("{}\n", line.trim_end());
+}
+
 /// The text of a run's file.
 pub(super) fn text_of(file: &Path) -> Result<String> {
     std::fs::read_to_string(file).map_err(|e| {
@@ -152,6 +246,33 @@ mod tests {
     fn columns_are_aligned() {
         let text = table(&["name", "ms"], &[&["a", "10.5"], &["long name", "1"]]).aligned();
         assert_eq!(text, "name         ms\na          10.5\nlong name     1\n");
+    }
+
+    #[test]
+    fn columns_without_a_value_are_left_out() {
+        let records: [&[&str]; 2] = [&["a", "–", "1", ""], &["b", "–", "", ""]];
+        let own = table(&["name", "none", "some", "empty"], &records);
+        assert_eq!(
+            own.filled(),
+            table(&["name", "some"], &[&["a", "1"], &["b", ""]])
+        );
+        assert_eq!(own.within(None, ""), "name  some\na        1\nb\n");
+        assert_eq!(own.csv(), "name,none,some,empty\na,–,1,\nb,–,,\n");
+    }
+
+    #[test]
+    fn a_terminal_has_the_columns_that_fit_and_the_names_of_the_others() {
+        let records: [&[&str]; 2] = [&["exact", "0.5", "0 %"], &["live", "0.81", "0.01 %"]];
+        let own = table(&["method", "ratio", "wrong"], &records);
+        for width in [None, Some(21), Some(80)] {
+            assert_eq!(own.within(width, ""), own.aligned());
+        }
+        let wanted = "method  ratio\nexact     0.5\nlive     0.81\n\
+            wider than the terminal; x.html also has: wrong\n";
+        assert_eq!(own.within(Some(20), "x.html"), wanted);
+        // Not even one figure beside the words.
+        let wanted = "exact\n  ratio: 0.5,\n  wrong: 0 %\nlive\n  ratio: 0.81,\n  wrong: 0.01 %\n";
+        assert_eq!(own.within(Some(12), ""), wanted);
     }
 
     #[test]

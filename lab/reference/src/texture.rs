@@ -33,7 +33,7 @@ impl Lengths {
     }
 }
 
-/// `(xi, eta)` at a point of a replica's cell, about its axis, before the texture's repetition.
+/// `(xi, eta)` at a point of a replica's cell, about its axis, before the texture's repetition and offset.
 pub(super) fn coordinates(object: &Object, arc: Option<&ArcLength>, p: DVec3) -> [f64; 2] {
     let radius = object.profile.radius;
     let r = p.x.hypot(p.y);
@@ -100,8 +100,8 @@ fn bilinear<T: Copy, const N: usize>(
 ) -> [f64; N] {
     let look = &object.texturing;
     let (w, h) = (f64::from(level.width), f64::from(level.height));
-    let x = uv[0] * look.repeat[0] * w - 0.5;
-    let y = (1.0 - uv[1]) * look.repeat[1] * h - 0.5;
+    let x = (uv[0] * look.repeat[0] - look.offset[0]) * w - 0.5;
+    let y = ((1.0 - uv[1]) * look.repeat[1] + look.offset[1]) * h - 0.5;
     let clamped = look.repeat[1] == 1.0 && look.projection != Projection::Planar;
     let mut sum = [0.0; N];
     for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {

@@ -16,6 +16,7 @@ use revmap_bench::page::Page;
 use revmap_bench::series_style;
 use revmap_bench::table::Table;
 use revmap_searches::folder;
+use std::iter::once;
 use std::path::Path;
 
 /// What shares of faults are drawn at where there are none, percent.
@@ -60,15 +61,15 @@ fn drawn(cases: &[Case], outcome: &Outcome) -> Vec<usize> {
 
 /// The table of cases and searches: the worst share of faults in each, and the verdict.
 pub fn table(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Table {
-    let header = ["case", "swept over"].into_iter();
     let record = |k: usize| {
-        let named = [cases[k].name.clone(), cases[k].parameter.clone()];
         let worst = |&s: &Solver| worst(of(outcome, k, s)).map(cell).unwrap_or_default();
-        named.into_iter().chain(solvers.iter().map(worst)).collect()
+        let (name, swept) = (cases[k].name.clone(), cases[k].parameter.clone());
+        let worst = solvers.iter().map(worst);
+        once(name).chain(worst).chain(once(swept)).collect()
     };
     let records = drawn(cases, outcome).into_iter().map(record);
-    let header = header.chain(solvers.iter().map(|s| s.name()));
-    Table::new(header, records.collect())
+    let header = once("case").chain(solvers.iter().map(|s| s.name()));
+    Table::new(header.chain(once("swept over")), records.collect())
 }
 
 /// The table of flicker: of each motion and search the worst share of pixels that flicker from one
@@ -80,12 +81,12 @@ pub fn flicker(cases: &[Case], solvers: &[Solver], outcome: &Outcome) -> Option<
         share.map_or(String::new(), |s| format!("{} %", number(100.0 * s, 2)))
     };
     let record = |k: usize| {
-        let name = std::iter::once(cases[k].name.clone());
+        let name = once(cases[k].name.clone());
         name.chain(solvers.iter().map(|&s| share(k, s))).collect()
     };
     let motions = drawn(cases, outcome).into_iter();
     let records: Vec<_> = (motions.filter(|k| cases[*k].motion).map(record)).collect();
-    let header = std::iter::once("flicker").chain(solvers.iter().map(|s| s.name()));
+    let header = once("flicker").chain(solvers.iter().map(|s| s.name()));
     (!records.is_empty()).then(|| Table::new(header, records))
 }
 
@@ -204,7 +205,6 @@ pub fn write(
     let csv = results(cases, outcome, machine).csv();
     write_text(&folder.join("results.csv"), &csv)?;
     let mut page = Page::new("revmap: stability");
-    page.facts(&machine.lines);
     errors(cases, outcome)
         .iter()
         .for_each(|line| page.note(line));
@@ -251,6 +251,8 @@ pub fn write(
             case.name
         ));
     }
+    page.chapter("How this was measured");
+    page.facts(&machine.lines);
     write_text(&pictures.join("captions.csv"), &captions.csv())?;
     write_text(&folder.join("report.html"), &page.html())
 }

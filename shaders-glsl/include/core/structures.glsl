@@ -123,8 +123,7 @@ struct Appearance {
     float profile_width; // 2 R of the profile's box in its units
     float arc_rate; // 1 / outline length
     uint first_instance;
-    uint unused_0;
-    uint unused_1;
+    vec2 texture_offset; // added to positions in a map
 };
 
 struct Object {

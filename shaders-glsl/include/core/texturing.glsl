@@ -11,7 +11,7 @@ layout(set = 1, binding = 3) uniform sampler2D arc_map;
 const float PI = 3.14159265358979;
 
 struct Coordinates {
-    vec2 uv;      // (xi, eta), before the texture's repetition
+    vec2 uv;      // (xi, eta), before the texture's repetition and offset
     vec3 grad_xi; // gradient over object space
     vec3 grad_eta;
 };
@@ -88,7 +88,7 @@ vec3 footprint(vec3 v, vec3 dv, vec3 n, float t)
 // Returns the position in a map; eta = 1 is the top row.
 vec2 map_position(Coordinates c)
 {
-    return vec2(c.uv.x * appearance.texture_repeat.x, (1.0 - c.uv.y) * appearance.texture_repeat.y);
+    return vec2(c.uv.x, 1.0 - c.uv.y) * appearance.texture_repeat + appearance.texture_offset;
 }
 
 // Returns the change of that position along `way`, profile units.

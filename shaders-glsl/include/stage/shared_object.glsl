@@ -59,7 +59,7 @@ void load_shared()
         vec4 gloss = shared_floats(13u), tiling = shared_floats(14u);
         uvec4 last = shared_vector(15u);
         appearance = Appearance(uintBitsToFloat(color.xyz), color.w, gloss.x, gloss.y, gloss.z, gloss.w, tiling.xy,
-                                tiling.z, tiling.w, uintBitsToFloat(last.x), last.y, 0u, 0u);
+                                tiling.z, tiling.w, uintBitsToFloat(last.x), last.y, uintBitsToFloat(last.zw));
     }
     load_level(tile_instance);
 }

@@ -102,7 +102,8 @@ pub(super) fn object_block(planned: &PlannedObject, outside: bool) -> ObjectBloc
         profile_width: f(2.0 * profile_radius),
         arc_rate: f(1.0 / derived.arc.as_ref().map_or(1.0, |arc| arc.length)),
         first_instance: prepared.instances.start,
-        ..AppearanceBlock::default()
+        // Textures repeat around the axis: whole ones are left out, for the sake of digits.
+        texture_offset: [f((-look.offset[0]).rem_euclid(1.0)), f(look.offset[1])],
     };
     ObjectBlock { shape, appearance }
 }

@@ -236,6 +236,7 @@ impl<'a> Driver<'a> {
         (info.projection, info.bump_form) = (self.of(4), self.of(2));
         info.clip = self.of(2);
         info.bump = 0.1 * self.number();
+        info.texture_offset = [0; 2].map(|_: i32| self.number());
         info.placement = self.placement();
         info.has_material = self.of(2);
         (info.roughness, info.metalness) = (self.number() as f32, 0.5);

@@ -114,3 +114,27 @@ fn a_changed_figure_of_a_kept_run_is_not_repeated() {
     assert!(said.contains("15 of 17 claims repeated"), "{said}");
     assert!(lines(&output)[0].contains("does not repeat"));
 }
+
+/// A pipe has the whole table, and a terminal the columns that fit and the names of the others.
+#[cfg(target_os = "linux")] // `script`, a part of util-linux, makes the terminal
+#[test]
+fn a_table_fits_the_terminal() {
+    let bench = Bench::new();
+    run(&bench, "old", "driver 1", "Xeon, 2 threads");
+    let piped = bench.said("bench --compare old old");
+    let head = "measurement  new / old  95 % interval\n";
+    assert!(piped.contains(head), "{piped}");
+    let shown = |columns: u32| {
+        let program = env!("CARGO_BIN_EXE_revmap");
+        let line = format!("stty rows 24 cols {columns}; {program} bench --compare old old");
+        let mut terminal = std::process::Command::new("script");
+        terminal.args(["-qec", &line, "/dev/null"]);
+        let output = terminal.current_dir(bench.path("")).output().unwrap();
+        String::from_utf8(output.stdout).unwrap().replace('\r', "")
+    };
+    assert_eq!(shown(80), piped);
+    let narrow = shown(30);
+    let wanted = "measurement  new / old\nvase                 1\n\
+        wider than the terminal; `| less -S` also has: 95 % interval\n";
+    assert!(narrow.contains(wanted), "{narrow}");
+}

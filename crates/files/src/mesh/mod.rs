@@ -121,11 +121,12 @@ impl Solid<'_> {
         format!("{} {}", self.number, self.object.name)
     }
 
-    /// Texture coordinates as files have them: repeated, `v` from the top down.
+    /// Texture coordinates as files have them: repeated and moved, `v` from the top down.
     fn uv(&self, vertex: &Vertex) -> [f32; 2] {
-        let [across, along] = self.object.texturing.repeat;
+        let look = &self.object.texturing;
+        let ([across, along], [around, up]) = (look.repeat, look.offset);
         let [xi, eta] = vertex.uv.map(f64::from);
-        [xi * across, (1.0 - eta) * along].map(|v| v as f32)
+        [xi * across - around, (1.0 - eta) * along + up].map(|v| v as f32)
     }
 
     /// True if the texture ends at its upper and lower edge.

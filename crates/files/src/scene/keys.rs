@@ -332,8 +332,8 @@ pub fn decimal_comma(text: &str) -> Option<String> {
 pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
     profile_smooth radius map_rows color color_map specular shininess roughness \
     metalness height_map bump bump_form \
-    projection texture_repeat extend bevel chamfer clip axis repeat mirror position turn rotation \
-    scale instances";
+    projection texture_repeat texture_offset extend bevel chamfer clip axis repeat mirror position \
+    turn rotation scale instances";
 
 fn is_of_object(key: &str) -> bool {
     OBJECT.split_whitespace().any(|known| known == key)

@@ -291,6 +291,7 @@ impl Reader {
         keys.choose("bump_form", &BumpForm::NAMES, &mut covering.bump_form)?;
         keys.choose("projection", &Projection::NAMES, &mut covering.projection)?;
         keys.set("texture_repeat", &mut covering.repeat)?;
+        keys.set("texture_offset", &mut covering.offset)?;
         Ok(covering)
     }
 }

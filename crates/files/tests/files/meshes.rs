@@ -23,6 +23,7 @@ instances = "copies.csv"
 polygon = [[0, 0.1], [0.4, 0.5], [0, 0.9]]
 color_map = "map.png"
 texture_repeat = [2, 1]
+texture_offset = [0.25, 0.125]
 position = [3, 0, 0]
 [[object]]
 polygon = [[0.2, 0.1], [0.4, 0.5], [0.2, 0.9]]
@@ -113,7 +114,9 @@ fn obj_shares_places_and_stands_upright() {
             .any(|p| p[0].abs() < 1e-6 && p[1] == 1.0 && p[2].abs() < 1e-6)
     );
     assert!(places.iter().any(|p| (p[2] + 5.0).abs() < 1e-6));
-    assert!(coordinates.iter().any(|c| c[0] == 2.0));
+    // Twice around, less a quarter; the lower tip's height of 0.1, less an eighth.
+    let has = |k: usize, wanted: f64| coordinates.iter().any(|c| (c[k] - wanted).abs() < 1e-6);
+    assert!(has(0, 1.75) && has(1, -0.025));
     assert!(
         normals
             .iter()

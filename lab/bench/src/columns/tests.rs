@@ -110,6 +110,21 @@ fn planted_times_and_errors_are_shown() {
     assert_eq!(means.records[2], ["2", "2.5", "0.25 (0.25 to 0.25)", "1"]);
 }
 
+#[test]
+fn a_ratio_that_is_not_resolved_is_in_brackets() {
+    let passes = [[10.0, 10.1, 10.0], [5.0, 5.1, 5.0], [5.0, 50.0, 5.0]];
+    let mut rows = passes.map(|passes| timed(&passes));
+    for (row, tolerance) in rows.iter_mut().zip([0.0, 0.5, 1.0]) {
+        row.settings = crate::method::MethodSettings::default();
+        row.settings.tolerance = Tolerance::new(tolerance).unwrap();
+    }
+    let table = with_context(&rows, |context| {
+        ways_table(context, context.rows, Over::Exact, &["ratio exact"]).unwrap()
+    });
+    let shown: Vec<&str> = table.records.iter().map(|r| r[0].as_str()).collect();
+    assert_eq!(shown, ["1", "0.502", "(1.07)"]);
+}
+
 /// 5 ms in compute over 10 in the fragment stage, in files with its interval; a value whose
 /// interval is too wide says so in tables, and its file has a column for it.
 #[test]

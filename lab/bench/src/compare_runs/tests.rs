@@ -48,7 +48,7 @@ fn planted_changes_are_found() {
     assert_eq!(verdicts(&found), [Verdict::Slower, Verdict::Even]);
     assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
     assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
-    let text = as_text(&found);
+    let text = as_text(&found, None);
     assert!(text.contains("1 slower, 0 faster, 1 within"), "{text}");
     let worse = "less exact: fragment: missed 0 to 40";
     assert!(text.contains(worse), "{text}");
@@ -85,7 +85,7 @@ fn a_slower_machine_is_told_from_a_slower_search() {
     let wanted = [Verdict::Even, Verdict::Even, Verdict::Slower];
     assert_eq!(verdicts(&found), wanted);
     assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
-    assert!(as_text(&found).contains("the RBM baseline itself differs"));
+    assert!(as_text(&found, None).contains("the RBM baseline itself differs"));
 }
 
 /// Forty measurements of one program, each run with a drift of its own: nothing is named in nineteen of

@@ -44,7 +44,7 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
         ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
         let told = ratios.iter().map(|r| {
             let (way, stage) = (context.styles.way(&r.settings), r.settings.stage.name());
-            let time = context.known(Some(r.time)).shown();
+            let time = Cell::Known(r.time).shown();
             let verdict = match r.time.verdict(context.resolved) {
                 Verdict::Faster => "faster",
                 Verdict::Slower => "slower",
@@ -172,14 +172,14 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
         &over(rows.iter().copied(), Over::Fragment),
         &[
             ("method", &|r| context.styles.way(&r.settings)),
+            ("compute / fragment", &|r| Cell::Known(r.time).shown()),
+            ("faster", &|r| faster(r).to_owned()),
             ("fragment (ms)", &|r| {
                 mean(r.pairs.iter().map(|p| p.1).collect())
             }),
             ("compute (ms)", &|r| {
                 mean(r.pairs.iter().map(|p| p.0).collect())
             }),
-            ("compute / fragment", &|r| Cell::Known(r.time).shown()),
-            ("faster", &|r| faster(r).to_owned()),
             ("range over pictures", &over_pictures),
             ("pictures", &|r| r.pairs.len().to_string()),
         ],
@@ -328,9 +328,9 @@ mod tests {
         let wanted = "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5), over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster.";
         assert_eq!(answers, [wanted]);
         assert_eq!(records.len(), 1, "live was drawn in one stage");
-        let [fragment, compute] = [&records[0][1], &records[0][2]];
+        let [fragment, compute] = [&records[0][3], &records[0][4]];
         assert!(fragment.starts_with("11.7 (") && compute.starts_with("5.86 ("));
-        assert_eq!(records[0][3..5], ["0.5 (0.5 to 0.5)", "compute"]);
+        assert_eq!(records[0][1..3], ["0.5 (0.5 to 0.5)", "compute"]);
     }
 
     #[test]
@@ -357,8 +357,8 @@ mod tests {
             let compute = timed(Method::DEFAULT, Compute, 0, &compute);
             let (answers, records) = stages_of(&[steady.clone(), compute]);
             assert!(answers[0].ends_with(wanted), "{answers:?}");
-            assert_eq!(records[0][4], faster);
-            let marked = records[0][2].ends_with(", not resolved");
+            assert_eq!(records[0][2], faster);
+            let marked = records[0][4].ends_with(", not resolved");
             assert_eq!(marked, faster == "not resolved", "{records:?}");
         }
         let rows = [

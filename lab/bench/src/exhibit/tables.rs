@@ -4,7 +4,7 @@ use super::{answers, check_column};
 use crate::columns::{self, Cell, Context};
 use crate::growth::growth;
 use crate::method::Method;
-use crate::names::range;
+use crate::names::{number, range};
 use crate::plan::grouped;
 use crate::published::published;
 use crate::ratios::{Over, Ratio, mean_ms, over};
@@ -21,9 +21,10 @@ pub struct Table {
     pub of: Records,
     /// The heading above it.
     pub heading: String,
-    /// Columns, by their names. In tables of ways also `ratio R`, `interval R`, `range R` of the
-    /// time over `R`, `known ms` for the mean time, `mean C`, `worst C`, `average C` of a column,
-    /// `other C` of the mesh's, `pictures`, `total wrong`, `no worse`.
+    /// Columns, by their names. In tables of ways also `ratio R` (in brackets if not resolved),
+    /// `interval R`, `range R` of the time over `R`, `known ms` for the mean time, `mean C`,
+    /// `worst C`, `average C` of a column, `other C` of the mesh's, `pictures`, `total wrong`,
+    /// `no worse`.
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
     pub over: Option<Over>,
@@ -176,7 +177,11 @@ pub(crate) fn cell(
         // It has no surface to err from.
         Some(("mean" | "worst" | "total", _)) if floor => Cell::Empty,
         Some(("range", _)) if ratio.pairs.len() == 1 => Cell::Empty,
-        Some(("ratio", other)) => Cell::number(time(other)?.map(|t| t.0.value)),
+        Some(("ratio", other)) => match context.known(time(other)?.map(|t| t.0)) {
+            // As in charts.
+            Cell::Unresolved(i) => Cell::Text(format!("({})", number(i.value, 3))),
+            known => Cell::number(known.value()),
+        },
         Some(("known", "ms")) => {
             let own: Vec<&Row> = ratio.pairs.iter().map(|(row, _)| *row).collect();
             context.known(mean_ms(&own))

@@ -63,11 +63,12 @@ pub fn load(files: &[PathBuf]) -> Result<Vec<Named>> {
     Ok(all)
 }
 
-/// Writes `results.csv`, `report.html` and the charts; returns the table that is printed.
+/// Writes `results.csv`, `report.html` and the charts; returns the table that is printed, for a
+/// terminal of this width if it is for one.
 ///
 /// # Errors
 /// [`ErrorKind::File`] for files that cannot be written.
-pub fn write(all: &[Named], folder: &Path) -> Result<String> {
+pub fn write(all: &[Named], folder: &Path, width: Option<usize>) -> Result<String> {
     write_text(&folder.join("results.csv"), &results(all).csv())?;
     let mut page = Page::new("revmap: figures of several devices");
     all.iter().for_each(|one| page.lead(finding(one)));
@@ -105,7 +106,7 @@ pub fn write(all: &[Named], folder: &Path) -> Result<String> {
         page.table(&shaders);
     }
     write_text(&folder.join("report.html"), &page.html())?;
-    Ok(ratios.aligned())
+    Ok(ratios.within(width, "report.html"))
 }
 
 /// The sentence on one device.

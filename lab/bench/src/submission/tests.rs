@@ -188,7 +188,7 @@ fn devices_stand_side_by_side() {
     assert_eq!(labels, ["card 1.2 (1)", "card 1.2 (2)", "other 1.2"]);
     let out = folder.path().join("out");
     std::fs::create_dir(&out).unwrap();
-    let said = gather::write(&all, &out).unwrap();
+    let said = gather::write(&all, &out, None).unwrap();
     assert!(said.contains("0.7 (0.6 to 0.8)"), "{said}");
     let table = super::super::table::Table::load(&out.join("results.csv")).unwrap();
     assert_eq!(table.records.len(), 6);

@@ -133,7 +133,7 @@ fn a_runs_folder_is_whole() {
         album: &album,
         flights: &[],
     };
-    let text = report.write(folder.path()).unwrap();
+    let text = report.write(folder.path(), None).unwrap();
     for wanted in ["RBM baseline", "2 pictures"] {
         assert!(text.contains(wanted), "{text}");
     }
