@@ -118,7 +118,8 @@ const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// Rows that a patch touches. `rows`: number of all rows.
 pub(crate) fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
-    let row = |z: f64| ((z * rows as f64).floor().max(0.0) as usize).min(rows - 1);
+    // Integers truncate, and none is below 0.
+    let row = |z: f64| ((z * rows as f64) as usize).min(rows - 1);
     row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN)
 }
 
@@ -127,9 +128,11 @@ pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
     let n = rows as f64;
     let mut nodes = vec![EMPTY; rows];
     for patch in patches {
-        for i in touched(patch, rows) {
-            let [low, high] = squares(patch, i as f64 / n, (i + 1) as f64 / n);
-            nodes[i] = [nodes[i][0].min(low), nodes[i][1].max(high)];
+        let met = touched(patch, rows);
+        let squares = squares(patch);
+        for (i, node) in met.clone().zip(&mut nodes[met]) {
+            let [low, high] = squares(i as f64 / n, (i + 1) as f64 / n);
+            *node = [node[0].min(low), node[1].max(high)];
         }
     }
     nodes
@@ -209,26 +212,26 @@ fn runs(patches: &[QuadricPatch], members: &Members) -> (Vec<u32>, Vec<GpuPatch>
     (starts, records)
 }
 
-/// Least and largest `r^2` of a patch between two heights, widened.
-fn squares(patch: &QuadricPatch, from: f64, to: f64) -> [f32; 2] {
-    let [mut low, mut high] = patch.r.map(|r| r * r);
-    if !patch.is_plane() {
-        let ends = [
-            (from - MARGIN).clamp(patch.z[0], patch.z[1]),
-            (to + MARGIN).clamp(patch.z[0], patch.z[1]),
-        ];
-        let squares = ends.map(|z| patch.square_at(z));
-        let [_, _, k1, k2] = patch.quadric;
-        let turn = -0.5 * k1 / k2;
-        let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
-        if ends[0] < turn && turn < ends[1] {
-            let p = patch.square_at(turn);
-            (least, most) = (least.min(p), most.max(p));
+/// A function for the least and largest `r^2` of a patch between two heights, widened.
+fn squares(patch: &QuadricPatch) -> impl Fn(f64, f64) -> [f32; 2] {
+    let extremes = patch.r.map(|r| r * r);
+    let [_, _, k1, k2] = patch.quadric;
+    let turn = -0.5 * k1 / k2;
+    let square_at_turn = patch.square_at(turn);
+    move |from, to| {
+        let [mut low, mut high] = extremes;
+        if !patch.is_plane() {
+            let ends = [from - MARGIN, to + MARGIN].map(|z| z.clamp(patch.z[0], patch.z[1]));
+            let squares = ends.map(|z| patch.square_at(z));
+            let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
+            if ends[0] < turn && turn < ends[1] {
+                (least, most) = (least.min(square_at_turn), most.max(square_at_turn));
+            }
+            // The values at the ends are more accurate than those of the quadric.
+            (low, high) = (low.max(least), high.min(most));
         }
-        // The values at the ends are more accurate than those of the quadric.
-        (low, high) = (low.max(least), high.min(most));
+        // Radii may be off by the margin: (r + m)^2 - r^2.
+        let slack = MARGIN * (1.0 + 2.0 * high.max(0.0).sqrt());
+        [(low - slack) as f32, (high + slack) as f32]
     }
-    // Radii may be off by the margin: (r + m)^2 - r^2.
-    let slack = MARGIN * (1.0 + 2.0 * high.max(0.0).sqrt());
-    [(low - slack) as f32, (high + slack) as f32]
 }
