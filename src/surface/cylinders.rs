@@ -130,7 +130,8 @@ fn solid_radii(patches: &[QuadricPatch], extents: &[[f32; 2]]) -> [f64; ROWS] {
 
 /// Runs of consecutive rows that share a cylinder. A run's data is at its first row.
 struct Runs {
-    outer: bool,
+    /// Radii of the runs; negative for runs within the solid, so that joined runs have the larger
+    /// value.
     radii: [f64; ROWS],
     /// The row after the run.
     ends: [usize; ROWS],
@@ -138,9 +139,14 @@ struct Runs {
     begins: [usize; ROWS],
     /// The change of area by joining a run with the next one; infinite if there is none. The lowest
     /// bits are the row, so that the least of these values gives the run.
-    costs: [f64; ROWS],
+    costs: [[f64; GROUP]; GROUP],
+    /// The least cost of each group.
+    least: [f64; GROUP],
 }
 
+/// Rows in a group, and groups.
+const GROUP: usize = 8;
+const _: () = assert!(GROUP * GROUP == ROWS);
 /// The bits of a cost that hold a row.
 const ROW_BITS: u64 = ROWS as u64 - 1;
 
@@ -148,73 +154,82 @@ impl Runs {
     /// One run for each row.
     fn new(radii: &[f64; ROWS], outer: bool) -> Self {
         let mut runs = Self {
-            outer,
-            radii: *radii,
+            radii: radii.map(|radius| if outer { radius } else { -radius }),
             ends: std::array::from_fn(|row| row + 1),
             begins: std::array::from_fn(|row| row),
-            costs: [f64::INFINITY; ROWS],
+            costs: [[f64::INFINITY; GROUP]; GROUP],
+            least: [f64::INFINITY; GROUP],
         };
-        (0..ROWS).for_each(|row| runs.price(row));
+        for row in 0..ROWS {
+            runs.costs[row / GROUP][row % GROUP] = runs.cost(row);
+        }
+        runs.least = runs.costs.each_ref().map(least);
         runs
     }
 
-    /// The radius of a run that joins two.
-    fn bound(&self, a: f64, b: f64) -> f64 {
-        if (a < b) == self.outer { b } else { a }
+    /// The cost of joining a run with the next one.
+    fn cost(&self, run: usize) -> f64 {
+        let next = self.ends[run];
+        if next == ROWS {
+            return f64::INFINITY;
+        }
+        let [a, b] = [run, next].map(|run| self.radii[run]);
+        let to = larger(a, b);
+        let rows = [run, next].map(|run| (self.ends[run] - run) as u32);
+        let cost = f64::from(rows[0]) * (to - a) + f64::from(rows[1]) * (to - b);
+        f64::from_bits(cost.to_bits() & !ROW_BITS | run as u64)
     }
 
-    /// Finds the cost of joining a run with the next one.
-    fn price(&mut self, run: usize) {
-        let next = self.ends[run];
-        self.costs[run] = f64::INFINITY;
-        if next < ROWS {
-            let [a, b] = [run, next].map(|run| self.radii[run]);
-            let to = self.bound(a, b);
-            let area = |run: usize, r: f64| (self.ends[run] - run) as f64 * (r - to).abs();
-            let cost = area(run, a) + area(next, b);
-            self.costs[run] = f64::from_bits(cost.to_bits() & !ROW_BITS | run as u64);
-        }
+    fn set_cost(&mut self, run: usize, cost: f64) {
+        let group = &mut self.costs[run / GROUP];
+        group[run % GROUP] = cost;
+        self.least[run / GROUP] = least(group);
     }
 
     /// Joins the two runs that cost least. Returns the number of runs with a radius above 0 that are
     /// gone; `None` if there is one run.
     fn join(&mut self) -> Option<usize> {
-        // Independent minima, which a processor finds at once.
-        let mut least = [f64::INFINITY; 8];
-        for costs in self.costs.as_chunks::<8>().0 {
-            for (least, cost) in least.iter_mut().zip(costs) {
-                *least = if cost < least { *cost } else { *least };
-            }
-        }
-        let least = least.into_iter().fold(f64::INFINITY, f64::min);
+        let least = least(&self.least);
         if least == f64::INFINITY {
             return None;
         }
         let run = (least.to_bits() & ROW_BITS) as usize;
         let next = self.ends[run];
-        let radii = [run, next].map(|run| self.radii[run]);
-        self.radii[run] = self.bound(radii[0], radii[1]);
+        let [a, b] = [run, next].map(|run| self.radii[run]);
+        let to = larger(a, b);
+        self.radii[run] = to;
         self.ends[run] = self.ends[next];
         self.begins[self.ends[run] - 1] = run;
-        self.costs[next] = f64::INFINITY;
-        self.price(run);
+        self.set_cost(next, f64::INFINITY);
+        self.set_cost(run, self.cost(run));
         if run > 0 {
-            self.price(self.begins[run - 1]);
+            let before = self.begins[run - 1];
+            self.set_cost(before, self.cost(before));
         }
-        let before = radii.into_iter().filter(|radius| *radius > 0.0).count();
-        Some(before - usize::from(self.radii[run] > 0.0))
+        let solid = |radius: f64| usize::from(radius != 0.0);
+        Some(solid(a) + solid(b) - solid(to))
     }
 
     fn pieces(&self) -> impl Iterator<Item = CylinderPiece> {
-        let runs = std::iter::successors(Some(0), |run| Some(self.ends[*run]));
-        let runs = runs.take_while(|run| *run < ROWS);
+        let next = |run: &usize| Some(self.ends[*run]).filter(|next| *next < ROWS);
+        let runs = std::iter::successors(Some(0), next);
         let piece = |run: usize| CylinderPiece {
-            radius: self.radii[run],
+            radius: self.radii[run].abs(),
             low: run as f64 / ROWS as f64,
             high: self.ends[run] as f64 / ROWS as f64,
         };
         runs.map(piece).filter(|piece| piece.radius > 0.0)
     }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The least of a group, without a long chain of comparisons.
+fn least([a, b, c, d, e, f, g, h]: &[f64; GROUP]) -> f64 {
+    let of = |a: f64, b: f64| if a < b { a } else { b };
+    of(of(of(*a, *b), of(*c, *d)), of(of(*e, *f), of(*g, *h)))
 }
 
 #[cfg(test)]

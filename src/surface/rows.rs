@@ -125,13 +125,13 @@ pub(crate) fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize
 
 /// `[min r^2, max r^2]` of the boundary in each of `rows` rows; `[+inf, -inf]` for an empty row.
 pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
-    let n = rows as f64;
+    let height = |row: usize| f64::from(row as u32) / rows as f64;
     let mut nodes = vec![EMPTY; rows];
     for patch in patches {
         let met = touched(patch, rows);
         let squares = squares(patch);
         for (i, node) in met.clone().zip(&mut nodes[met]) {
-            let [low, high] = squares(i as f64 / n, (i + 1) as f64 / n);
+            let [low, high] = squares(height(i), height(i + 1));
             *node = [node[0].min(low), node[1].max(high)];
         }
     }
@@ -221,7 +221,7 @@ fn squares(patch: &QuadricPatch) -> impl Fn(f64, f64) -> [f32; 2] {
     move |from, to| {
         let [mut low, mut high] = extremes;
         if !patch.is_plane() {
-            let ends = [from - MARGIN, to + MARGIN].map(|z| z.clamp(patch.z[0], patch.z[1]));
+            let ends = [from - MARGIN, to + MARGIN].map(|z| z.max(patch.z[0]).min(patch.z[1]));
             let squares = ends.map(|z| patch.square_at(z));
             let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
             if ends[0] < turn && turn < ends[1] {
