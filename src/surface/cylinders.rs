@@ -137,11 +137,11 @@ struct Runs {
     ends: [usize; ROWS],
     /// The first row of the run that ends with this row.
     begins: [usize; ROWS],
-    /// The change of area by joining a run with the next one; infinite if there is none. The lowest
-    /// bits are the row, so that the least of these values gives the run.
-    costs: [[f64; GROUP]; GROUP],
+    /// The change of area by joining a run with the next one, in the order of these values;
+    /// [`NEVER`] if there is none. The lowest bits are the row, so that the least value gives the run.
+    costs: [[u64; GROUP]; GROUP],
     /// The least cost of each group.
-    least: [f64; GROUP],
+    least: [u64; GROUP],
 }
 
 /// Rows in a group, and groups.
@@ -149,6 +149,7 @@ const GROUP: usize = 8;
 const _: () = assert!(GROUP * GROUP == ROWS);
 /// The bits of a cost that hold a row.
 const ROW_BITS: u64 = ROWS as u64 - 1;
+const NEVER: u64 = u64::MAX;
 
 impl Runs {
     /// One run for each row.
@@ -157,8 +158,8 @@ impl Runs {
             radii: radii.map(|radius| if outer { radius } else { -radius }),
             ends: std::array::from_fn(|row| row + 1),
             begins: std::array::from_fn(|row| row),
-            costs: [[f64::INFINITY; GROUP]; GROUP],
-            least: [f64::INFINITY; GROUP],
+            costs: [[NEVER; GROUP]; GROUP],
+            least: [NEVER; GROUP],
         };
         for row in 0..ROWS {
             runs.costs[row / GROUP][row % GROUP] = runs.cost(row);
@@ -168,39 +169,44 @@ impl Runs {
     }
 
     /// The cost of joining a run with the next one.
-    fn cost(&self, run: usize) -> f64 {
+    fn cost(&self, run: usize) -> u64 {
         let next = self.ends[run];
         if next == ROWS {
-            return f64::INFINITY;
+            return NEVER;
         }
         let [a, b] = [run, next].map(|run| self.radii[run]);
         let to = larger(a, b);
         let rows = [run, next].map(|run| (self.ends[run] - run) as u32);
         let cost = f64::from(rows[0]) * (to - a) + f64::from(rows[1]) * (to - b);
-        f64::from_bits(cost.to_bits() & !ROW_BITS | run as u64)
+        // The order of positive numbers is that of their bits.
+        cost.to_bits() & !ROW_BITS | run as u64
     }
 
-    fn set_cost(&mut self, run: usize, cost: f64) {
-        let group = &mut self.costs[run / GROUP];
-        group[run % GROUP] = cost;
-        self.least[run / GROUP] = least(group);
+    fn set_cost(&mut self, run: usize, cost: u64) {
+        let (group, known) = (&mut self.costs[run / GROUP], &mut self.least[run / GROUP]);
+        let before = std::mem::replace(&mut group[run % GROUP], cost);
+        if cost < *known {
+            *known = cost;
+        } else if before == *known {
+            *known = least(group);
+        }
     }
 
     /// Joins the two runs that cost least. Returns the number of runs with a radius above 0 that are
     /// gone; `None` if there is one run.
     fn join(&mut self) -> Option<usize> {
         let least = least(&self.least);
-        if least == f64::INFINITY {
+        if least == NEVER {
             return None;
         }
-        let run = (least.to_bits() & ROW_BITS) as usize;
+        let run = (least & ROW_BITS) as usize;
         let next = self.ends[run];
         let [a, b] = [run, next].map(|run| self.radii[run]);
         let to = larger(a, b);
         self.radii[run] = to;
         self.ends[run] = self.ends[next];
         self.begins[self.ends[run] - 1] = run;
-        self.set_cost(next, f64::INFINITY);
+        self.set_cost(next, NEVER);
         self.set_cost(run, self.cost(run));
         if run > 0 {
             let before = self.begins[run - 1];
@@ -227,9 +233,9 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// The least of a group, without a long chain of comparisons.
-fn least([a, b, c, d, e, f, g, h]: &[f64; GROUP]) -> f64 {
-    let of = |a: f64, b: f64| if a < b { a } else { b };
-    of(of(of(*a, *b), of(*c, *d)), of(of(*e, *f), of(*g, *h)))
+fn least(&[a, b, c, d, e, f, g, h]: &[u64; GROUP]) -> u64 {
+    let [left, right] = [a.min(b).min(c.min(d)), e.min(f).min(g.min(h))];
+    left.min(right)
 }
 
 #[cfg(test)]
