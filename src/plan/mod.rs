@@ -85,13 +85,19 @@ pub(crate) enum Call {
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
 pub(crate) type IndexedDraw = [u32; 5];
 
-/// Plans a frame.
-pub(crate) fn plan(view: &View, objects: &[PlanObject], with: &Conditions) -> FramePlan {
+/// Plans a frame. `many_new`: true if many objects have a surface without a hull, which choosing a
+/// path may make.
+pub(crate) fn plan(
+    view: &View,
+    objects: &[PlanObject],
+    with: &Conditions,
+    many_new: bool,
+) -> FramePlan {
     let chosen = |of: &PlanObject| with.choose(of, view);
-    let paths: Vec<Path> = if objects.len() < MANY {
+    let paths: Vec<Path> = if objects.len() < MANY && !many_new {
         objects.iter().map(chosen).collect()
     } else {
-        objects.par_iter().with_min_len(64).map(chosen).collect()
+        objects.par_iter().with_min_len(16).map(chosen).collect()
     };
     let mut plan = FramePlan {
         paths: paths.iter().map(Path::public).collect(),

@@ -86,7 +86,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
         occlusion_culling: true,
         ..Conditions::default()
     };
-    plan(view, &objects, &with)
+    plan(view, &objects, &with, false)
 }
 
 /// Ends of the pixels that a viewport may draw: left, top, right, bottom.

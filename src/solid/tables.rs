@@ -17,8 +17,8 @@ impl SearchTable {
     pub(crate) fn new(patches: &[QuadricPatch], contour: &Contour) -> Self {
         let tables = Tables::new(patches, PATCH_ROWS);
         let unit = unit(contour);
-        let mut words = nodes(&tables.nodes, unit);
-        words.extend(&tables.rows);
+        let nodes = tables.nodes.iter().map(|node| node_word(node, unit));
+        let words: Vec<u32> = nodes.chain(tables.rows.iter().copied()).collect();
         let ranges = |pair: &[GpuPatch]| {
             let range = |k: usize| {
                 pair.get(k)
@@ -27,7 +27,9 @@ impl SearchTable {
             let [[a, b], [c, d]] = [range(0), range(1)];
             [a, b, c, d]
         };
-        let mut vectors: Vec<_> = tables.records.chunks(2).rev().map(ranges).collect();
+        let records = tables.records.len();
+        let mut vectors = Vec::with_capacity(records.div_ceil(2) + words.len() / 4 + 2 * records);
+        vectors.extend(tables.records.chunks(2).rev().map(ranges));
         let before = index(vectors.len());
         vectors.extend(words.as_chunks().0);
         for record in &tables.records {
@@ -81,14 +83,12 @@ fn unit(contour: &Contour) -> f32 {
     (largest * largest / 65535.0) as f32
 }
 
-/// Least and largest `r^2` of each node in two 16-bit halves of a word, rounded outwards.
-fn nodes(extents: &[[f32; 2]], unit: f32) -> Vec<u32> {
-    let word = |[low, high]: &[f32; 2]| {
-        let low = (low / unit).floor().clamp(0.0, 65535.0) as u32;
-        let high = (high / unit).ceil().clamp(0.0, 65535.0) as u32;
-        low | high << 16
-    };
-    extents.iter().map(word).collect()
+/// Least and largest `r^2` of a node in two 16-bit halves of a word, rounded outwards.
+fn node_word([low, high]: &[f32; 2], unit: f32) -> u32 {
+    let [low, high] = [low, high].map(|square| (square / unit).clamp(0.0, 65535.0));
+    // Integers truncate.
+    let [floor, below] = [low as u32, high as u32];
+    floor | (below + u32::from((below as f32) < high)) << 16
 }
 
 fn index(n: usize) -> u32 {

@@ -29,6 +29,11 @@ impl Segments {
         self.starts.push(self.points.len() as u32);
     }
 
+    /// Makes room for this many points.
+    pub fn reserve(&mut self, count: usize) {
+        self.points.reserve(count);
+    }
+
     pub fn point(&mut self, p: DVec2) {
         self.points.push(p);
     }
@@ -93,7 +98,9 @@ impl Segments {
         let mut k = first;
         loop {
             used[k as usize] = true;
-            for &p in self.part(k as usize) {
+            let part = self.part(k as usize);
+            chain.points.reserve(part.len());
+            for &p in part {
                 let repeated = chain
                     .points
                     .last()

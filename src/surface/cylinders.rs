@@ -17,7 +17,10 @@ pub(crate) struct CylinderPiece {
 /// on the screen use more of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Cylinders {
-    pieces: [Vec<CylinderPiece>; 3],
+    /// Many, some, then few.
+    pieces: Vec<CylinderPiece>,
+    /// The ends of these.
+    ends: [usize; 3],
     /// Copies with fewer rows of pixels use few.
     few: u32,
 }
@@ -32,13 +35,9 @@ impl Cylinders {
     /// Cylinders within the solid that the patches enclose, and around it.
     pub fn of_patches(patches: &[QuadricPatch]) -> [Self; 2] {
         let extents = extents(patches, ROWS);
-        let inner = Self {
-            pieces: cylinders(&solid_radii(patches, &extents), COUNTS, false),
-            few: 12,
-        };
-        let most = |node: &[f32; 2]| f64::from(node[1]).max(0.0).sqrt();
-        let radii: Vec<f64> = extents.iter().map(most).collect();
-        [inner, Self::around(&radii)]
+        let inner = solid_radii(patches, &extents);
+        let outer = std::array::from_fn(|row| f64::from(extents[row][1]).max(0.0).sqrt());
+        [Self::new(&inner, false, 12), Self::around(&outer)]
     }
 
     /// Cylinders around the solid that an outline encloses, within the height of its box.
@@ -68,21 +67,43 @@ impl Cylinders {
     }
 
     /// Cylinders around a solid with these largest radii in rows of equal height.
-    pub fn around(radii: &[f64]) -> Self {
-        Self {
-            pieces: cylinders(radii, COUNTS, true),
-            few: 24,
-        }
+    pub fn around(radii: &[f64; ROWS]) -> Self {
+        Self::new(radii, true, 24)
+    }
+
+    /// At most as many runs of rows as [`COUNTS`] says, each with its least (`outer`: largest)
+    /// radius. Neighbouring runs are joined, those first that lose (`outer`: gain) the least area.
+    /// Runs of radius 0 are left out.
+    fn new(radii: &[f64; ROWS], outer: bool, few: u32) -> Self {
+        let mut runs = Runs::new(radii, outer);
+        let mut solid = radii.iter().filter(|radius| **radius > 0.0).count();
+        let mut pieces = Vec::with_capacity(COUNTS.iter().sum());
+        let ends = COUNTS.map(|count| {
+            while solid > count
+                && let Some(gone) = runs.join()
+            {
+                solid -= gone;
+            }
+            pieces.extend(runs.pieces());
+            pieces.len()
+        });
+        Self { pieces, ends, few }
     }
 
     /// The cylinders for a copy that covers this many rows of pixels.
     pub fn of(&self, rows: u32) -> &[CylinderPiece] {
-        &self.pieces[usize::from(rows >= self.few) + usize::from(rows >= MANY_ROWS)]
+        let [many, some, few] = self.ends;
+        let range = match rows {
+            MANY_ROWS.. => 0..many,
+            rows if rows >= self.few => many..some,
+            _ => some..few,
+        };
+        &self.pieces[range]
     }
 }
 
-/// Most cylinders of copies with few, more and many rows of pixels.
-const COUNTS: [usize; 3] = [3, 8, 16];
+/// Most cylinders of copies with many, some and few rows of pixels.
+const COUNTS: [usize; 3] = [16, 8, 3];
 
 /// The radius within which everything is solid, for each row of equal height over `0 <= z <= 1`.
 /// Object units. Rounded down; 0 if there is no such radius.
@@ -107,69 +128,114 @@ fn solid_radii(patches: &[QuadricPatch], extents: &[[f32; 2]]) -> [f64; ROWS] {
     })
 }
 
-/// For each count, at most that many runs of rows, each with its least (`outer`: largest) radius.
-/// Neighbouring runs are joined, those first that lose (`outer`: gain) the least area. Runs of radius
-/// 0 are left out.
-fn cylinders<const K: usize>(
-    radii: &[f64],
-    counts: [usize; K],
-    outer: bool,
-) -> [Vec<CylinderPiece>; K] {
-    let n = radii.len() as f64;
-    let bound = |a: f64, b: f64| if (a < b) == outer { b } else { a };
-    // The change of area by joining two runs. Equal runs are joined at no cost.
-    let cost = |a: &Run, b: &Run| {
-        let to = bound(a.radius, b.radius);
-        a.rows() * (a.radius - to).abs() + b.rows() * (b.radius - to).abs()
-    };
-    let row = |(row, &radius): (usize, &f64)| Run {
-        begin: row,
-        end: row + 1,
-        radius,
-    };
-    let mut runs: Vec<Run> = radii.iter().enumerate().map(row).collect();
-    let mut costs: Vec<f64> = runs.windows(2).map(|w| cost(&w[0], &w[1])).collect();
-    let mut found = [const { Vec::new() }; K];
-    let mut order: Vec<usize> = (0..K).collect();
-    order.sort_unstable_by_key(|&k| std::cmp::Reverse(counts[k]));
-    for k in order {
-        let solid = |runs: &[Run]| runs.iter().filter(|run| run.radius > 0.0).count();
-        while solid(&runs) > counts[k] {
-            let least = costs.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-            let Some((at, _)) = least else { break };
-            let next = runs.remove(at + 1);
-            costs.remove(at);
-            runs[at].end = next.end;
-            runs[at].radius = bound(runs[at].radius, next.radius);
-            if at > 0 {
-                costs[at - 1] = cost(&runs[at - 1], &runs[at]);
-            }
-            if let Some(after) = runs.get(at + 1) {
-                costs[at] = cost(&runs[at], after);
-            }
-        }
-        let solid = runs.iter().filter(|run| run.radius > 0.0);
-        let piece = |run: &Run| CylinderPiece {
-            radius: run.radius,
-            low: run.begin as f64 / n,
-            high: run.end as f64 / n,
+/// Runs of consecutive rows that share a cylinder. A run's data is at its first row.
+struct Runs {
+    /// Radii of the runs; negative for runs within the solid, so that joined runs have the larger
+    /// value.
+    radii: [f64; ROWS],
+    /// The row after the run.
+    ends: [usize; ROWS],
+    /// The first row of the run that ends with this row.
+    begins: [usize; ROWS],
+    /// The change of area by joining a run with the next one, in the order of these values;
+    /// [`NEVER`] if there is none. The lowest bits are the row, so that the least value gives the run.
+    costs: [[u64; GROUP]; GROUP],
+    /// The least cost of each group.
+    least: [u64; GROUP],
+}
+
+/// Rows in a group, and groups.
+const GROUP: usize = 8;
+const _: () = assert!(GROUP * GROUP == ROWS);
+/// The bits of a cost that hold a row.
+const ROW_BITS: u64 = ROWS as u64 - 1;
+const NEVER: u64 = u64::MAX;
+
+impl Runs {
+    /// One run for each row.
+    fn new(radii: &[f64; ROWS], outer: bool) -> Self {
+        let mut runs = Self {
+            radii: radii.map(|radius| if outer { radius } else { -radius }),
+            ends: std::array::from_fn(|row| row + 1),
+            begins: std::array::from_fn(|row| row),
+            costs: [[NEVER; GROUP]; GROUP],
+            least: [NEVER; GROUP],
         };
-        found[k] = solid.map(piece).collect();
+        for row in 0..ROWS {
+            runs.costs[row / GROUP][row % GROUP] = runs.cost(row);
+        }
+        runs.least = runs.costs.each_ref().map(least);
+        runs
     }
-    found
+
+    /// The cost of joining a run with the next one.
+    fn cost(&self, run: usize) -> u64 {
+        let next = self.ends[run];
+        if next == ROWS {
+            return NEVER;
+        }
+        let [a, b] = [run, next].map(|run| self.radii[run]);
+        let to = larger(a, b);
+        let rows = [run, next].map(|run| (self.ends[run] - run) as u32);
+        let cost = f64::from(rows[0]) * (to - a) + f64::from(rows[1]) * (to - b);
+        // The order of positive numbers is that of their bits.
+        cost.to_bits() & !ROW_BITS | run as u64
+    }
+
+    fn set_cost(&mut self, run: usize, cost: u64) {
+        let (group, known) = (&mut self.costs[run / GROUP], &mut self.least[run / GROUP]);
+        let before = std::mem::replace(&mut group[run % GROUP], cost);
+        if cost < *known {
+            *known = cost;
+        } else if before == *known {
+            *known = least(group);
+        }
+    }
+
+    /// Joins the two runs that cost least. Returns the number of runs with a radius above 0 that are
+    /// gone; `None` if there is one run.
+    fn join(&mut self) -> Option<usize> {
+        let least = least(&self.least);
+        if least == NEVER {
+            return None;
+        }
+        let run = (least & ROW_BITS) as usize;
+        let next = self.ends[run];
+        let [a, b] = [run, next].map(|run| self.radii[run]);
+        let to = larger(a, b);
+        self.radii[run] = to;
+        self.ends[run] = self.ends[next];
+        self.begins[self.ends[run] - 1] = run;
+        self.set_cost(next, NEVER);
+        self.set_cost(run, self.cost(run));
+        if run > 0 {
+            let before = self.begins[run - 1];
+            self.set_cost(before, self.cost(before));
+        }
+        let solid = |radius: f64| usize::from(radius != 0.0);
+        Some(solid(a) + solid(b) - solid(to))
+    }
+
+    fn pieces(&self) -> impl Iterator<Item = CylinderPiece> {
+        let next = |run: &usize| Some(self.ends[*run]).filter(|next| *next < ROWS);
+        let runs = std::iter::successors(Some(0), next);
+        let piece = |run: usize| CylinderPiece {
+            radius: self.radii[run].abs(),
+            low: run as f64 / ROWS as f64,
+            high: self.ends[run] as f64 / ROWS as f64,
+        };
+        runs.map(piece).filter(|piece| piece.radius > 0.0)
+    }
 }
 
-/// Consecutive rows that share a cylinder.
-struct Run {
-    begin: usize,
-    end: usize,
-    radius: f64,
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
-impl Run {
-    fn rows(&self) -> f64 {
-        (self.end - self.begin) as f64
-    }
+/// The least of a group, without a long chain of comparisons.
+fn least(&[a, b, c, d, e, f, g, h]: &[u64; GROUP]) -> u64 {
+    let [left, right] = [a.min(b).min(c.min(d)), e.min(f).min(g.min(h))];
+    left.min(right)
 }
 
 #[cfg(test)]
@@ -181,20 +247,13 @@ mod tests {
 
     #[test]
     fn runs_keep_to_their_side_of_the_radii_and_cover_most() {
-        let radii: Vec<f64> = (0..64)
-            .map(|k| {
-                if k < 16 {
-                    0.4
-                } else {
-                    0.1 + 0.001 * f64::from(k)
-                }
-            })
-            .collect();
+        let radii = std::array::from_fn(|k| if k < 16 { 0.4 } else { 0.1 + 0.001 * k as f64 });
         for (outer, sense) in [(false, -1.0), (true, 1.0)] {
-            let [found] = cylinders(&radii, [8], outer);
+            let found = Cylinders::new(&radii, outer, 24);
+            let found = found.of(MANY_ROWS - 1);
             assert!(found.len() > 1 && found.len() <= 8);
             let mut covered = 0.0;
-            for piece in &found {
+            for piece in found {
                 let rows = &radii[(piece.low * 64.0) as usize..(piece.high * 64.0) as usize];
                 assert!(!rows.iter().any(|r| sense * (r - piece.radius) > 0.0));
                 covered += piece.radius * rows.len() as f64;
@@ -207,7 +266,11 @@ mod tests {
             let ends = [found[0].low, found[found.len() - 1].high];
             assert!(!outer || ends == [0.0, 1.0]);
         }
-        assert!(cylinders(&[0.0; 64], [8], false)[0].is_empty());
+        assert!(
+            Cylinders::new(&[0.0; ROWS], false, 24)
+                .of(MANY_ROWS)
+                .is_empty()
+        );
     }
 
     fn patches(points: &[[f64; 2]]) -> Vec<QuadricPatch> {

@@ -342,6 +342,7 @@ impl Trimmer<'_> {
                     let omega = layer.offset(middle.y).abs();
                     let step = (8.0 * SAGITTA / omega.max(1e-12)).sqrt();
                     let n = ((x1 - x0).abs() / step).ceil().clamp(1.0, 4096.0);
+                    parts.reserve(n as usize);
                     for i in 1..n as u32 {
                         parts.point(curve.point(layer.beta, x0 + (x1 - x0) * f64::from(i) / n));
                     }

@@ -91,14 +91,11 @@ impl Tables {
         let mut from = 0;
         while nodes.len() - from > 4 {
             let to = nodes.len();
-            let parents: Vec<[f32; 2]> = nodes[from..to]
-                .chunks(4)
-                .map(|four| {
-                    four.iter()
-                        .fold(EMPTY, |m, node| [m[0].min(node[0]), m[1].max(node[1])])
-                })
-                .collect();
-            nodes.extend(parents);
+            for first in (from..to).step_by(4) {
+                let four = nodes[first..to.min(first + 4)].iter();
+                let join = |m: [f32; 2], node: &[f32; 2]| [m[0].min(node[0]), m[1].max(node[1])];
+                nodes.push(four.fold(EMPTY, join));
+            }
             levels.push(to as u32);
             from = to;
         }
@@ -118,18 +115,26 @@ const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// Rows that a patch touches. `rows`: number of all rows.
 pub(crate) fn touched(patch: &QuadricPatch, rows: usize) -> RangeInclusive<usize> {
-    let row = |z: f64| ((z * rows as f64).floor().max(0.0) as usize).min(rows - 1);
+    // Integers truncate, and none is below 0.
+    let row = |z: f64| ((z * rows as f64) as usize).min(rows - 1);
     row(patch.z[0] - MARGIN)..=row(patch.z[1] + MARGIN)
 }
 
 /// `[min r^2, max r^2]` of the boundary in each of `rows` rows; `[+inf, -inf]` for an empty row.
 pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
-    let n = rows as f64;
-    let mut nodes = vec![EMPTY; rows];
+    let height = |row: usize| f64::from(row as u32) / rows as f64;
+    // With room for the tree above the rows.
+    let mut nodes = Vec::with_capacity(rows + rows / 2);
+    nodes.resize(rows, EMPTY);
     for patch in patches {
-        for i in touched(patch, rows) {
-            let [low, high] = squares(patch, i as f64 / n, (i + 1) as f64 / n);
-            nodes[i] = [nodes[i][0].min(low), nodes[i][1].max(high)];
+        let met = touched(patch, rows);
+        let squares = squares(patch);
+        let mut from = height(*met.start());
+        for (i, node) in met.clone().zip(&mut nodes[met]) {
+            let to = height(i + 1);
+            let [low, high] = squares(from, to);
+            *node = [least(node[0], low), most(node[1], high)];
+            from = to;
         }
     }
     nodes
@@ -209,26 +214,39 @@ fn runs(patches: &[QuadricPatch], members: &Members) -> (Vec<u32>, Vec<GpuPatch>
     (starts, records)
 }
 
-/// Least and largest `r^2` of a patch between two heights, widened.
-fn squares(patch: &QuadricPatch, from: f64, to: f64) -> [f32; 2] {
-    let [mut low, mut high] = patch.r.map(|r| r * r);
-    if !patch.is_plane() {
-        let ends = [
-            (from - MARGIN).clamp(patch.z[0], patch.z[1]),
-            (to + MARGIN).clamp(patch.z[0], patch.z[1]),
-        ];
-        let squares = ends.map(|z| patch.square_at(z));
-        let [_, _, k1, k2] = patch.quadric;
-        let turn = -0.5 * k1 / k2;
-        let (mut least, mut most) = (squares[0].min(squares[1]), squares[0].max(squares[1]));
-        if ends[0] < turn && turn < ends[1] {
-            let p = patch.square_at(turn);
-            (least, most) = (least.min(p), most.max(p));
+/// A function for the least and largest `r^2` of a patch between two heights, widened.
+fn squares(patch: &QuadricPatch) -> impl Fn(f64, f64) -> [f32; 2] {
+    let [bottom, top] = patch.z;
+    let extremes = patch.r.map(|r| r * r);
+    let [_, _, k1, k2] = patch.quadric;
+    let turn = -0.5 * k1 / k2;
+    let square_at_turn = patch.square_at(turn);
+    move |from, to| {
+        let [mut low, mut high] = extremes;
+        if !patch.is_plane() {
+            let ends = [from - MARGIN, to + MARGIN].map(|z| least(most(z, bottom), top));
+            let [a, b] = ends.map(|z| patch.square_at(z));
+            let (mut lower, mut higher) = (least(a, b), most(a, b));
+            if ends[0] < turn && turn < ends[1] {
+                lower = least(lower, square_at_turn);
+                higher = most(higher, square_at_turn);
+            }
+            // The values at the ends are more accurate than those of the quadric.
+            (low, high) = (most(low, lower), least(high, higher));
         }
-        // The values at the ends are more accurate than those of the quadric.
-        (low, high) = (low.max(least), high.min(most));
+        // Radii may be off by the margin: (r + m)^2 - r^2.
+        let slack = MARGIN * (1.0 + 2.0 * most(high, 0.0).sqrt());
+        [(low - slack) as f32, (high + slack) as f32]
     }
-    // Radii may be off by the margin: (r + m)^2 - r^2.
-    let slack = MARGIN * (1.0 + 2.0 * high.max(0.0).sqrt());
-    [(low - slack) as f32, (high + slack) as f32]
+}
+
+/// The lesser of two numbers: one instruction, where that of the standard library has to pass over
+/// NaN.
+fn least<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+fn most<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
 }

@@ -160,7 +160,7 @@ impl Content {
         let objects = rules.planned(view, &snapshot, &mut new)?;
         self.make_surfaces(&mut new);
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
-        let frame = plan(view, &inputs, &with);
+        let frame = plan(view, &inputs, &with, new.len() > MANY_NEW);
         if !new.is_empty() {
             make_vectors(&objects, &frame);
         }
@@ -231,6 +231,10 @@ impl Content {
         self.output.planes() == Planes::Depth { parallel: true }
     }
 }
+
+/// Number of new surfaces above which all cores choose paths: each may need a hull, which takes some
+/// microseconds.
+const MANY_NEW: usize = 16;
 
 /// Makes the vectors that a frame reads, on all cores.
 fn make_vectors(objects: &[PlannedObject], frame: &FramePlan) {

@@ -126,9 +126,9 @@ mod tests {
     #[test]
     fn rows_hold_the_solid_and_little_else() {
         let radius = |z: f64| if z < 0.1 { 0.4 } else { 0.05 + 0.1 * z };
-        let radii: Vec<f64> = (0..64)
-            .map(|row| radius((row + 1) as f64 / 64.0).max(radius(row as f64 / 64.0)))
-            .collect();
+        let radii = std::array::from_fn(|row| {
+            radius((row + 1) as f64 / 64.0).max(radius(row as f64 / 64.0))
+        });
         let outer = Cylinders::around(&radii);
         let camera = Camera::new(DVec3::new(3.0, 1.0, 2.0), DVec3::new(0.0, 0.0, 0.4));
         let view = View::from_camera(&camera, (640, 480), [0.1, 100.0]).unwrap();
