@@ -38,7 +38,8 @@ Light second_light;
 Shape shape; // of the current object: the instance's, or one that may cast a shadow on it
 Appearance appearance;
 bool traces_caster = false;
-bool starts_in_caster = false; // the rays that are traced start in the caster
+bool start_is_known = false;
+bool starts_within_caster; // if it is known
 
 // Returns true while the traced object is a possible shadow caster.
 bool casts()

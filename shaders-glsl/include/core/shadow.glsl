@@ -104,14 +104,7 @@ bool may_meet(Cone cone, vec3 middle, vec3 half_size)
 uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 {
     vec3 eye = point_to_axis(i, origin, point);
-#if SEARCH == SEARCH_QUADRIC
-    if (REPLICAS == 0u) { // all rays start in one point of one solid
-        Meridian m;
-        m.o = eye;
-        m.c = dot(eye.xy, eye.xy);
-        starts_in_caster = starts_within(m);
-    }
-#endif
+    start_is_known = false;
     vec2 angle = begin == SPIRAL_BEGIN ? disc.first : rotated(disc.first, RIM_ANGLE);
     for (uint k = begin; k < begin + PASS_RAYS; ++k) {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));

@@ -29,10 +29,11 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
     // Floor and ceiling are patches. A ray can enter the solid through a side only where the solid extends past it.
     float side_face = shape.half_side - max(abs(shape.axis.x), abs(shape.axis.y));
     bool open_side = m.face_in < FACE_Z && shape.clip_radius >= side_face;
-    if (casts() && REPLICAS == 0u && m.from_eye) {
-        return starts_in_caster;
-    }
-    return inside || (m.from_eye || open_side) && SOLID_AT(m);
+    bool within = inside || (start_is_known && m.from_eye ? starts_within_caster : (m.from_eye || open_side) && SOLID_AT(m));
+    // All rays of a pass towards a light begin in one point.
+    starts_within_caster = within;
+    start_is_known = casts() && REPLICAS == 0u && m.from_eye;
+    return within;
 #elif READS_TABLES
     return inside || SOLID_AT(m);
 #else
