@@ -85,8 +85,8 @@ pub(crate) enum Call {
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
 pub(crate) type IndexedDraw = [u32; 5];
 
-/// Plans a frame. `many_new`: true if many objects have a surface without a hull, which choosing a
-/// path may make.
+/// Plans a frame. `many_new`: true if many objects got a surface since the last frame, so that
+/// choosing a path may make many hulls.
 pub(crate) fn plan(
     view: &View,
     objects: &[PlanObject],

@@ -161,7 +161,7 @@ impl Cutter {
     /// Appends the points between the bands of a segment from `q` to `p`, if it is too flat.
     fn push_bands(&mut self, q: DVec2, p: DVec2, slope: f64) {
         let (widest, bend) = (p.x.max(q.x), slope * slope);
-        // Half of the least that the largest bend is under any slope: most segments bend less.
+        // A lower bound of largest_bend(): most segments pass without a square root.
         if slope <= FLAT && bend < self.bend_of_gradient() * widest {
             return;
         }

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use revmap::error::Result;
 use revmap::profile::Profile;
-use revmap::scene::{Light, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Light, Object, Offset, Placement, Scene, Shadow};
 use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
@@ -81,29 +81,32 @@ fn ground(scene: &Scene, up: DVec3) -> Result<Option<Object>> {
     Ok(Some(ground))
 }
 
-/// The points of an object's outline that its box does not cut.
+/// The points that enclose an object.
 struct Points<'a> {
     object: &'a Object,
-    /// Radius and height, object units.
-    points: Vec<DVec2>,
-    /// Object units that an offset adds.
-    wider: f64,
+    /// Radius and height, and how far the offset moves the surface there, object units.
+    points: Vec<(DVec2, f64)>,
 }
 
 impl<'a> Points<'a> {
     fn of(object: &'a Object) -> Self {
         let corner = DVec2::new(object.profile.radius * SQRT_2, 1.0);
-        let segments = object.profile.outline.segments();
         let Offset {
             extend,
             bevel,
             chamfer,
         } = object.offset;
-        Self {
-            object,
-            points: segments.map(|s| s.a.clamp(DVec2::ZERO, corner)).collect(),
-            wider: extend + bevel * chamfer.min(1.0),
-        }
+        let moved = |p: DVec2| extend + bevel * chamfer.min((1.0 - p.y).max(0.0));
+        let cut = object.clip == Clip::Box && moved(DVec2::ZERO) > 0.0;
+        let points = if cut || object.repeat != [1; 3] {
+            // The box itself.
+            vec![(DVec2::new(corner.x, 0.0), 0.0), (corner, 0.0)]
+        } else {
+            let segments = object.profile.outline.segments();
+            let point = |p: DVec2| (p.clamp(DVec2::ZERO, corner), moved(p));
+            segments.map(|segment| point(segment.a)).collect()
+        };
+        Self { object, points }
     }
 
     /// The largest coordinate of a solid's points along `axis`, of all copies.
@@ -111,9 +114,9 @@ impl<'a> Points<'a> {
         let of_copy = |place: &Placement| {
             let v = place.rotation.conjugate() * axis * place.scale;
             let along = DVec2::new(v.x.hypot(v.y), v.z);
-            let points = self.points.iter().map(|p| p.dot(along));
-            let reach = points.fold(f64::NEG_INFINITY, f64::max);
-            place.position.dot(axis) + reach + self.wider * v.length()
+            let reach = |(p, moved): &(DVec2, f64)| p.dot(along) + moved * v.length();
+            let reach = self.points.iter().map(reach);
+            place.position.dot(axis) + reach.fold(f64::NEG_INFINITY, f64::max)
         };
         let copies = self.object.placements().iter().map(of_copy);
         copies.fold(f64::NEG_INFINITY, f64::max)
@@ -157,9 +160,17 @@ mod tests {
         let mut lying = scene(eye, DVec3::Z);
         let about = DQuat::from_rotation_x(1.0);
         lying.objects[0].placement.rotation = about;
-        lying.objects[0].offset.extend = 0.0;
         let rim = about * DVec3::new(0.0, -0.4, 0.4);
         assert!((level(lying).unwrap() - rim.z).abs() < 1e-12);
+        // A bevel of 0.1 moves the foot, at a height of 0.2, by 0.08; the box is twice as high as wide.
+        let mut beveled = scene(eye, DVec3::Z);
+        beveled.objects[0].offset.bevel = 0.1;
+        assert!((level(beveled.clone()).unwrap() - 0.24).abs() < 1e-12);
+        beveled.objects[0].clip = Clip::Box;
+        assert!(level(beveled).unwrap().abs() < 1e-12);
+        let mut replicas = scene(eye, DVec3::Z);
+        replicas.objects[0].repeat = [1, 1, 3];
+        assert!(level(replicas).unwrap().abs() < 1e-12);
     }
 
     #[test]

@@ -230,7 +230,7 @@ pub fn as_text(against: &Against, width: Option<usize>) -> String {
         changed.map(line).collect()
     };
     let [old, new] = &against.devices;
-    let table = table.within(width, "`| less -S`");
+    let table = table.within(width, "a pipe, such as `| less -S`,");
     let counts = counts(against);
     let worse = changes("less exact", |p| &p.worse);
     let better = changes("more exact", |p| &p.better);

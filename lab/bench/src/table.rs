@@ -112,7 +112,7 @@ impl Table {
             Some(*end - GAP)
         });
         let fit = ends.take_while(|end| *end <= width).count();
-        if fit == table.header.len() {
+        if fit == table.header.len() || table.records.is_empty() {
             return table.aligned();
         }
         if fit <= table.words() {
@@ -143,7 +143,7 @@ impl Table {
         for record in &self.records {
             wrap(&mut out, "", &record[..words], width);
             let named = self.header.iter().zip(record).skip(words);
-            let named = named.filter(|(_, field)| !field.is_empty());
+            let named = named.filter(|(_, field)| !["", NO_VALUE].contains(&field.as_str()));
             let named: Vec<String> = named.map(|(name, f)| format!("{name}: {f}")).collect();
             wrap(&mut out, "  ", &named, width);
         }

@@ -186,6 +186,7 @@ uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
     traces_caster = false;
+    start_is_known = false;
     return lit & open;
 }
 

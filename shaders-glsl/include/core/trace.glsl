@@ -30,7 +30,8 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
     float side_face = shape.half_side - max(abs(shape.axis.x), abs(shape.axis.y));
     bool open_side = m.face_in < FACE_Z && shape.clip_radius >= side_face;
     bool within = inside || (start_is_known && m.from_eye ? starts_within_caster : (m.from_eye || open_side) && SOLID_AT(m));
-    // All rays of a pass towards a light begin in one point.
+    // All rays of a pass towards a light begin in one point. If that is outside of the cylinder, nothing is solid where
+    // they enter it.
     starts_within_caster = within;
     start_is_known = casts() && REPLICAS == 0u && m.from_eye;
     return within;

@@ -126,7 +126,11 @@ impl Solid<'_> {
         let look = &self.object.texturing;
         let ([across, along], [around, up]) = (look.repeat, look.offset);
         let [xi, eta] = vertex.uv.map(f64::from);
-        [xi * across - around, (1.0 - eta) * along + up].map(|v| v as f32)
+        [
+            xi * across - around.rem_euclid(1.0),
+            (1.0 - eta) * along + up,
+        ]
+        .map(|v| v as f32)
     }
 
     /// True if the texture ends at its upper and lower edge.
