@@ -135,6 +135,6 @@ fn a_table_fits_the_terminal() {
     assert_eq!(shown(80), piped);
     let narrow = shown(30);
     let wanted = "measurement  new / old\nvase                 1\n\
-        wider than the terminal; `| less -S` also has: 95 % interval\n";
+        wider than the terminal; a pipe, such as `| less -S`, also has: 95 % interval\n";
     assert!(narrow.contains(wanted), "{narrow}");
 }
