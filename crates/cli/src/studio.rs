@@ -162,7 +162,7 @@ mod tests {
         lying.objects[0].placement.rotation = about;
         let rim = about * DVec3::new(0.0, -0.4, 0.4);
         assert!((level(lying).unwrap() - rim.z).abs() < 1e-12);
-        // A bevel of 0.1 moves the foot, at a height of 0.2, by 0.08; the box is twice as high as wide.
+        // A bevel of 0.1 moves the foot, at a height of 0.2, by 0.08. The scale along z is 2.
         let mut beveled = scene(eye, DVec3::Z);
         beveled.objects[0].offset.bevel = 0.1;
         assert!((level(beveled.clone()).unwrap() - 0.24).abs() < 1e-12);
