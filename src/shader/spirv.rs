@@ -11,6 +11,7 @@ pub mod op {
     pub const ENTRY_POINT: u32 = 15;
     pub const EXECUTION_MODE: u32 = 16;
     pub const CAPABILITY: u32 = 17;
+    pub const TYPE_VOID: u32 = 19;
     pub const TYPE_BOOL: u32 = 20;
     pub const TYPE_INT: u32 = 21;
     pub const TYPE_IMAGE: u32 = 25;
@@ -18,6 +19,7 @@ pub mod op {
     pub const TYPE_SAMPLED_IMAGE: u32 = 27;
     pub const TYPE_ARRAY: u32 = 28;
     pub const TYPE_POINTER: u32 = 32;
+    pub const TYPE_LAST: u32 = 39; // OpTypeForwardPointer
     pub const CONSTANT_TRUE: u32 = 41;
     pub const CONSTANT_FALSE: u32 = 42;
     pub const CONSTANT: u32 = 43;
@@ -36,7 +38,19 @@ pub mod op {
     pub const SWITCH: u32 = 251;
     pub const DECORATE: u32 = 71;
     pub const I_ADD: u32 = 128;
+    pub const F_ADD: u32 = 129;
+    pub const F_SUB: u32 = 131;
     pub const I_MUL: u32 = 132;
+    pub const F_MUL: u32 = 133;
+    pub const F_DIV: u32 = 136;
+    pub const F_MOD: u32 = 141;
+    pub const VECTOR_TIMES_SCALAR: u32 = 142;
+    pub const MATRIX_TIMES_SCALAR: u32 = 143;
+    pub const VECTOR_TIMES_MATRIX: u32 = 144;
+    pub const MATRIX_TIMES_VECTOR: u32 = 145;
+    pub const MATRIX_TIMES_MATRIX: u32 = 146;
+    pub const OUTER_PRODUCT: u32 = 147;
+    pub const DOT: u32 = 148;
     pub const LOGICAL_OR: u32 = 166;
     pub const LOGICAL_AND: u32 = 167;
     pub const LOGICAL_NOT: u32 = 168;
@@ -52,6 +66,7 @@ pub mod op {
     pub const LOCATION: u32 = 30;
     pub const BINDING: u32 = 33;
     pub const DESCRIPTOR_SET: u32 = 34;
+    pub const NO_CONTRACTION: u32 = 42;
 
     pub const SAMPLED_IMAGE_ARRAY_DYNAMIC_INDEXING: u32 = 29;
     pub const DEPTH_GREATER: u32 = 14;

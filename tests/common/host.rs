@@ -14,6 +14,7 @@ use revmap::gpu::{
 };
 use revmap::scene::Scene;
 use revmap::settings::{Planes, SearchSettings};
+use std::sync::OnceLock;
 
 /// A host that fails its test if the layers have reported a message by its end.
 pub struct Checked(Host);
@@ -50,10 +51,24 @@ pub fn open_unchecked() -> Host {
     engine::lend::open(".", false).unwrap()
 }
 
+/// Holds an instance, and so the driver, until the process ends. NVIDIA's driver 580 fails to load
+/// after some dozens of times.
+fn keep_driver() {
+    static KEPT: OnceLock<(ash::Entry, ash::Instance)> = OnceLock::new();
+    KEPT.get_or_init(|| {
+        // SAFETY: the loader is sound, and outlives the instance.
+        let entry = unsafe { ash::Entry::load() }.unwrap();
+        // SAFETY: an instance without layers or extensions.
+        let instance = unsafe { entry.create_instance(&Default::default(), None) }.unwrap();
+        (entry, instance)
+    });
+}
+
 /// A host with some of the features that the library requires.
 pub fn open_with(
     some: impl Fn(vk::PhysicalDeviceFeatures) -> vk::PhysicalDeviceFeatures,
 ) -> Checked {
+    keep_driver();
     let host = Host::open(true, |instance, physical| {
         // SAFETY: both are live.
         let needs = unsafe { Requirements::of(instance, physical) }?;

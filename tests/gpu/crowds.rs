@@ -97,7 +97,8 @@ pub fn assert_same_bits(a: &Frame, b: &Frame, what: &str) {
         let count = bits(a).len() - 1;
         bits(a)[..count] != bits(b)[..count]
     });
-    assert_eq!(differs.count(), 0, "{what}");
+    let first = a.first_difference(b);
+    assert_eq!(differs.count(), 0, "{what}: {first:?}");
 }
 
 /// Lists of patches give the hits of the tree up to rounding. Compute uses them for copies that are

@@ -132,12 +132,13 @@ fn equal_depths_pass_after_a_prepass() {
         let wanted = drawn(&host, &device, options, shows, &view);
         assert!(found.1 == wanted.1, "{test:?}: depths differ");
         // Two patches may be hit at equal depth. `EQUAL` keeps the colour of the last, `LESS` of the
-        // first. Measured: no pixel on lavapipe 22 and 25, one by 1 of 255 on SwiftShader.
+        // first. Measured: no pixel on lavapipe 22 and 25, one by 1 of 255 on SwiftShader, three by 6
+        // on an NVIDIA H100. A pixel that is not drawn would differ by a hundred.
         let pairs = || found.0.iter().zip(&wanted.0);
         let worst = pairs().map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         let apart = pairs().filter(|(a, b)| a != b).count();
         assert!(
-            worst <= 2 && apart <= 12,
+            worst <= 8 && apart <= 12,
             "{test:?}: {apart} bytes by up to {worst}"
         );
     }

@@ -29,8 +29,9 @@ const TYPES: [Flags; 6] = {
 
 /// Bytes allocated of each type.
 static ALLOCATED: [AtomicU64; TYPES.len()] = [const { AtomicU64::new(0) }; TYPES.len()];
-/// The driver's type that replaces all of them.
-static TRUE_TYPE: AtomicUsize = AtomicUsize::new(0);
+/// The driver's types that replace those that the host cannot see and those that it can: a GPU has
+/// images in memory that no host sees alone.
+static TRUE_TYPES: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
 static REAL: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 
 unsafe extern "system" fn types(
@@ -84,7 +85,8 @@ unsafe extern "system" fn allocate(
     unsafe {
         let mut info = *info;
         ALLOCATED[info.memory_type_index as usize].fetch_add(info.allocation_size, SeqCst);
-        info.memory_type_index = TRUE_TYPE.load(SeqCst) as u32;
+        let seen = TYPES[info.memory_type_index as usize].contains(Flags::HOST_VISIBLE);
+        info.memory_type_index = TRUE_TYPES[usize::from(seen)].load(SeqCst) as u32;
         real::<vk::PFN_vkAllocateMemory>(&REAL[2])(device, &raw const info, callbacks, out)
     }
 }
@@ -96,9 +98,11 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
     let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
     // SAFETY: a plain query of live handles.
     let all = unsafe { (host.instance).get_physical_device_memory_properties(host.physical) };
-    let mut all = all.memory_types.iter();
-    let found = all.position(|t| t.property_flags.contains(seen));
-    TRUE_TYPE.store(found.unwrap(), SeqCst);
+    for (to, flags) in TRUE_TYPES.iter().zip([Flags::DEVICE_LOCAL, seen]) {
+        let mut all = all.memory_types_as_slice().iter();
+        let found = all.position(|t| t.property_flags.contains(flags));
+        to.store(found.unwrap(), SeqCst);
+    }
     let instance = planted_instance(&host.entry, &host.instance, |name, _| {
         (name == c"vkGetPhysicalDeviceMemoryProperties").then_some(types as *const c_void)
     });

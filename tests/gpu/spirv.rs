@@ -2,7 +2,7 @@
 //! denormals, with filter weights of 8 bits; and planted faults. Opcodes are those of the SPIR-V
 //! specification 1.6.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Words before the first instruction, and the place of the bound on ids among them.
 const HEADER: usize = 5;
@@ -58,9 +58,9 @@ const ROUNDED: [u32; 6] = [
 /// A way to compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arithmetic {
-    /// No operation may be contracted with another.
-    Separate,
-    /// Every sum with a product, and every dot product, is rounded once.
+    /// Every sum with a product, and every dot product, is rounded once where the module permits it.
+    Permitted,
+    /// The same wherever it can be.
     Fused,
     /// Results below the smallest normal number are 0.
     Flushed,
@@ -102,13 +102,21 @@ pub fn edited(words: &[u32], how: Arithmetic) -> (Vec<u32>, usize) {
         body: Vec::new(),
         edits: 0,
     };
+    let decorated = |one: &&Vec<u32>| code(one) == op::DECORATE && one[2] == NO_CONTRACTION;
+    let separate: HashSet<u32> = editor
+        .globals
+        .iter()
+        .filter(decorated)
+        .map(|one| one[1])
+        .collect();
     let known: HashMap<u32, Vec<u32>> = (functions.iter())
         .filter(|one| one.len() > 2)
         .map(|one| (one[2], one.clone()))
         .collect();
     for one in functions {
         let done = match how {
-            Arithmetic::Separate => editor.separate(&one),
+            Arithmetic::Permitted if one.len() > 2 && separate.contains(&one[2]) => None,
+            Arithmetic::Permitted => editor.fuse(&one, &known),
             Arithmetic::Fused => editor.fuse(&one, &known),
             Arithmetic::Flushed => editor.flush(&one),
             Arithmetic::Sampled(parts) => editor.sample(&one, parts, &known),
@@ -238,14 +246,6 @@ impl Editor {
             .iter()
             .find(|one| code(one) == op::EXT_INST_IMPORT);
         [&[import.unwrap()[1], number], operands].concat()
-    }
-
-    fn separate(&mut self, one: &[u32]) -> Option<()> {
-        let rounded = ROUNDED.contains(&code(one));
-        let decoration = rounded.then(|| instruction(op::DECORATE, &[one[2], NO_CONTRACTION]))?;
-        self.decorations.push(decoration);
-        self.body.push(one.to_vec());
-        Some(())
     }
 
     /// `a * b + c` by doubles, which hold the product exactly; and dot products.

@@ -57,6 +57,9 @@ fn layered() -> (Layer, Checked, ash::Device) {
 #[test]
 fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
     let (layer, host, raw) = layered();
+    // SAFETY: a plain query of live handles.
+    let memory = unsafe { (host.instance).get_physical_device_memory_properties(host.physical) };
+    let several_types = memory.memory_type_count > 1;
     for (stage, solver) in [
         (DrawStage::Fragment, Solver::Exact),
         (DrawStage::Compute, Solver::Live),
@@ -75,6 +78,11 @@ fn each_allocation_that_fails_is_an_error_and_leaks_nothing() {
             layer.fail_at(n);
             let result = work(&host, &raw, &settings);
             let failed = layer.failed().unwrap();
+            // The allocator asks for memory of another type then, if the device has one.
+            if failed == "vkAllocateMemory" && several_types && result.is_ok() {
+                assert_eq!(layer.alive(), 0, "{stage:?}, call {n}, left alive");
+                continue;
+            }
             let error = result.expect_err(failed);
             let kind = ErrorKind::OutOfDeviceMemory;
             assert_eq!(error.kind, kind, "{failed}: {error}");

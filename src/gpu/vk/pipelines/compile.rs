@@ -9,7 +9,7 @@ use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
     Kind, Module, Search, Variant, depth_less, frozen, with_constant_textures, with_locations,
-    with_outputs_for, with_varying_textures, words,
+    with_outputs_for, with_varying_textures, without_contraction, words,
 };
 use ash::vk;
 use std::collections::HashMap;
@@ -87,6 +87,7 @@ impl Pipelines {
             true => with_varying_textures(&words),
             false => with_constant_textures(&words),
         };
+        let words = without_contraction(&words);
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are SPIR-V made by build.rs, or a search's or a shading's, or what the
         // host promised.
