@@ -9,7 +9,7 @@ use super::machine::Machine;
 use super::measure::Measured;
 use super::names;
 use super::plan::Plan;
-use super::row::{CLOCKS_APART, Clocks, Row};
+use super::row::{CLOCKS_APART, Clocks, Row, SUBMISSION_MS};
 use super::table::Table;
 use crate::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
@@ -200,7 +200,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
             let [gpu, wall] = [gpu_ms, frame_ms].map(|ms| names::number(ms, 4));
             let apart = 100.0 * CLOCKS_APART;
             let reason = format!(
-                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart"
+                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % and {SUBMISSION_MS} ms apart"
             );
             add(named(Some(number), &row.scene, &row.settings), &reason);
         }

@@ -14,7 +14,7 @@ use super::places::{Place, places};
 use super::plan::Plan;
 use super::plan_file::PlanFile;
 use super::ratios::Over;
-use super::row::{CLOCKS_APART, Row};
+use super::row::{CLOCKS_APART, Row, SUBMISSION_MS};
 use super::series_style::SeriesStyles;
 use revmap::error::Result;
 use std::path::Path;
@@ -112,7 +112,7 @@ impl Run<'_> {
         ));
         page.text(&format!(
             "The device's timestamps stand around the work of one frame in one stage alone; the wall clock counts from submission to completion, without reading back. Rows in \
-             which the two are more than {:.0} % apart are marked and excluded from every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
+             which the two are more than {:.0} % and {SUBMISSION_MS} ms apart are marked and excluded from every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
              alone; errors and look-ups come from one more frame of the same search with all planes.",
             100.0 * CLOCKS_APART
         ));

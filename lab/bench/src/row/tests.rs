@@ -50,6 +50,11 @@ fn clocks_that_disagree_are_told() {
     assert_eq!(lies.time(), None);
     assert_eq!(row(&[&[(Some(20.0 * 1.16), 20.0)]]).time(), None);
     assert!(row(&[&[(Some(17.0), 20.0)]]).time().is_some());
+    // A GPU's short frame, of which the wall clock sees submission, too; and one that is too far apart.
+    let short = row(&[&[(Some(0.07), 0.2)]]);
+    assert_eq!(short.clocks(), Clocks::Agree);
+    assert!((short.time().unwrap().value - 0.07).abs() < 1e-12);
+    assert_eq!(row(&[&[(Some(0.07), 0.4)]]).time(), None);
     let alone = timed(&[20.0, 20.0]);
     assert_eq!(alone.clocks(), Clocks::Wall);
     assert_eq!(alone.time().unwrap().value.round(), 20.0);
