@@ -161,18 +161,21 @@ impl Layer {
 
     /// The device with this layer above it.
     pub fn device(&self, instance: &ash::Instance, device: &ash::Device) -> ash::Device {
+        planted_device(instance, device, |name, real| self.plant(name, real))
+    }
+
+    /// This layer's function above `real`, if it has one of this name.
+    pub fn plant(&self, name: &CStr, real: usize) -> Option<*const c_void> {
         let calls =
             each!(call: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25);
         let ends = each!(end: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14);
-        planted_device(instance, device, |name, real| {
-            if let Some(n) = CALLS.iter().position(|known| *known == name) {
-                REAL[n].store(real, Ordering::SeqCst);
-                return Some(calls[n]);
-            }
-            let n = ENDS.iter().position(|known| *known == name)?;
-            REAL_ENDS[n].store(real, Ordering::SeqCst);
-            Some(ends[n])
-        })
+        if let Some(n) = CALLS.iter().position(|known| *known == name) {
+            REAL[n].store(real, Ordering::SeqCst);
+            return Some(calls[n]);
+        }
+        let n = ENDS.iter().position(|known| *known == name)?;
+        REAL_ENDS[n].store(real, Ordering::SeqCst);
+        Some(ends[n])
     }
 
     /// Makes the `n`-th call from now on fail, counting calls that allocate or create something.

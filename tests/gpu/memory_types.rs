@@ -3,13 +3,13 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, planted_device, planted_instance, real};
-use crate::common::host::{borrow_through, open};
+use crate::common::host::{Host, borrow_through, open};
 use crate::common::{eye, scene_of, shapes};
 use ash::vk;
 use revmap::gpu::MemoryUse;
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_offscreen::Offscreen;
-use std::ffi::c_void;
+use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::SeqCst};
 use vk::MemoryPropertyFlags as Flags;
 
@@ -91,10 +91,12 @@ unsafe extern "system" fn allocate(
     }
 }
 
-#[test]
-fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
-    let _alone = Layer::take();
-    let host = open();
+/// The host's instance and device with these types of memory. `above` may plant a function of a name
+/// above the one given.
+pub fn simulated(
+    host: &Host,
+    above: impl Fn(&CStr, usize) -> Option<*const c_void>,
+) -> (ash::Instance, ash::Device) {
     let seen = Flags::HOST_VISIBLE | Flags::HOST_COHERENT;
     // SAFETY: a plain query of live handles.
     let all = unsafe { (host.instance).get_physical_device_memory_properties(host.physical) };
@@ -111,11 +113,22 @@ fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
             b"vkGetBufferMemoryRequirements" => (0, of_buffer as *const c_void),
             b"vkGetImageMemoryRequirements" => (1, of_image as *const c_void),
             b"vkAllocateMemory" => (2, allocate as *const c_void),
-            _ => return None,
+            _ => return above(name, real),
         };
         REAL[n].store(real, SeqCst);
-        Some(planted)
+        Some(above(name, planted as usize).unwrap_or(planted))
     });
+    (instance, raw)
+}
+
+#[test]
+fn each_use_gets_its_kind_of_memory_and_all_that_is_mapped_is_coherent() {
+    let _alone = Layer::take();
+    let host = open();
+    let (instance, raw) = simulated(&host, |_, _| None);
+    for bytes in &ALLOCATED {
+        bytes.store(0, SeqCst);
+    }
     let device = borrow_through(&host, &instance, &raw).unwrap();
     assert_eq!(device.memory_use(), MemoryUse::default());
     let scene = scene_of(shapes::vase(), eye(25.0, 3.0));
