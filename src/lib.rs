@@ -39,7 +39,7 @@
 //!
 //! # What holds
 //!
-//! * Both draw stages call one tracer, and no driver may contract its operations. Their frames are
+//! * Both draw stages call one tracer, and no driver may contract its sums and products. Their frames are
 //!   equal to the last bit, on an NVIDIA H100 too. The frames of the default search are an exception,
 //!   since each stage finds its patches differently.
 //! * The default search, [`Solver::Exact`](settings::Solver::Exact), intersects the exact boundary.

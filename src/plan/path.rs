@@ -120,9 +120,9 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 const LISTED_PIXELS: u64 = 2;
 
 /// Least pixels of listed tiles on GPUs, where one more pass and its barriers take as long as many pixels.
-/// On an NVIDIA H100 they take 0.03 ms: lists take 1.5 to 2.0 of the tree's time at 200,000 to 400,000
-/// pixels, 1.1 to 1.2 at 1.5 million, 0.8 to 0.9 at 6 million. A GPU of a quarter of its size gains
-/// from half a million on.
+/// On an NVIDIA H100 lists of one solid take 1.5 to 2.0 of the tree's time at 200,000 to 400,000 pixels,
+/// 1.1 to 1.2 at 1.5 million, 0.8 to 0.9 at 6 million. Smaller GPUs, none of which was measured, should
+/// gain earlier, so this is less than the H100's own break-even.
 const GPU_LISTED_PIXELS: u64 = 1 << 19;
 
 /// Radius of a solid, in heights, from which lists pay with fewer pixels: the tree visits a ray's
@@ -220,17 +220,13 @@ impl Conditions {
         self.host_depths || (self.compute && !self.single_copy)
     }
 
-    /// True if so many tiles of objects with so many patches each are drawn faster by lists. `flat`: one
-    /// of the objects is.
-    pub fn gains_by_lists(&self, tiles: u64, patches: u64, flat: bool) -> bool {
+    /// True if so many tiles of objects with so many patches each are drawn faster by lists. `flat`: true
+    /// if one of the objects is.
+    pub fn gains_by_lists(&self, tiles: u64, patches: u64, flat: impl Fn() -> bool) -> bool {
         let least = LISTED_PIXELS * u64::from(self.least_pixels);
         let least = least.saturating_mul(patches);
-        let of_device = if self.software || flat || least == 0 {
-            0
-        } else {
-            GPU_LISTED_PIXELS
-        };
-        pixels(tiles) >= least.max(of_device)
+        let pays_early = self.software || self.least_pixels == 0 || flat();
+        pixels(tiles) >= least && (pays_early || pixels(tiles) >= GPU_LISTED_PIXELS)
     }
 
     /// Most bytes that bins of tiles may take.
@@ -330,7 +326,8 @@ mod tests {
             ..Conditions::default()
         };
         let [cpu, gpu, any] = [with(true, 150), with(false, 150), with(false, 0)];
-        let gains = |of: &Conditions, pixels: u64, flat| of.gains_by_lists(pixels / 64, 96, flat);
+        let gains =
+            |of: &Conditions, pixels: u64, flat| of.gains_by_lists(pixels / 64, 96, || flat);
         assert!(!gains(&cpu, 25_600, false) && gains(&cpu, 32_000, false));
         assert!(!gains(&gpu, 500_000, false) && gains(&gpu, 530_000, false));
         assert!(!gains(&gpu, 25_600, true) && gains(&gpu, 32_000, true));

@@ -177,7 +177,7 @@ fn leave_out_lists(
         let patches = |&n: &u32| objects[n as usize].listed_patches();
         let mean = layer.objects.iter().map(patches).sum::<u64>() / layer.objects.len() as u64;
         let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
-        let flat = layer.objects.iter().any(|&n| objects[n as usize].is_flat());
+        let flat = || layer.objects.iter().any(|&n| objects[n as usize].is_flat());
         if !with.gains_by_lists(tiles_of_all, mean, flat) {
             tiles.unlist();
         }

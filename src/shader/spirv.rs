@@ -43,6 +43,7 @@ pub mod op {
     pub const I_MUL: u32 = 132;
     pub const F_MUL: u32 = 133;
     pub const F_DIV: u32 = 136;
+    pub const F_REM: u32 = 140;
     pub const F_MOD: u32 = 141;
     pub const VECTOR_TIMES_SCALAR: u32 = 142;
     pub const MATRIX_TIMES_SCALAR: u32 = 143;

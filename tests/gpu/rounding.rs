@@ -143,7 +143,7 @@ fn pictures_do_not_depend_on_how_sums_and_products_round() {
     }
 }
 
-/// No driver may contract an operation, neither the library's nor those of another search.
+/// No driver may contract a sum with a product, neither the library's nor those of another search.
 #[test]
 fn drivers_may_contract_nothing() {
     let _alone = Layer::take();

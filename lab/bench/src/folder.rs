@@ -200,7 +200,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
             let [gpu, wall] = [gpu_ms, frame_ms].map(|ms| names::number(ms, 4));
             let apart = 100.0 * CLOCKS_APART;
             let reason = format!(
-                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % and {SUBMISSION_MS} ms apart"
+                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart, without {SUBMISSION_MS} ms of submission"
             );
             add(named(Some(number), &row.scene, &row.settings), &reason);
         }

@@ -112,7 +112,7 @@ impl Run<'_> {
         ));
         page.text(&format!(
             "The device's timestamps stand around the work of one frame in one stage alone; the wall clock counts from submission to completion, without reading back. Rows in \
-             which the two are more than {:.0} % and {SUBMISSION_MS} ms apart are marked and excluded from every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
+             which the two are more than {:.0} % apart, without {SUBMISSION_MS} ms of submission, are marked and excluded from every summary. Ratios pair frames of the same round. Frames that are timed hold colour \
              alone; errors and look-ups come from one more frame of the same search with all planes.",
             100.0 * CLOCKS_APART
         ));

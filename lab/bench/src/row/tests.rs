@@ -54,7 +54,8 @@ fn clocks_that_disagree_are_told() {
     let short = row(&[&[(Some(0.07), 0.2)]]);
     assert_eq!(short.clocks(), Clocks::Agree);
     assert!((short.time().unwrap().value - 0.07).abs() < 1e-12);
-    assert_eq!(row(&[&[(Some(0.07), 0.4)]]).time(), None);
+    assert_eq!(row(&[&[(Some(0.07), 0.3)]]).time(), None);
+    assert_eq!(row(&[&[(Some(0.24), 0.2)]]).time(), None);
     let alone = timed(&[20.0, 20.0]);
     assert_eq!(alone.clocks(), Clocks::Wall);
     assert_eq!(alone.time().unwrap().value.round(), 20.0);
