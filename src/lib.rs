@@ -39,9 +39,9 @@
 //!
 //! # What holds
 //!
-//! * Both draw stages call one tracer, and no driver may contract its sums and products. Their frames are
-//!   equal to the last bit, on an NVIDIA H100 too. The frames of the default search are an exception,
-//!   since each stage finds its patches differently.
+//! * Both draw stages call one tracer, and no driver may contract its sums and products. Their frames
+//!   are equal to the last bit, on an NVIDIA H100 too. The frames of the default search are an
+//!   exception, since each stage finds its patches differently.
 //! * The default search, [`Solver::Exact`](settings::Solver::Exact), intersects the exact boundary.
 //!   Its hits differ from the reference in double precision (the crate `revmap-reference`) by
 //!   hundredths of a texel of a map of 512 rows.

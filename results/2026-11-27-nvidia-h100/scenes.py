@@ -1,4 +1,7 @@
-"""Writes the crowds of times.csv: `python3 results/2026-11-27-nvidia-h100/scenes.py out/crowds`, in the repository's root."""
+"""Writes the crowds of times.csv. In the repository's root:
+
+    python3 results/2026-11-27-nvidia-h100/scenes.py out/crowds
+"""
 
 import math
 import os

@@ -119,10 +119,10 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 /// and 0.97 at 250, and 0.68 and 0.71 at 960. At 253 pixels, of 100 copies, they take 1.1 and 0.87.
 const LISTED_PIXELS: u64 = 2;
 
-/// Least pixels of listed tiles on GPUs, where one more pass and its barriers take as long as many pixels.
-/// On an NVIDIA H100 lists of one solid take 1.5 to 2.0 of the tree's time at 200,000 to 400,000 pixels,
-/// 1.1 to 1.2 at 1.5 million, 0.8 to 0.9 at 6 million. Smaller GPUs, none of which was measured, should
-/// gain earlier, so this is less than the H100's own break-even.
+/// Least pixels of listed tiles on GPUs, where one more pass and its barriers take as long as many
+/// pixels. On an NVIDIA H100 lists of one solid take 1.5 to 2.0 of the tree's time at 200,000 to
+/// 400,000 pixels, 1.1 to 1.2 at 1.5 million, 0.8 to 0.9 at 6 million. Smaller GPUs, none of which
+/// was measured, should gain earlier, so this is less than the H100's own break-even.
 const GPU_LISTED_PIXELS: u64 = 1 << 19;
 
 /// Radius of a solid, in heights, from which lists pay with fewer pixels: the tree visits a ray's
@@ -220,8 +220,8 @@ impl Conditions {
         self.host_depths || (self.compute && !self.single_copy)
     }
 
-    /// True if so many tiles of objects with so many patches each are drawn faster by lists. `flat`: true
-    /// if one of the objects is.
+    /// True if so many tiles of objects with so many patches each are drawn faster by lists.
+    /// `flat`: true if one of the objects is.
     pub fn gains_by_lists(&self, tiles: u64, patches: u64, flat: impl Fn() -> bool) -> bool {
         let least = LISTED_PIXELS * u64::from(self.least_pixels);
         let least = least.saturating_mul(patches);
@@ -280,17 +280,17 @@ impl<'a> PlanObject<'a> {
         surface.map_or(0, |surface| surface.patches() as u64)
     }
 
-    /// True if the solid is far wider than high.
-    pub fn is_flat(&self) -> bool {
-        let bounds = self.object.profile.outline.bounds();
-        bounds.is_some_and(|b| b.r_max > FLAT * (b.z_max - b.z_min))
-    }
-
     /// True if the box shows no more than the surface's patches.
     pub fn is_whole(&self) -> bool {
         self.surface()
             .is_some_and(|surface| proxy::is_whole(self.object, surface))
     }
+}
+
+/// True if an object's solid is far wider than high.
+pub(crate) fn is_flat(object: &Object) -> bool {
+    let bounds = object.profile.outline.bounds();
+    bounds.is_some_and(|b| b.r_max > FLAT * (b.z_max - b.z_min))
 }
 
 /// The part of an object's box that can be solid. `bounds`: half of the box's side, then the clip
@@ -317,6 +317,16 @@ pub(crate) fn shape_of(object: &Object, bounds: [f64; 4]) -> Cylinder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::profile::Profile;
+
+    #[test]
+    fn a_record_is_flat_and_a_plate_is_not() {
+        for (radius, flat) in [(75.0, true), (10.0, false)] {
+            let points = [[0.0, 0.1], [radius, 0.3], [radius, 0.7], [0.0, 0.9]];
+            let disc = Profile::polygon(&points, radius).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(is_flat(&Object::new("disc", Arc::new(disc))), flat);
+        }
+    }
 
     #[test]
     fn gpus_list_patches_in_large_pictures_and_for_flat_solids() {

@@ -1,6 +1,6 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
-use super::path::LIST_LENGTHS;
+use super::path::{LIST_LENGTHS, is_flat};
 use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, TILE_PIXELS, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
@@ -177,7 +177,12 @@ fn leave_out_lists(
         let patches = |&n: &u32| objects[n as usize].listed_patches();
         let mean = layer.objects.iter().map(patches).sum::<u64>() / layer.objects.len() as u64;
         let tiles_of_all = view.tiles_of_all_rows(tiles.listed.len() as u64);
-        let flat = || layer.objects.iter().any(|&n| objects[n as usize].is_flat());
+        let flat = || {
+            layer
+                .objects
+                .iter()
+                .any(|&n| is_flat(objects[n as usize].object))
+        };
         if !with.gains_by_lists(tiles_of_all, mean, flat) {
             tiles.unlist();
         }

@@ -29,8 +29,8 @@ const TYPES: [Flags; 6] = {
 
 /// Bytes allocated of each type.
 static ALLOCATED: [AtomicU64; TYPES.len()] = [const { AtomicU64::new(0) }; TYPES.len()];
-/// The driver's types behind the simulated ones: one that is device-local, for images too, and one that
-/// the host sees.
+/// The driver's types behind the simulated ones: one that is device-local, for images too, and one
+/// that the host sees.
 static TRUE_TYPES: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
 static REAL: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 

@@ -59,9 +59,9 @@ fn layered() -> (Layer, Checked, ash::Device) {
     (layer, host, raw)
 }
 
-/// Each call that fails returns an error and leaks nothing. A device of several types of memory is asked
-/// for another type if one is full or cannot be mapped, so such a failure may change nothing. Returns how
-/// many changed nothing.
+/// Each call that fails returns an error and leaks nothing. A device of several types of memory is
+/// asked for another type if one is full or cannot be mapped, so such a failure may change nothing.
+/// Returns how many changed nothing.
 fn fail_each_call(
     layer: &Layer,
     host: &Host,

@@ -638,8 +638,9 @@ typedef struct RevmapSearch {
     /// A RevmapMapFormat.
     uint32_t map_format;
     /// Least pixels of an object's box for each visible frustum of its cells at which cells are
-    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs make
-    /// from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX: neither.
+    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs
+    /// make from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX:
+    /// neither.
     uint32_t proxy_min_pixels;
     /// Not read.
     uint32_t padding;

@@ -135,8 +135,9 @@ pub struct RevmapSearch {
     /// A RevmapMapFormat.
     pub map_format: u32,
     /// Least pixels of an object's box for each visible frustum of its cells at which cells are
-    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs make
-    /// from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX: neither.
+    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs
+    /// make from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX:
+    /// neither.
     pub proxy_min_pixels: u32,
     /// Not read.
     pub padding: u32,

@@ -12,8 +12,8 @@ use revmap_compare::{Comparison, PixelErrors};
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;
 
-/// How much longer the wall clock may be in addition, ms: it includes submission and completion. These
-/// take 0.05 to 0.1 ms on an NVIDIA H100, which draws a solid in 0.07 ms.
+/// How much longer the wall clock may be in addition, ms: it includes submission and completion.
+/// These take 0.05 to 0.1 ms on an NVIDIA H100, which draws a solid in 0.07 ms.
 pub const SUBMISSION_MS: f64 = 0.15;
 
 /// The times of one frame.
@@ -66,7 +66,8 @@ pub enum Clocks {
     Agree,
     /// The device has no clock of its own; the wall clock stands alone.
     Wall,
-    /// They are further apart than [`CLOCKS_APART`] plus [`SUBMISSION_MS`]: the row counts in no summary.
+    /// They are further apart than [`CLOCKS_APART`] plus [`SUBMISSION_MS`]: the row counts in no
+    /// summary.
     Disagree {
         /// Median of the device's clock, ms.
         gpu_ms: f64,

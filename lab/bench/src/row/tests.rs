@@ -50,7 +50,8 @@ fn clocks_that_disagree_are_told() {
     assert_eq!(lies.time(), None);
     assert_eq!(row(&[&[(Some(20.0 * 1.16), 20.0)]]).time(), None);
     assert!(row(&[&[(Some(17.0), 20.0)]]).time().is_some());
-    // A GPU's short frame, of which the wall clock sees submission, too; and one that is too far apart.
+    // A GPU's short frame, of which the wall clock sees submission, too; and one that is too far
+    // apart.
     let short = row(&[&[(Some(0.07), 0.2)]]);
     assert_eq!(short.clocks(), Clocks::Agree);
     assert!((short.time().unwrap().value - 0.07).abs() < 1e-12);
