@@ -9,6 +9,7 @@ use super::run::{Results, Run};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::DrawStage;
+use revmap_bench::compare_runs::repeat::Verdict;
 use revmap_bench::flight::{self, FlightTimes};
 use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
 use revmap_bench::pictures::{Album, Sheets};
@@ -132,7 +133,9 @@ struct What {
 #[derive(Args)]
 struct How {
     /// With --compare: judge line by line whether NEW repeats what OLD says of these methods (exact,
-    /// mesh:64x128, baseline), and fail if it does not
+    /// mesh:64x128, baseline), by the pictures that both have. Exit codes: 1 if NEW contradicts a
+    /// claim; else 4 if a claim is not judged, because NEW lacks half of its pictures or its interval is
+    /// too wide
     #[arg(
         long,
         requires = "compare",
@@ -190,15 +193,22 @@ impl Bench {
     }
 }
 
+/// The exit code if no claim is contradicted, and some are not judged.
+const NOT_JUDGED: u8 = 4;
+
 /// Judges whether a new run repeats a kept one.
 fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
     let claims = compare_runs::repeat::claims(old, new, methods)?;
     print(&compare_runs::repeat::as_text(&claims));
-    if claims.iter().all(|claim| claim.repeated) {
-        return Ok(());
+    let has = |verdict| claims.iter().any(|claim| claim.verdict == verdict);
+    if has(Verdict::NotRepeated) {
+        let message = "contradicts what the kept run says; see the lines that begin with NOT";
+        return Err(Error::new(ErrorKind::Content, message).in_file(new));
     }
-    let message = "does not repeat all that the kept run says; see the lines above";
-    Err(Error::new(ErrorKind::Content, message).in_file(new))
+    if has(Verdict::NotJudged) {
+        output::end_with(NOT_JUDGED);
+    }
+    Ok(())
 }
 
 /// Puts submissions side by side.

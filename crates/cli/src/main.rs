@@ -1,7 +1,8 @@
 //! The `revmap` program: solids of revolution drawn from flat outlines.
 //!
 //! Exit codes: 0 done, 1 failed, 2 wrong usage, 3 no Vulkan device or one that lacks a needed
-//! feature. A failure is one line on standard error.
+//! feature; 4 claims that are not judged (`bench --repeats`). A failure is one line on standard
+//! error.
 
 mod animate;
 mod bake;
@@ -54,7 +55,7 @@ const AFTER_HELP: &str = "Examples:\n  \
     revmap bench --quick\n  \
     revmap render --help\n\n\
     Exit codes: 0 done; 1 failed; 2 wrong usage; 3 no Vulkan device, or one that lacks a needed \
-feature; 128 + N ended by the signal N. A failure is one line on standard error.";
+feature; 4 claims that are not judged (bench --repeats); 128 + N ended by the signal N. A failure is one line on standard error.";
 
 macro_rules! commands {
     ($($name:ident: $type:ty,)*) => {

@@ -16,6 +16,9 @@ pub const VERSION: &str = env!("REVMAP_VERSION");
 /// The first fault of standard output.
 static FAULT: OnceLock<std::io::Error> = OnceLock::new();
 
+/// The exit code in place of 0.
+static CODE: OnceLock<u8> = OnceLock::new();
+
 /// Prints a line of results on standard output.
 pub fn result(line: &str) {
     keep_fault(writeln!(std::io::stdout(), "{line}"));
@@ -36,11 +39,16 @@ pub fn keep_fault(written: std::io::Result<()>) {
     }
 }
 
+/// Chooses the exit code of a command that is done and has more to say by it than 0.
+pub fn end_with(code: u8) {
+    let _ = CODE.set(code);
+}
+
 /// The exit code of a command that is done: its results must have reached standard output.
 pub fn end() -> ExitCode {
     keep_fault(std::io::stdout().flush());
     let Some(fault) = FAULT.get() else {
-        return ExitCode::SUCCESS;
+        return ExitCode::from(CODE.get().copied().unwrap_or(0));
     };
     complain(&format!("standard output: cannot be written ({fault})"));
     ExitCode::FAILURE

@@ -6,7 +6,7 @@ use super::chart::raster::raster;
 use super::chart::svg::svg;
 use super::columns::results_table;
 use super::machine::Machine;
-use super::measure::Measured;
+use super::measure::{Measured, TRIES};
 use super::names;
 use super::plan::Plan;
 use super::row::{CLOCKS_APART, Clocks, Row, SUBMISSION_MS};
@@ -200,7 +200,7 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
             let [gpu, wall] = [gpu_ms, frame_ms].map(|ms| names::number(ms, 4));
             let apart = 100.0 * CLOCKS_APART;
             let reason = format!(
-                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart, without {SUBMISSION_MS} ms of submission"
+                "the device's clock says {gpu} ms, the wall clock {wall} ms: more than {apart:.0} % apart, without {SUBMISSION_MS} ms of submission, though each pass was measured up to {TRIES} times"
             );
             add(named(Some(number), &row.scene, &row.settings), &reason);
         }
@@ -219,7 +219,7 @@ pub fn clock_warning(rows: &[Row]) -> Option<String> {
     let count = rows.iter().filter(differs).count();
     (count > 0).then(|| {
         format!(
-            "{count} of {} rows left out (clocks differ): frames are too short, take a larger --size",
+            "{count} of {} rows left out (clocks differ in {TRIES} tries): frames are too short, or other programs run; take a larger --size, or an idle machine",
             rows.len()
         )
     })
@@ -267,7 +267,7 @@ mod tests {
         let differs = row(&[&[(Some(0.036), 20.0)]]);
         assert_eq!(clock_warning(std::slice::from_ref(&fine)), None);
         let warning = clock_warning(&[fine, differs]).unwrap();
-        assert!(warning.starts_with("1 of 2 rows left out (clocks differ)"));
+        assert!(warning.starts_with("1 of 2 rows left out (clocks differ in 3 tries)"));
     }
 
     #[test]

@@ -3,15 +3,18 @@
 //! Measurements of one picture are taken in turn, A B A B, so that a machine that slows down slows
 //! all of them. All groups are gone through several times (*passes*), each time with everything
 //! built anew: what one placement in memory does to a time shows as spread between passes (see
-//! `stats`).
+//! `stats`). A pass in which another program disturbs a clock is taken again.
 
 mod bench;
+mod drawer;
 
 pub use bench::{Bench, Observer, RenderedCase, TimedDraw};
+pub use drawer::TRIES;
 
 use super::plan::{Case, Plan, TimeBudget};
-use super::row::{Row, Sample, Steps};
+use super::row::{Row, Steps};
 use crate::method::{Edges, Method, MethodSettings};
+use drawer::Drawer;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::settings::Planes;
@@ -293,7 +296,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Times the cases of a group in turn until `end`, at least for the least number of rounds.
+    /// Times the cases of a group in one pass, up to [`TRIES`] times while clocks disagree.
     fn time(
         &mut self,
         group: &[usize],
@@ -317,14 +320,40 @@ impl Run<'_> {
                 Ok(draw)
             });
             match ready {
-                Ok(draw) => drawers.push((index, draw, Vec::new())),
+                Ok(draw) => drawers.push(Drawer::new(index, draw)),
                 Err(error) => self.leave_out(index, error)?,
             }
         }
+        let mut tries = 1;
+        loop {
+            self.rounds(&mut drawers, pass, end, observer)?;
+            let stop = observer.stop.load(Ordering::Relaxed);
+            if stop || tries == TRIES || !drawers.iter().any(Drawer::is_disturbed) {
+                break;
+            }
+            tries += 1;
+            drawers.iter_mut().for_each(Drawer::begin_again);
+        }
+        for drawer in drawers {
+            if let Some(row) = &mut self.rows[drawer.index] {
+                row.passes.push(drawer.last_try());
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws a frame of each in turn until `end`, at least for the least number of rounds.
+    fn rounds(
+        &mut self,
+        drawers: &mut Vec<Drawer>,
+        pass: usize,
+        end: Instant,
+        observer: &Observer,
+    ) -> Result<()> {
+        let precision = self.budget.precision;
         for round in 0..self.budget.rounds.1 {
             let stop = observer.stop.load(Ordering::Relaxed);
-            let known = |s: &[Sample]| settled(s, self.budget.precision);
-            let done = || Instant::now() >= end || drawers.iter().all(|r| known(&r.2));
+            let done = || Instant::now() >= end || drawers.iter().all(|d| d.is_settled(precision));
             if stop || (round >= self.budget.rounds.0 && done()) {
                 break;
             }
@@ -334,22 +363,16 @@ impl Run<'_> {
                 // There and back, so that nobody always follows the same neighbour.
                 let there = round % 2 == 0;
                 let place = if there { turn } else { count - 1 - turn };
-                let (_, draw, samples) = &mut drawers[place];
-                match draw() {
-                    Ok(sample) => samples.push(sample),
-                    Err(error) => failed.push((place, error)),
+                if let Err(error) = drawers[place].draw() {
+                    failed.push((place, error));
                 }
             }
+            failed.sort_by_key(|(place, _)| *place);
             for (place, error) in failed.into_iter().rev() {
-                let (index, _, _) = drawers.remove(place);
-                self.leave_out(index, error)?;
+                let drawer = drawers.remove(place);
+                self.leave_out(drawer.index, error)?;
             }
             self.tell(observer, &format!("pass {}, round {}", pass + 1, round + 1));
-        }
-        for (index, _, samples) in drawers {
-            if let Some(row) = &mut self.rows[index] {
-                row.passes.push(samples);
-            }
         }
         Ok(())
     }
@@ -365,17 +388,4 @@ impl Run<'_> {
         let gone = self.start.elapsed();
         gone + gone / u32::try_from(passes.max(1)).unwrap_or(1) > self.budget.time()
     }
-}
-
-/// True if the median of these samples is known to within `precision`, by their median deviation.
-fn settled(samples: &[Sample], precision: f64) -> bool {
-    let times: Vec<f64> = samples.iter().map(|s| s.frame_ms).collect();
-    let Some(middle) = super::stats::median(&times) else {
-        return false;
-    };
-    let off: Vec<f64> = times.iter().map(|t| (t - middle).abs()).collect();
-    // A normal distribution's median errs by 1.25 sigma / sqrt n, sigma is 1.48 median deviations.
-    let deviation = super::stats::median(&off).unwrap_or(0.0);
-    let error = 1.25 * 1.48 * deviation / (times.len() as f64).sqrt();
-    times.len() >= 5 && 1.96 * error <= precision * middle
 }

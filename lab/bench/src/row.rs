@@ -76,6 +76,29 @@ pub enum Clocks {
     },
 }
 
+impl Clocks {
+    /// The agreement of what they show for one frame, ms.
+    fn of(gpu_ms: Option<f64>, frame_ms: Option<f64>) -> Self {
+        let Some(gpu_ms) = gpu_ms else {
+            return Self::Wall;
+        };
+        let frame_ms = frame_ms.unwrap_or(0.0);
+        let longer = (frame_ms - gpu_ms).clamp(0.0, SUBMISSION_MS);
+        if (gpu_ms + longer - frame_ms).abs() <= CLOCKS_APART * frame_ms {
+            Self::Agree
+        } else {
+            Self::Disagree { gpu_ms, frame_ms }
+        }
+    }
+
+    /// The agreement of the medians of some frames.
+    pub(super) fn of_frames(samples: &[Sample]) -> Self {
+        let gpu_ms: Vec<f64> = samples.iter().filter_map(|s| s.gpu_ms).collect();
+        let frame_ms: Vec<f64> = samples.iter().map(|s| s.frame_ms).collect();
+        Self::of(stats::median(&gpu_ms), stats::median(&frame_ms))
+    }
+}
+
 /// One measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
@@ -192,16 +215,10 @@ impl Row {
 
     /// Agreement of the two clocks.
     pub fn clocks(&self) -> Clocks {
-        let Some(gpu_ms) = self.typical(|s| s.gpu_ms) else {
-            return Clocks::Wall;
-        };
-        let frame_ms = self.typical(|s| Some(s.frame_ms)).unwrap_or(0.0);
-        let longer = (frame_ms - gpu_ms).clamp(0.0, SUBMISSION_MS);
-        if (gpu_ms + longer - frame_ms).abs() <= CLOCKS_APART * frame_ms {
-            Clocks::Agree
-        } else {
-            Clocks::Disagree { gpu_ms, frame_ms }
-        }
+        Clocks::of(
+            self.typical(|s| s.gpu_ms),
+            self.typical(|s| Some(s.frame_ms)),
+        )
     }
 
     /// The median of each pass, ms.

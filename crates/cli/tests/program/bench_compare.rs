@@ -2,6 +2,7 @@
 
 use crate::run::{Bench, lines};
 use revmap_bench::columns;
+use revmap_bench::plan::suite::{self, Extent};
 use revmap_bench::table::Table;
 
 /// A folder with a run of one row.
@@ -71,48 +72,117 @@ fn runs_in_other_surroundings_bring_warnings() {
     );
 }
 
-/// The kept run of the README, judged by itself; then a copy of it with one changed figure.
-#[test]
-fn a_changed_figure_of_a_kept_run_is_not_repeated() {
-    let bench = Bench::new();
-    let kept = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../results/2026-11-24-lavapipe-22.3.6-3"
-    );
-    let methods = "exact,mesh:64x128,mesh:512x1024,baseline";
-    let judge = |old: &str| format!("bench --compare {old} {kept} --repeats {methods}");
-    let said = bench.said(&judge(kept));
-    assert!(
-        said.contains("repeated      exact, fragment: takes 0.562"),
-        "{said}"
-    );
-    assert!(
-        said.contains("17 of 17 claims repeated") && !said.contains("NOT"),
-        "{said}"
-    );
+/// A file of the repository.
+fn of_repository(name: &str) -> String {
+    format!("{}/../../{name}", env!("CARGO_MANIFEST_DIR"))
+}
 
-    std::fs::create_dir(bench.path("copy")).unwrap();
-    let copy = |name: &str, text: String| bench.file(&format!("copy/{name}"), text);
+/// The kept run that the README quotes and the methods that it claims something of, as
+/// `scripts/replicate` has them.
+fn claimed() -> (String, String) {
+    let script = std::fs::read_to_string(of_repository("scripts/replicate")).unwrap();
+    let value = |start: &str, end: &str| {
+        let line = script.lines().find_map(|line| line.strip_prefix(start));
+        line.unwrap().strip_suffix(end).unwrap().to_owned()
+    };
+    let (kept, methods) = (value("kept=${KEPT:-", "}"), value("methods=", ""));
+    let readme = std::fs::read_to_string(of_repository("README.md")).unwrap();
+    assert!(readme.contains(&kept), "{kept}");
+    (of_repository(&kept), format!("{methods},baseline"))
+}
+
+/// The claims of a kept run, judged by a new one: the lines, and the exit code.
+fn judged(bench: &Bench, kept: &str, new: &str, methods: &str) -> (Vec<String>, Option<i32>) {
+    let command = format!("bench --compare {kept} {new} --repeats {methods}");
+    let output = bench.command(&command).output().unwrap();
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!(
+        lines(&output).len(),
+        usize::from(output.status.code() == Some(1)),
+        "{said}"
+    );
+    (
+        said.lines().map(str::to_owned).collect(),
+        output.status.code(),
+    )
+}
+
+/// A copy of the kept run with another text in some fields of its results.
+fn copied(bench: &Bench, folder: &str, kept: &str, column: &str, change: impl Fn(&str) -> String) {
+    std::fs::create_dir(bench.path(folder)).unwrap();
     let read = |name: &str| std::fs::read_to_string(format!("{kept}/{name}")).unwrap();
     let mut results = Table::parse(&read("results.csv")).unwrap();
-    let (solver, p99) = (
-        results.column("solver").unwrap(),
-        results.column("depth_p99_texels").unwrap(),
-    );
+    let [solver, column] = ["solver", column].map(|name| results.column(name).unwrap());
     for record in results.records.iter_mut().filter(|r| r[solver] == "exact") {
-        record[p99] = (2.0 * record[p99].parse::<f64>().unwrap()).to_string();
+        record[column] = change(&record[column]);
     }
-    copy("results.csv", results.csv());
-    copy("raw.csv", read("raw.csv"));
-    let output = bench.command(&judge("copy")).output().unwrap();
-    let said = String::from_utf8(output.stdout.clone()).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    bench.file(&format!("{folder}/results.csv"), results.csv());
+    bench.file(&format!("{folder}/raw.csv"), read("raw.csv"));
+}
+
+/// The kept run repeats itself. One changed figure is not repeated, and pictures of other names judge
+/// nothing: each has an exit code.
+#[test]
+fn a_run_that_contradicts_is_told_from_one_that_judges_nothing() {
+    let bench = Bench::new();
+    let (kept, methods) = claimed();
+    let (said, code) = judged(&bench, &kept, &kept, &methods);
+    assert_eq!(code, Some(0), "{said:?}");
+    let (claims, sum) = said.split_at(said.len() - 2);
+    let all = claims.len();
     assert!(
-        said.contains("NOT repeated  exact, fragment: depth errors of"),
-        "{said}"
+        claims.iter().all(|line| line.starts_with("repeated ")),
+        "{said:?}"
     );
-    assert!(said.contains("15 of 17 claims repeated"), "{said}");
-    assert!(lines(&output)[0].contains("does not repeat"));
+    assert_eq!(sum[1], format!("{all} of {all} claims repeated"));
+
+    copied(&bench, "other", &kept, "depth_p99_texels", |depth| {
+        (2.0 * depth.parse::<f64>().unwrap()).to_string()
+    });
+    let (said, code) = judged(&bench, &kept, "other", &methods);
+    assert_eq!(code, Some(1), "{said:?}");
+    let contradicted = |line: &&String| line.starts_with("NOT repeated  exact, ");
+    assert_eq!(said.iter().filter(contradicted).count(), 2, "{said:?}");
+    let sum = format!("{} of {all} claims repeated, 2 NOT repeated", all - 2);
+    assert_eq!(said.last(), Some(&sum));
+
+    copied(&bench, "renamed", &kept, "scene", |scene| {
+        format!("my-{scene}")
+    });
+    let (said, code) = judged(&bench, &kept, "renamed", "exact");
+    assert_eq!(code, Some(4), "{said:?}");
+    let open = |line: &&String| line.starts_with("not judged    exact, ");
+    assert_eq!(said.iter().filter(open).count(), 6, "{said:?}");
+    assert_eq!(said.last().unwrap(), "0 of 6 claims repeated, 6 not judged");
+}
+
+/// The suite has every picture of the kept run, and a short run of it on this device repeats the
+/// errors of the default search. Its times may be those of a busy machine.
+#[test]
+fn a_short_run_is_judged_by_the_kept_run_of_the_readme() {
+    let bench = Bench::new();
+    let (kept, methods) = claimed();
+    let results = Table::load(format!("{kept}/results.csv").as_ref()).unwrap();
+    let suite = suite::views(&Extent::ALL, &[25.0]).unwrap();
+    for record in &results.records {
+        let scene = record[0].trim_end_matches(":close");
+        assert!(suite.iter().any(|view| view.name == scene), "{scene}");
+    }
+    bench.done(
+        "bench --suite all --framing whole --elevation 25 --size 800x600 --passes 2 --rounds 1 \
+         --stage fragment --solver exact --quiet --out new",
+    );
+    let (said, code) = judged(&bench, &kept, "new", &methods);
+    let contradicted = said.iter().any(|line| line.starts_with("NOT repeated"));
+    assert_eq!(code, Some(if contradicted { 1 } else { 4 }), "{said:?}");
+    for error in ["wrong pixels", "h/512 of depth error"] {
+        let is_own = |line: &&String| line.contains("exact, fragment: ") && line.contains(error);
+        let line = said.iter().find(is_own).unwrap();
+        assert!(line.starts_with("repeated "), "{line}");
+        assert!(line.contains(" of the kept run's "), "{line}");
+    }
+    let open = "not judged    exact, compute: wrong pixels in 0 of the kept run's ";
+    assert!(said.iter().any(|line| line.starts_with(open)), "{said:?}");
 }
 
 /// A pipe has the whole table, and a terminal the columns that fit and the names of the others.

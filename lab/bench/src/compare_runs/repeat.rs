@@ -1,4 +1,4 @@
-//! Whether a new run repeats a kept one: the ratio and the errors of each method over all pictures.
+//! The judge of claims: whether a new run repeats what a kept one says of a method over its pictures.
 
 use super::run::Run;
 use crate::method::Method;
@@ -16,54 +16,95 @@ const MACHINES: f64 = 1.3;
 const RESOLVED: f64 = 0.25;
 /// The share by which errors may differ. Most differ by less than 3 % between drivers.
 const ERRORS: f64 = 0.1;
-/// Wrong pixels that may come and go beside that share: roundings decide them.
-const PIXELS: f64 = 3.0;
+/// The share of the kept run's pictures that a claim needs.
+const ENOUGH: f64 = 0.5;
+/// The stages of claims.
+const STAGES: [&str; 2] = ["fragment", "compute"];
 
-/// The share of pictures that must have times. A picture without changes a mean by a few percent.
-const TIMED: f64 = 0.75;
+/// An error that is claimed of each method in each stage; the ratio of times is claimed beside it.
+struct Quantity {
+    /// Its name, behind the figure.
+    name: &'static str,
+    /// The columns whose sum is the error of a picture.
+    columns: &'static [&'static str],
+    /// The figure of several pictures.
+    of_all: fn(&[f64]) -> Option<f64>,
+    /// By how much it may differ beside the share [`ERRORS`].
+    slack: f64,
+}
 
-/// One claim, and whether the new run repeats it.
+/// The errors that are claimed.
+const QUANTITIES: [Quantity; 2] = [
+    Quantity {
+        name: "wrong pixels",
+        columns: &["missed", "ghost"],
+        of_all: |all| Some(all.iter().sum()),
+        slack: 3.0, // roundings decide some pixels
+    },
+    Quantity {
+        name: "h/512 of depth error",
+        columns: &["depth_p99_texels"],
+        of_all: |all| {
+            let above: Vec<f64> = all.iter().map(|d| d.max(1e-4)).collect();
+            stats::geometric(&above).map(|mean| mean.value)
+        },
+        slack: 0.0,
+    },
+];
+
+/// What a new run says about a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It has the same figure, within what machines differ by.
+    Repeated,
+    /// It has another figure.
+    NotRepeated,
+    /// It has too few pictures of the claim, or times that are not resolved.
+    NotJudged,
+}
+
+impl Verdict {
+    /// How lines begin.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Repeated => "repeated",
+            Self::NotRepeated => "NOT repeated",
+            Self::NotJudged => "not judged",
+        }
+    }
+}
+
+/// One claim, and what the new run says about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// True if it does.
-    pub repeated: bool,
+    /// Whether it is repeated.
+    pub verdict: Verdict,
     /// The claim, the new figure and the kept one.
     pub text: String,
 }
 
-/// A method in one stage over all pictures of a run.
-struct Way {
-    pictures: usize,
-    /// Time over that of the RBM baseline in the fragment stage.
-    ratio: Option<Interval>,
-    /// Missed and ghost pixels.
-    wrong: f64,
-    /// Geometric mean of the depth errors, h/512.
-    depth: Option<f64>,
-}
+/// A row (counted from 0) of the kept run, and that of the same picture in the new one.
+type Pair = (usize, Option<usize>);
 
 /// The claims of these methods (as `exact`, `mesh:64x128`; `baseline` is the RBM baseline) in each
-/// stage that the kept run has of them: the ratio of times, the wrong pixels, the depth error.
+/// stage that the kept run has of them: the ratio of times, and each of [`QUANTITIES`]. Each is
+/// judged by the pictures that both runs have.
 ///
 /// # Errors
 /// Those of reading either run; [`ErrorKind::Content`] if the kept run lacks a method.
 pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<Vec<Claim>> {
-    let (old, run) = (Run::load(kept)?, Run::load(new)?);
+    let runs = [Run::load(kept)?, Run::load(new)?];
     let mut all = Vec::new();
     for method in methods {
         let before = all.len();
-        for stage in ["fragment", "compute"] {
-            if let Some(old) = way(&old, method, stage) {
-                let name = match method.as_str() {
-                    "baseline" => RBM_BASELINE,
-                    other => other,
-                };
-                all.extend(judge(
-                    &format!("{name}, {stage}"),
-                    &old,
-                    way(&run, method, stage),
-                ));
-            }
+        for stage in STAGES {
+            let [old, new] = runs.each_ref().map(|run| rows(run, method, stage));
+            let twin = |&row: &usize| {
+                let mut new = new.iter().copied();
+                (row, new.find(|&n| runs[0].same_picture(row, &runs[1], n)))
+            };
+            let pairs: Vec<Pair> = old.iter().map(twin).collect();
+            all.extend(judge(&runs, &pairs, method, stage));
         }
         if all.len() == before {
             let message = format!(
@@ -77,253 +118,174 @@ pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<Vec<Claim>>
 
 /// The claims as text, one a line.
 pub fn as_text(claims: &[Claim]) -> String {
-    let line = |claim: &Claim| {
-        let verdict = if claim.repeated {
-            "repeated"
-        } else {
-            "NOT repeated"
-        };
-        format!("{verdict:<12}  {}\n", claim.text)
-    };
-    let failed = claims.iter().filter(|c| !c.repeated).count();
+    let line = |claim: &Claim| format!("{:<12}  {}\n", claim.verdict.word(), claim.text);
     let lines: String = claims.iter().map(line).collect();
+    let count = |v: Verdict| claims.iter().filter(|c| c.verdict == v).count();
+    let others = [Verdict::NotRepeated, Verdict::NotJudged].map(|v| (count(v), v.word()));
+    let others = others.iter().filter(|(count, _)| *count > 0);
+    let others: String = others.map(|(n, word)| format!(", {n} {word}")).collect();
     format!(
-        "{lines}\n{} of {} claims repeated\n",
-        claims.len() - failed,
-        claims.len()
+        "{lines}\n{} of {} claims repeated{others}\n",
+        count(Verdict::Repeated),
+        claims.len(),
     )
 }
 
-/// The rows of a method in a stage, put together; none if the run has none.
-fn way(run: &Run, method: &str, stage: &str) -> Option<Way> {
+/// The rows (counted from 0) of a method in a stage.
+fn rows(run: &Run, method: &str, stage: &str) -> Vec<usize> {
     let named = |record: &[String]| match method {
         "baseline" => run.is_baseline(record),
         // The baseline's search by itself is another method.
         _ => run.at(record, "solver") == method && !run.is_baseline(record),
     };
     let records = run.results.records.iter().enumerate();
-    let own: Vec<(usize, &Vec<String>)> = records
-        .filter(|(_, r)| run.at(r, "stage") == stage && named(r))
-        .collect();
-    if own.is_empty() {
-        return None;
-    }
-    let value = |record: &[String], name: &str| run.at(record, name).parse::<f64>().ok();
-    let logs: Option<Vec<Vec<f64>>> = own.iter().map(|(row, r)| logs(run, *row, r)).collect();
-    let mut logs = logs?;
-    // A busy machine has a few times that its wall clock rejects.
-    logs.retain(|passes| !passes.is_empty());
-    let timed = logs.len() as f64 >= TIMED * own.len() as f64;
-    let passes = logs.iter().map(Vec::len).min().filter(|_| timed);
-    let passes = passes.unwrap_or(0);
-    let in_pass = |pass: usize| logs.iter().map(|l| l[pass]).sum::<f64>() / logs.len() as f64;
-    let ratios: Vec<f64> = (0..passes).map(|pass| in_pass(pass).exp()).collect();
-    let depths: Vec<f64> = (own.iter())
-        .filter_map(|(_, r)| value(r, "depth_p99_texels"))
-        .map(|d| d.max(1e-4))
-        .collect();
-    let wrong = own
+    let own = records.filter(|(_, r)| run.at(r, "stage") == stage && named(r));
+    own.map(|(row, _)| row).collect()
+}
+
+/// The claims of one method in one stage; none if the kept run has no row of it.
+fn judge(runs: &[Run; 2], pairs: &[Pair], method: &str, stage: &str) -> Vec<Claim> {
+    let method = match method {
+        "baseline" => RBM_BASELINE,
+        other => other,
+    };
+    // The floor, whose errors mean nothing, makes no claim about them.
+    let quantities = QUANTITIES.iter().filter(|_| method != Method::Floor.name());
+    let errors = quantities.map(|quantity| error_claim(runs, pairs, quantity));
+    // The baseline in the fragment stage is the unit of ratios.
+    let is_unit = (method, stage) == (RBM_BASELINE, STAGES[0]);
+    let ratio = (!is_unit).then(|| ratio_claim(runs, pairs));
+    let claims = ratio.into_iter().chain(errors).flatten();
+    let named = claims.map(|claim| Claim {
+        text: format!("{method}, {stage}: {}", claim.text),
+        ..claim
+    });
+    named.collect()
+}
+
+/// The values of the pictures that both runs have, those of the kept run first, and how many
+/// pictures these are; none if the kept run has no value.
+fn common<T>(
+    runs: &[Run; 2],
+    pairs: &[Pair],
+    value: impl Fn(&Run, usize) -> Option<T>,
+) -> Option<([Vec<T>; 2], Pictures)> {
+    let [old, new] = runs;
+    let kept = pairs
         .iter()
-        .map(|(_, r)| value(r, "missed").unwrap_or(0.0) + value(r, "ghost").unwrap_or(0.0));
-    Some(Way {
-        pictures: own.len(),
-        ratio: stats::geometric(&ratios),
-        wrong: wrong.sum(),
-        depth: stats::geometric(&depths).map(|d| d.value),
+        .filter_map(|&(row, twin)| Some((value(old, row)?, twin)));
+    let kept: Vec<(T, Option<usize>)> = kept.collect();
+    let of = kept.len();
+    let both = kept
+        .into_iter()
+        .filter_map(|(a, twin)| Some((a, value(new, twin?)?)));
+    let (a, b): (Vec<T>, Vec<T>) = both.unzip();
+    let pictures = Pictures { count: a.len(), of };
+    (of > 0).then_some(([a, b], pictures))
+}
+
+/// How many of the kept run's pictures both runs have.
+struct Pictures {
+    count: usize,
+    of: usize,
+}
+
+impl Pictures {
+    fn words(&self) -> String {
+        format!("in {} of the kept run's {} pictures", self.count, self.of)
+    }
+
+    /// What is said of a claim that lacks pictures, if it does.
+    fn too_few(&self, what: &str) -> Option<Claim> {
+        let few = (self.count as f64) < ENOUGH * self.of as f64;
+        few.then(|| Claim {
+            verdict: Verdict::NotJudged,
+            text: format!("{what} {}, below half of them", self.words()),
+        })
+    }
+}
+
+/// The claim of an error.
+fn error_claim(runs: &[Run; 2], pairs: &[Pair], quantity: &Quantity) -> Option<Claim> {
+    let value = |run: &Run, row: usize| {
+        let record = run.results.records.get(row)?;
+        let columns = quantity.columns.iter();
+        columns.map(|c| run.at(record, c).parse::<f64>().ok()).sum()
+    };
+    let (values, pictures) = common(runs, pairs, value)?;
+    let lacking = pictures.too_few(quantity.name);
+    lacking.or_else(|| {
+        let [kept, new] = values.map(|values| (quantity.of_all)(&values));
+        let (kept, new) = kept.zip(new)?;
+        let most = quantity.slack + ERRORS * kept;
+        let verdict = match (new - kept).abs() <= most {
+            true => Verdict::Repeated,
+            false => Verdict::NotRepeated,
+        };
+        let [new, kept, most] = [new, kept, most].map(|v| number(v, 3));
+        let (name, pictures) = (quantity.name, pictures.words());
+        let text = format!("{new} {name} {pictures}; kept {kept}, within {most}");
+        Some(Claim { verdict, text })
     })
 }
 
+/// The claim of the ratio of times: the new interval reaches the kept one, widened for machines. One
+/// that is wide decides nothing, unless it is somewhere else.
+fn ratio_claim(runs: &[Run; 2], pairs: &[Pair]) -> Option<Claim> {
+    let (logs, pictures) = common(runs, pairs, logs)?;
+    let lacking = pictures.too_few("times");
+    lacking.or_else(|| {
+        let [kept, new] = logs.map(|logs| ratio(&logs));
+        let (kept, new) = kept.zip(new)?;
+        let (low, high) = (kept.low / MACHINES, kept.high * MACHINES);
+        let (verdict, wide) = match (new.low <= high && new.high >= low, new.relative()) {
+            (false, _) => (Verdict::NotRepeated, None),
+            (true, wide) if wide > RESOLVED => (Verdict::NotJudged, Some(RESOLVED)),
+            (true, _) => (Verdict::Repeated, None),
+        };
+        let shown = |i: Interval| {
+            let ends = i.ends().map_or("no interval".to_owned(), range);
+            format!("{} ({ends})", number(i.value, 3))
+        };
+        let wide = wide.map(|most| {
+            format!(
+                "; its interval is wider than {} to either side",
+                percent(most)
+            )
+        });
+        let text = format!(
+            "takes {} of the RBM baseline's time {}; kept {}, on other machines {}{}",
+            shown(new),
+            pictures.words(),
+            shown(kept),
+            range((low, high)),
+            wide.unwrap_or_default()
+        );
+        Some(Claim { verdict, text })
+    })
+}
+
+/// The ratio of times over pictures: of each the logarithms of its ratios in each pass.
+fn ratio(logs: &[Vec<f64>]) -> Option<Interval> {
+    let passes = logs.iter().map(Vec::len).min().unwrap_or(0);
+    let in_pass = |pass: usize| logs.iter().map(|l| l[pass]).sum::<f64>() / logs.len() as f64;
+    let ratios: Vec<f64> = (0..passes).map(|pass| in_pass(pass).exp()).collect();
+    stats::geometric(&ratios)
+}
+
 /// Logarithms of a row's ratios to the RBM baseline in the fragment stage, one for each pass: medians
-/// over the rounds. Empty if a clock was rejected, and `None` without such a baseline.
-fn logs(run: &Run, row: usize, record: &[String]) -> Option<Vec<f64>> {
-    let rival = run.baseline_of(record, "fragment")?;
+/// over the rounds. `None` if a clock was rejected, and without such a baseline.
+fn logs(run: &Run, row: usize) -> Option<Vec<f64>> {
+    let record = run.results.records.get(row)?;
+    let rival = run.baseline_of(record, STAGES[0])?;
     let passes = run.times(row).zip(run.times(rival));
     let log = |(a, b): (&[f64], &[f64])| {
         let logs: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a / b).ln()).collect();
         stats::median(&logs)
     };
-    Some(passes.filter_map(log).collect())
-}
-
-/// The claims of one method in one stage.
-fn judge(name: &str, old: &Way, new: Option<Way>) -> Vec<Claim> {
-    let Some(new) = new.filter(|new| new.pictures == old.pictures) else {
-        let text = format!(
-            "{name}: the new run lacks some of its {} pictures",
-            old.pictures
-        );
-        return vec![Claim {
-            repeated: false,
-            text,
-        }];
-    };
-    let is_unit = name == format!("{RBM_BASELINE}, fragment");
-    let ratio = (old.ratio.filter(|_| !is_unit)).map(|kept| ratio_claim(name, kept, new.ratio));
-    let most = PIXELS + ERRORS * old.wrong;
-    let wrong = Claim {
-        repeated: (new.wrong - old.wrong).abs() <= most,
-        text: format!(
-            "{name}: {} wrong pixels in {} pictures; kept {}, within {}",
-            new.wrong,
-            new.pictures,
-            old.wrong,
-            number(most, 3)
-        ),
-    };
-    let depth = old.depth.map(|kept| Claim {
-        repeated: new.depth.is_some_and(|d| (d / kept - 1.0).abs() <= ERRORS),
-        text: format!(
-            "{name}: depth errors of {} h/512; kept {}, within {}",
-            new.depth.map_or("unknown".to_owned(), |d| number(d, 3)),
-            number(kept, 3),
-            percent(ERRORS)
-        ),
-    });
-    let errors = [Some(wrong), depth].into_iter().flatten();
-    // The floor, whose errors mean nothing, makes no claim about them.
-    let errors = errors.filter(|_| !name.starts_with(Method::Floor.name()));
-    ratio.into_iter().chain(errors).collect()
-}
-
-/// The claim of a ratio: the new interval reaches the kept one, widened for machines, and is narrow.
-fn ratio_claim(name: &str, kept: Interval, new: Option<Interval>) -> Claim {
-    let (low, high) = (kept.low / MACHINES, kept.high * MACHINES);
-    let reaches = |i: Interval| i.relative() <= RESOLVED && i.low <= high && i.high >= low;
-    let shown = |i: Interval| {
-        let ends = i.ends().map_or("no interval".to_owned(), range);
-        format!("{} ({ends})", number(i.value, 3))
-    };
-    Claim {
-        repeated: new.is_some_and(reaches),
-        text: format!(
-            "{name}: takes {} of the RBM baseline's time; kept {}, on other machines {}",
-            new.map_or("an unknown part".to_owned(), shown),
-            shown(kept),
-            range((low, high))
-        ),
-    }
+    let logs: Vec<f64> = passes.filter_map(log).collect();
+    (!logs.is_empty()).then_some(logs)
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::super::tests::folder_of;
-    use super::*;
-    use crate::plan::rbm_baseline;
-    use crate::ratios::{Over, over};
-    use crate::row::Row;
-    use crate::row::tests::row;
-    use crate::view::tests::spindle;
-
-    /// Two pictures by the default search, which takes `part` of the baseline's time, and by the
-    /// baseline; with so many wrong pixels of the search.
-    fn rows(part: f64, wrong: usize) -> Vec<Row> {
-        let drift = [1.0, 1.3, 0.9];
-        let of = |ms: f64, bent: f64| {
-            let passes =
-                drift.map(|d| [(None, ms * d), (None, ms * d * bent), (None, ms * d / bent)]);
-            row(&passes.each_ref().map(|p| p.as_slice()))
-        };
-        let pictures = ["vase", "pawn"].into_iter().enumerate();
-        let both = pictures.flat_map(|(view, scene)| {
-            let ms = 10.0 * (view + 1) as f64;
-            let (mut ours, mut papers) = (of(part * ms, 1.01), of(ms, 1.02));
-            ours.settings.method = Method::DEFAULT;
-            ours.errors.missed = wrong;
-            papers.settings = rbm_baseline(&spindle(), &papers.settings);
-            papers.source = papers.settings.map_source;
-            [ours, papers].map(|row| Row {
-                view,
-                scene: scene.to_owned(),
-                ..row
-            })
-        });
-        both.collect()
-    }
-
-    fn failed(kept: &[Row], new: &[Row]) -> Vec<String> {
-        let (kept, new) = (folder_of(kept, "dev", "drv"), folder_of(new, "dev", "drv"));
-        let methods = ["exact", "baseline"].map(str::to_owned);
-        let claims = claims(kept.path(), new.path(), &methods).unwrap();
-        let failed = claims.iter().filter(|c| !c.repeated);
-        failed.map(|c| c.text.clone()).collect()
-    }
-
-    /// Figures as the table of a report has them, from the files alone.
-    #[test]
-    fn ratios_are_those_of_the_report() {
-        let rows = rows(0.5, 0);
-        let folder = folder_of(&rows, "dev", "drv");
-        let run = Run::load(folder.path()).unwrap();
-        let found = way(&run, "exact", "fragment").unwrap();
-        let wanted = over(&rows, Over::Baseline);
-        let (a, b) = (found.ratio.unwrap(), wanted[0].time);
-        for (a, b) in [(a.value, b.value), (a.low, b.low), (a.high, b.high)] {
-            assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
-        }
-        assert_eq!(found.pictures, 2);
-        assert!(way(&run, "live", "fragment").is_none());
-    }
-
-    #[test]
-    fn a_changed_figure_is_not_repeated() {
-        let kept = rows(0.5, 100);
-        assert_eq!(failed(&kept, &kept), [""; 0]);
-        // Another machine, within what machines differ by.
-        assert_eq!(failed(&kept, &rows(0.6, 105)), [""; 0]);
-        for (new, wanted) in [
-            (rows(0.7, 100), "exact, fragment: takes 0.7"),
-            (rows(0.35, 100), "exact, fragment: takes 0.35"),
-            (
-                rows(0.5, 130),
-                "exact, fragment: 260 wrong pixels in 2 pictures; kept 200",
-            ),
-            (rows(0.5, 70), "exact, fragment: 140 wrong pixels"),
-        ] {
-            let failed = failed(&kept, &new);
-            assert_eq!(failed.len(), 1, "{failed:?}");
-            assert!(failed[0].starts_with(wanted), "{failed:?}");
-        }
-        let fewer = failed(&kept, &kept[..2]);
-        assert!(
-            fewer
-                .iter()
-                .all(|f| f.contains("lacks some of its 2 pictures")),
-            "{fewer:?}"
-        );
-        // A clock that is rejected in one of two pictures leaves too few; in one of four it does not.
-        let lies = |rows: &mut Vec<Row>| {
-            let samples = rows[0].passes.iter_mut().flatten();
-            samples.for_each(|s| s.gpu_ms = Some(0.001));
-        };
-        let mut half = rows(0.5, 100);
-        lies(&mut half);
-        let unknown = failed(&kept, &half);
-        assert!(unknown[0].contains("takes an unknown part"), "{unknown:?}");
-        let more = |wanted: f64| {
-            let mut more = rows(wanted, 100);
-            let others = rows(wanted, 100).into_iter();
-            more.extend(others.map(|row| Row {
-                scene: format!("{}:close", row.scene),
-                ..row
-            }));
-            more
-        };
-        let mut most = more(0.5);
-        lies(&mut most);
-        assert_eq!(failed(&more(0.5), &most), [""; 0]);
-        // An interval that holds everything repeats nothing.
-        let mut vague = rows(0.5, 100);
-        for (pass, factor) in vague[0].passes.iter_mut().zip([0.3, 1.0, 3.0]) {
-            pass.iter_mut().for_each(|s| s.frame_ms *= factor);
-        }
-        assert_eq!(failed(&kept, &vague).len(), 1);
-    }
-
-    #[test]
-    fn what_the_kept_run_lacks_is_no_claim() {
-        let kept = folder_of(&rows(0.5, 0), "dev", "drv");
-        let error = claims(kept.path(), kept.path(), &["live".to_owned()]).unwrap_err();
-        assert!(error.to_string().contains("holds no live"), "{error}");
-    }
-}
+mod tests;

@@ -108,6 +108,19 @@ impl Run {
         columns.all(|(column, values)| values.contains(&self.at(record, column)))
     }
 
+    /// True if a row shows the same picture as one of another run, to the same tolerance.
+    pub(super) fn same_picture(&self, row: usize, other: &Self, twin: usize) -> bool {
+        let records = (
+            self.results.records.get(row),
+            other.results.records.get(twin),
+        );
+        let (Some(a), Some(b)) = records else {
+            return false;
+        };
+        let mut columns = PICTURE.iter().chain(&["tolerance_px"]);
+        columns.all(|column| self.at(a, column) == other.at(b, column))
+    }
+
     /// The row (counted from 0) of the RBM baseline in a record's picture and in this stage.
     pub(super) fn baseline_of(&self, record: &[String], stage: &str) -> Option<usize> {
         let same = |r: &[String]| PICTURE.iter().all(|c| self.at(r, c) == self.at(record, c));

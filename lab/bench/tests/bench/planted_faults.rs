@@ -8,6 +8,7 @@ use revmap_bench::columns::{Context, results_table};
 use revmap_bench::exhibit;
 use revmap_bench::folder;
 use revmap_bench::machine::Machine;
+use revmap_bench::measure::TRIES;
 use revmap_bench::method::Method;
 use revmap_bench::plan::is_rbm_baseline;
 use revmap_bench::ratios::{Over, Ratio, over};
@@ -119,6 +120,24 @@ fn a_clock_that_lies_is_rejected() {
         assert_eq!(record[gpu].is_empty(), record[method] == "live");
         assert!(!record[frame].is_empty());
     }
+}
+
+/// A pass in which another program had the processor is measured again, and a clock that always lies
+/// a bounded number of times.
+#[test]
+fn a_disturbed_pass_is_measured_again() {
+    let frames = |fault| {
+        let mut bench = StandIn::new(fault);
+        let outcome = run(&mut bench, &AtomicBool::new(false)).unwrap();
+        let told = outcome.rows.iter().filter(|r| r.time().is_some()).count();
+        let kept: usize = outcome.rows.iter().map(|r| r.frame_ms().len()).sum();
+        (told, kept, bench.frames.borrow().len())
+    };
+    // Four passes of six rounds, and one frame to warm up, of six rows.
+    let (kept, warm_up) = (6 * 4 * 6, 6 * 4);
+    assert_eq!(frames(Fault::None), (6, kept, kept + warm_up));
+    assert_eq!(frames(Fault::Disturbed), (6, kept, kept + 3 * 6 + warm_up));
+    assert_eq!(frames(Fault::ClockLies), (4, kept, TRIES * kept + warm_up));
 }
 
 #[test]

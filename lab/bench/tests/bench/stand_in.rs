@@ -28,6 +28,9 @@ pub enum Fault {
     BoxFace,
     /// The device's clock reads a hundredth.
     ClockLies,
+    /// While the first six frames are timed another program has the processor, and the wall clock
+    /// shows three times the time.
+    Disturbed,
     /// In its first group and pass the search takes twice its time.
     Bout,
     /// The search takes twice as long in each pass as in the one before.
@@ -95,6 +98,7 @@ impl Bench for StandIn {
         let lies = live && self.fault == Fault::ClockLies;
         let gpu_ms = frame_ms * if lies { 0.01 } else { 0.98 };
         let (method, frames, stop_after) = (settings.method, self.frames.clone(), self.stop_after);
+        let disturbed = live && self.fault == Fault::Disturbed;
         let steady = matches!(self.fault, Fault::Bout | Fault::Grows);
         Ok(Box::new(move || {
             let mut frames = frames.borrow_mut();
@@ -107,9 +111,11 @@ impl Bench for StandIn {
                 true => 1.0,
                 false => 1.0 + 0.3 * (frames.len() as f64 * 0.05).sin(),
             };
+            let timed = frames.iter().filter(|m| **m == method).count() - 1;
+            let other = disturbed && (1..=6).contains(&timed);
             Ok(Sample {
                 gpu_ms: Some(gpu_ms * drift),
-                frame_ms: frame_ms * drift,
+                frame_ms: frame_ms * drift * if other { 3.0 } else { 1.0 },
             })
         }))
     }
