@@ -158,7 +158,9 @@ impl Bench {
             return Ok(());
         }
         if !what.drivers.is_empty() {
-            print(&compare_runs::drivers::markdown(&what.drivers)?);
+            let (table, warning) = compare_runs::drivers::markdown(&what.drivers)?;
+            warning.iter().for_each(|text| output::warn(text));
+            print(&table);
             return Ok(());
         }
         if !what.gather.is_empty() {
@@ -198,7 +200,8 @@ const NOT_JUDGED: u8 = 4;
 
 /// Judges whether a new run repeats a kept one.
 fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
-    let claims = compare_runs::repeat::claims(old, new, methods)?;
+    let (claims, warnings) = compare_runs::repeat::claims(old, new, methods)?;
+    warnings.iter().for_each(|text| output::warn(text));
     print(&compare_runs::repeat::as_text(&claims));
     let has = |verdict| claims.iter().any(|claim| claim.verdict == verdict);
     if has(Verdict::NotRepeated) {
@@ -214,6 +217,9 @@ fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
 /// Puts submissions side by side.
 fn gather(files: &[PathBuf], lists: &Lists) -> Result<()> {
     let all = submission::gather::load(files)?;
+    submission::gather::warnings(&all)
+        .iter()
+        .for_each(|text| output::warn(text));
     let out = lists.results.folder("submitted", files)?;
     print(&submission::gather::write(&all, &out, output::width())?);
     let (report, count) = (out.join("report.html"), all.len());

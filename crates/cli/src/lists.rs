@@ -133,7 +133,8 @@ impl Lists {
     fn views(&self) -> Result<Vec<View>> {
         let mut views = Vec::new();
         for file in &self.scenes {
-            let scene = SceneFile::open(file)?.scene(&self.set)?;
+            let mut read = SceneFile::open(file)?;
+            let scene = read.scene(&self.set)?;
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             let twin = |other: &PathBuf| other != file && other.file_stem() == file.file_stem();
             // The same name in two folders: the paths tell them apart.
@@ -141,7 +142,12 @@ impl Lists {
                 true => file.to_string_lossy(),
                 false => stem,
             };
-            views.push(View::new(name, scene));
+            let view = View::new(name, scene);
+            // A profile whose name is no text has no scene as text.
+            views.push(match read.text(&self.set) {
+                Ok(text) => view.of_file(&text),
+                Err(_) => view,
+            });
         }
         Ok(views)
     }

@@ -58,7 +58,7 @@ macro_rules! columns {
 }
 
 /// How many columns `results.csv` has: the first of all.
-pub const RESULTS: usize = 40;
+pub const RESULTS: usize = 41;
 
 /// How many of them every version writes, before all others.
 pub const CONTRACT: usize = 31;
@@ -165,10 +165,10 @@ pub static COLUMNS: &[Column] = columns! {
     "time_over_fragment_low", "time / fragment stage, low", "lower end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.0);
     "time_over_fragment_high", "time / fragment stage, high", "upper end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.1);
     "shadow", "shadows", "shadows in the scene: off, hard or soft" => |_, r| Cell::text(name_of(&Shadow::NAMES, &r.shadow));
+    "way", "edges", "how edges are treated: rays per pixel, smoothed silhouettes, or a pass of four samples (MSAA 4)" => |_, r| Cell::text(edges(r));
     "framing", "framing", "whole: the solid from head to foot; close: the field of view narrowed until the solid's box is a quarter larger than a picture of 4:3" => |_, r| Cell::text(r.framing.name());
     "value", "value", "parameter of the form, in plans that vary one" => |_, r| Cell::number(r.value);
     "method", "method", "the solver, and what else differs between the ways of drawing that are measured" => |c, r| Cell::text(c.styles.way(&r.settings));
-    "way", "edges", "how edges are treated: rays per pixel, smoothed silhouettes, or a pass of four samples (MSAA 4)" => |_, r| Cell::text(edges(r));
     "size", "size", "pixels of the picture" => |_, r| Cell::text(r.size());
     "megapixels", "pixels (millions)", "pixels of the picture, millions" => |_, r| Cell::Number(f64::from(r.settings.width) * f64::from(r.settings.height) / 1e6);
     "hit_share", "pixels hit", "share of the picture's pixels in which the reference hits a solid" => |_, r| Cell::Share(r.covered());

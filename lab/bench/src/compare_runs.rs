@@ -3,6 +3,7 @@
 pub mod drivers;
 pub mod repeat;
 mod run;
+mod scenes;
 
 use super::names::{number, range};
 use super::stats::{self, Interval, Verdict};
@@ -10,11 +11,32 @@ use super::surroundings::differences;
 use super::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
+use scenes::Scenes;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Number of columns that name the measurement, the first of all: rows that agree in them are the same measurement.
-const KEY: usize = 14;
+/// Columns that name the measurement: rows that agree in them are the same one. Earlier versions
+/// lack the last.
+const KEY: [&str; 16] = [
+    "scene",
+    "technique",
+    "extend",
+    "bevel",
+    "chamfer",
+    "stage",
+    "solver",
+    "max_steps",
+    "width",
+    "height",
+    "map_rows",
+    "map_source",
+    "map_format",
+    "objects",
+    "tolerance_px",
+    "way",
+];
+/// How many of them name measurements in text, unless several then have one name.
+const NAMES: usize = 14;
 
 /// Errors may differ by this share before they count as changed.
 const ERROR_CHANGE: f64 = 0.05;
@@ -105,7 +127,8 @@ pub struct Against {
     pub alone: (usize, usize),
     /// Device and driver of each.
     pub devices: [String; 2],
-    /// A warning for each of device, driver, processor, surroundings and methods that differs.
+    /// A warning for each of scenes, settings, device, driver, processor, surroundings and methods that
+    /// differs.
     pub warnings: Vec<String>,
 }
 
@@ -113,12 +136,16 @@ pub struct Against {
 ///
 /// # Errors
 /// [`ErrorKind::File`], naming the file: missing, damaged or of other columns;
-/// [`ErrorKind::Content`] with nothing in common.
+/// [`ErrorKind::Content`] with nothing in common, naming the key of a scene that differs.
 pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let (before, after) = (Run::load(old)?, Run::load(new)?);
+    let scenes = Scenes::of(&before, &after);
     let pair = |(number, record): (usize, &Vec<String>)| {
         let mut known = before.results.records.iter();
-        let twin = known.position(|r| r[..KEY] == record[..KEY])?;
+        let twin = known.position(|r| before.agree(r, (&after, record), &KEY))?;
+        if scenes.differ(after.at(record, "scene")) {
+            return None;
+        }
         let old = &before.results.records[twin];
         let errors = |name| {
             let value = |run: &Run, record| run.at(record, name).parse::<f64>().ok();
@@ -130,7 +157,9 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
             .partition(|&(_, a, b)| b > a);
         let relative = after.over_baseline(number).zip(before.over_baseline(twin));
         Some(Pair {
-            key: record[..KEY].to_vec(),
+            key: KEY
+                .map(|column| after.at(record, column).to_owned())
+                .to_vec(),
             time: stats::ratio(&after.medians(number), &before.medians(twin)),
             relative: relative.and_then(|(a, b)| stats::ratio(&a, &b)),
             verdict: Verdict::Unresolved,
@@ -142,7 +171,11 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let mut pairs: Vec<Pair> = records.filter_map(pair).collect();
     judge(&mut pairs);
     if pairs.is_empty() {
-        return Err(Error::new(ErrorKind::Content, "has no measurement in common with the other folder; measure the same scenes, stages and searches").in_file(new));
+        let message = match &scenes.told {
+            Some(told) => format!("drew {told}; measure the same scenes"),
+            None => "has no measurement in common with the other folder; measure the same scenes, stages and searches".to_owned(),
+        };
+        return Err(Error::new(ErrorKind::Content, message).in_file(new));
     }
     let alone = |run: &Run| run.results.records.len().saturating_sub(pairs.len());
     let (old, new) = (before.machine(), after.machine());
@@ -158,7 +191,8 @@ pub fn compare(old: &Path, new: &Path) -> Result<Against> {
     let others = differences(&before.surroundings, &after.surroundings);
     Ok(Against {
         alone: (alone(&before), alone(&after)),
-        warnings: machines
+        warnings: (scenes.warnings.into_iter())
+            .chain(machines)
             .chain(others)
             .chain(other_methods(&before, &after))
             .collect(),
@@ -189,9 +223,16 @@ fn grown(name: &str, a: f64, b: f64) -> bool {
 pub fn as_text(against: &Against, width: Option<usize>) -> String {
     let pairs = &against.pairs;
     let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
-    let mut columns: Vec<usize> = (0..KEY).filter(differs).collect();
+    let mut columns: Vec<usize> = (0..NAMES).filter(differs).collect();
     if columns.is_empty() {
         columns = vec![0, 5, 6];
+    }
+    let named = pairs
+        .iter()
+        .map(|p| &p.key[..NAMES])
+        .collect::<BTreeSet<_>>();
+    if named.len() < pairs.len() {
+        columns.extend((NAMES..KEY.len()).filter(differs));
     }
     let name = |pair: &Pair| {
         let words = columns.iter().map(|&c| pair.key[c].as_str());

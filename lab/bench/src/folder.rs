@@ -5,6 +5,7 @@ use super::chart::pdf::pdf;
 use super::chart::raster::raster;
 use super::chart::svg::svg;
 use super::columns::results_table;
+use super::drawn::{self, Drawn};
 use super::machine::Machine;
 use super::measure::{Measured, TRIES};
 use super::names;
@@ -30,12 +31,13 @@ pub fn fresh(base: &Path, name: &str) -> Result<PathBuf> {
 }
 
 /// Files that a run writes at the top of its folder.
-const FILES: [&str; 5] = [
+const FILES: [&str; 6] = [
     "results.csv",
     "raw.csv",
     "excluded.csv",
     "machine.txt",
     "report.html",
+    drawn::FILE,
 ];
 /// Folders that a run writes into its own.
 const FOLDERS: [&str; 2] = ["charts", "pictures"];
@@ -225,7 +227,7 @@ pub fn clock_warning(rows: &[Row]) -> Option<String> {
     })
 }
 
-/// Writes `results.csv` and `raw.csv`.
+/// Writes `results.csv`, `raw.csv` and what was drawn.
 pub fn write_rows(
     folder: &Path,
     rows: &[Row],
@@ -235,10 +237,11 @@ pub fn write_rows(
 ) -> Result<()> {
     let results = results_table(rows, plan, machine, resolved)?;
     write_text(&folder.join("results.csv"), &results.csv())?;
-    write_text(&folder.join("raw.csv"), &raw(rows).csv())
+    write_text(&folder.join("raw.csv"), &raw(rows).csv())?;
+    write_text(&folder.join(drawn::FILE), &Drawn::of(plan).text()?)
 }
 
-/// Writes the four files that every run has.
+/// Writes the files that every run has.
 pub fn write(
     folder: &Path,
     plan: &Plan,

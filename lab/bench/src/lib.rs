@@ -14,12 +14,13 @@
 //! | [`ratios`], [`exhibit`], [`compare_runs`] | what lines say beside each other |
 //! | [`plan_file`] | a plan as TOML: what is measured, and what is shown of it |
 //! | [`columns`], [`table`], [`chart`], [`page`], [`report`] | tables, charts, one HTML page |
-//! | [`folder`], [`submission`] | files of a run; one file of a machine's figures |
+//! | [`folder`], `drawn`, [`submission`] | files of a run; what it drew; one file of a machine's figures |
 
 pub mod chart;
 pub mod columns;
 pub mod compare_runs;
 mod device;
+mod drawn;
 pub mod exhibit;
 pub mod flight;
 pub mod floor;

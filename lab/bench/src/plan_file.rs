@@ -181,6 +181,7 @@ impl PlanFile {
         let mut plan = Plan::new(views);
         plan.mixed = self.mixed;
         plan.pixel_errors = self.pixel_errors;
+        plan.wall_clock = self.wall_clock;
         plan.truth_rays = self.truth_rays.max(1);
         for view in 0..plan.views.len() {
             for measure in &self.measure {

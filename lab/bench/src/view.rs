@@ -3,6 +3,7 @@
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
 use revmap::settings::name_of;
+use std::sync::Arc;
 
 /// A scene to be measured.
 #[derive(Clone, Debug)]
@@ -17,6 +18,8 @@ pub struct View {
     pub group: String,
     /// The parameter of its form, in plans that vary one.
     pub value: Option<f64>,
+    /// The scene file, with what the command line changes in it.
+    pub file: Option<Arc<toml::Table>>,
 }
 
 /// How much of the picture is solid.
@@ -59,7 +62,15 @@ impl View {
             framing: Framing::Whole,
             group: String::new(),
             value: None,
+            file: None,
         }
+    }
+
+    /// The same view, of a scene file with this text.
+    #[must_use]
+    pub fn of_file(mut self, text: &str) -> Self {
+        self.file = text.parse().ok().map(Arc::new);
+        self
     }
 
     /// The form of its objects' offsets, as results name it.
@@ -120,7 +131,6 @@ pub(crate) mod tests {
     use super::*;
     use revmap::profile::Profile;
     use revmap::scene::{Camera, Object, Placement};
-    use std::sync::Arc;
 
     /// A double cone.
     pub(crate) fn spindle() -> View {

@@ -40,7 +40,7 @@ fn every_column_is_defined_once_and_explained() {
     }
     assert_eq!(
         (COLUMNS[CONTRACT - 1].name, COLUMNS[RESULTS - 1].name),
-        ("driver", "shadow")
+        ("driver", "way")
     );
     assert!(named("nothing").is_err());
 }

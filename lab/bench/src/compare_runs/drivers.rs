@@ -1,10 +1,11 @@
 //! One table of several runs: a row for each technique and stage, a column for each driver.
 
 use super::run::Run;
+use super::scenes::{self, Scenes};
 use crate::method::Method;
 use crate::names::{number, percent};
 use crate::stats;
-use revmap::error::Result;
+use revmap::error::{Error, ErrorKind, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -63,13 +64,19 @@ impl Cell {
 
 /// The default search in every run, as a Markdown table: its time over that of the RBM baseline in
 /// the same picture and stage (geometric mean, and the range over pictures), its depth error (99th
-/// percentile in h/512, geometric mean), and its wrong pixels over those of the picture.
-pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
+/// percentile in h/512, geometric mean), and its wrong pixels over those of the picture. Behind it a
+/// warning about runs that do not say what they drew.
+///
+/// # Errors
+/// Those of reading a run; [`ErrorKind::Content`] if two runs drew different scenes under one name.
+pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<(String, Option<String>)> {
+    let runs = folders.iter().map(|folder| Run::load(folder.as_ref()));
+    let runs = runs.collect::<Result<Vec<Run>>>()?;
+    let warning = check(&runs, folders)?;
     // The key: the technique's place, its name and tolerance, and true for compute.
     let mut rows: BTreeMap<(usize, String, bool), Vec<Cell>> = BTreeMap::new();
     let mut drivers = Vec::new();
-    for (column, folder) in folders.iter().enumerate() {
-        let run = Run::load(folder.as_ref())?;
+    for (column, run) in runs.iter().enumerate() {
         drivers.push(run.machine()[1].1.to_owned());
         for (row, record) in run.results.records.iter().enumerate() {
             let at = |name: &str| run.at(record, name);
@@ -101,7 +108,27 @@ pub fn markdown(folders: &[impl AsRef<Path>]) -> Result<String> {
         let cells: Vec<String> = cells.iter().map(Cell::text).collect();
         out += &format!("| {name} | {stage} | {} |\n", cells.join(" | "));
     }
-    Ok(out)
+    Ok((out, warning))
+}
+
+/// Refuses runs of different scenes; a warning names those that do not say what they drew.
+fn check(runs: &[Run], folders: &[impl AsRef<Path>]) -> Result<Option<String>> {
+    let all = || runs.iter().zip(folders);
+    for (number, (new, folder)) in all().enumerate() {
+        for (old, other) in all().take(number) {
+            if let Some(told) = Scenes::of(old, new).told {
+                let other = other.as_ref().display();
+                let message =
+                    format!("drew {told}, old being {other}; give runs of the same scenes");
+                return Err(Error::new(ErrorKind::Content, message).in_file(folder.as_ref()));
+            }
+        }
+    }
+    let silent = all().filter(|(run, _)| run.drawn.is_none());
+    let silent: Vec<String> = silent
+        .map(|(_, folder)| folder.as_ref().display().to_string())
+        .collect();
+    Ok((!silent.is_empty()).then(|| scenes::unknown(&silent.join(", "))))
 }
 
 #[cfg(test)]
@@ -109,7 +136,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::tests::folder_of;
     use super::*;
-    use crate::plan::rbm_baseline;
+    use crate::drawn::{self, Drawn};
+    use crate::plan::{Plan, rbm_baseline};
     use crate::row::Row;
     use crate::row::tests::timed;
     use crate::view::tests::spindle;
@@ -153,7 +181,27 @@ mod tests {
 | revolution, cut by the box | compute | **1.5** (1.5 to 1.5); –; 0.01 % | – |
 | textured | compute | **0.4** (0.4 to 0.4); –; 0.01 % | – |
 ";
-        assert_eq!(markdown(&[first.path(), second.path()]).unwrap(), wanted);
+        let (text, warning) = markdown(&[first.path(), second.path()]).unwrap();
+        assert_eq!(text, wanted);
+        assert!(warning.unwrap().starts_with("no drawn.toml in "));
         assert!(markdown(&[first.path().join("none")]).is_err());
+    }
+
+    #[test]
+    fn runs_of_different_scenes_are_refused() {
+        let vase = [("vase", DrawStage::Fragment, 5.0)];
+        let runs = ["one", "two", "three"].map(|driver| run(driver, &vase));
+        for (run, eye) in runs.iter().zip([2.0, 2.0, 2.5]) {
+            let mut view = spindle();
+            view.scene.camera.eye.x = eye;
+            let text = Drawn::of(&Plan::new(vec![view])).text().unwrap();
+            std::fs::write(run.path().join(drawn::FILE), text).unwrap();
+        }
+        let [one, two, three] = runs.each_ref().map(|run| run.path());
+        assert_eq!(markdown(&[one, two]).unwrap().1, None);
+        let error = markdown(&[one, two, three]).unwrap_err();
+        assert_eq!(error.file.as_deref(), Some(three));
+        let wanted = "drew different scenes as spindle: camera.eye (old [2.0, ";
+        assert!(error.message.starts_with(wanted), "{error}");
     }
 }

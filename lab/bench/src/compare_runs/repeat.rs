@@ -1,6 +1,7 @@
 //! The judge of claims: whether a new run repeats what a kept one says of a method over its pictures.
 
 use super::run::Run;
+use super::scenes::Scenes;
 use crate::method::Method;
 use crate::names::{number, percent, range};
 use crate::plan::RBM_BASELINE;
@@ -88,12 +89,21 @@ type Pair = (usize, Option<usize>);
 
 /// The claims of these methods (as `exact`, `mesh:64x128`; `baseline` is the RBM baseline) in each
 /// stage that the kept run has of them: the ratio of times, and each of [`QUANTITIES`]. Each is
-/// judged by the pictures that both runs have.
+/// judged by the pictures that both runs have. Behind them warnings about what the runs drew.
 ///
 /// # Errors
 /// Those of reading either run; [`ErrorKind::Content`] if the kept run lacks a method.
-pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<Vec<Claim>> {
+pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<(Vec<Claim>, Vec<String>)> {
     let runs = [Run::load(kept)?, Run::load(new)?];
+    let [kept_run, new_run] = &runs;
+    let scenes = Scenes::of(kept_run, new_run);
+    let same = |row: usize, twin: usize| {
+        let (a, b) = (
+            &kept_run.results.records[row],
+            &new_run.results.records[twin],
+        );
+        kept_run.same_picture(a, (new_run, b)) && !scenes.differ(kept_run.at(a, "scene"))
+    };
     let mut all = Vec::new();
     for method in methods {
         let before = all.len();
@@ -101,7 +111,7 @@ pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<Vec<Claim>>
             let [old, new] = runs.each_ref().map(|run| rows(run, method, stage));
             let twin = |&row: &usize| {
                 let mut new = new.iter().copied();
-                (row, new.find(|&n| runs[0].same_picture(row, &runs[1], n)))
+                (row, new.find(|&n| same(row, n)))
             };
             let pairs: Vec<Pair> = old.iter().map(twin).collect();
             all.extend(judge(&runs, &pairs, method, stage));
@@ -113,7 +123,7 @@ pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<Vec<Claim>>
             return Err(Error::new(ErrorKind::Content, message).in_file(kept));
         }
     }
-    Ok(all)
+    Ok((all, scenes.warnings))
 }
 
 /// The claims as text, one a line.

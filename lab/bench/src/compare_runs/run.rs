@@ -1,6 +1,7 @@
 //! A run read back from its folder.
 
 use crate::columns::{CONTRACT, results as columns};
+use crate::drawn::Drawn;
 use crate::stats;
 use crate::surroundings;
 use crate::table::{Table, text_of};
@@ -17,6 +18,8 @@ pub(super) struct Run {
     samples: BTreeMap<(usize, usize), Vec<f64>>,
     /// The processor, with its threads; empty without `machine.txt`.
     processor: String,
+    /// What it drew; none for a run of an earlier version.
+    pub(super) drawn: Option<Drawn>,
     /// What else changes times; empty for a run of an earlier version.
     pub(super) surroundings: BTreeMap<String, String>,
 }
@@ -75,6 +78,7 @@ impl Run {
         Ok(Self {
             results,
             samples,
+            drawn: Drawn::load(folder)?,
             processor: surroundings::field(&note, "processor").unwrap_or_default(),
             surroundings: surroundings::of_note(&note),
         })
@@ -108,17 +112,23 @@ impl Run {
         columns.all(|(column, values)| values.contains(&self.at(record, column)))
     }
 
-    /// True if a row shows the same picture as one of another run, to the same tolerance.
-    pub(super) fn same_picture(&self, row: usize, other: &Self, twin: usize) -> bool {
-        let records = (
-            self.results.records.get(row),
-            other.results.records.get(twin),
-        );
-        let (Some(a), Some(b)) = records else {
-            return false;
-        };
-        let mut columns = PICTURE.iter().chain(&["tolerance_px"]);
-        columns.all(|column| self.at(a, column) == other.at(b, column))
+    /// True if a record has the values of one of another run in these columns, as far as both runs
+    /// have them.
+    pub(super) fn agree(
+        &self,
+        record: &[String],
+        (other, twin): (&Self, &[String]),
+        columns: &[&str],
+    ) -> bool {
+        columns.iter().all(|name| {
+            let places = (self.results.column(name), other.results.column(name));
+            !matches!(places, (Ok(a), Ok(b)) if record[a] != twin[b])
+        })
+    }
+
+    /// True if a record shows a picture of another run's, to the same tolerance.
+    pub(super) fn same_picture(&self, record: &[String], other: (&Self, &[String])) -> bool {
+        self.agree(record, other, &PICTURE) && self.agree(record, other, &["tolerance_px", "way"])
     }
 
     /// The row (counted from 0) of the RBM baseline in a record's picture and in this stage.

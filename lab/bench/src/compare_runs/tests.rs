@@ -5,7 +5,7 @@ use super::super::row::Row;
 use super::super::row::tests::row;
 use super::*;
 use crate::columns::results;
-use crate::method::Method;
+use crate::method::{Edges, Method};
 use crate::plan::rbm_baseline;
 use crate::view::tests::spindle;
 use revmap::settings::{DrawStage, Solver};
@@ -142,12 +142,21 @@ fn runs_of_other_methods_are_said() {
     };
     let both = run(&[with(3, Solver::Exact), with(3, Solver::Live)]);
     let one = run(&[with(3, Solver::Exact)]);
-    let warnings = compare(both.path(), one.path()).unwrap().warnings;
+    // Without what is said of runs that say nothing about their scenes.
+    let told = |old: &Path, new: &Path| -> Vec<String> {
+        let warnings = compare(old, new).unwrap().warnings;
+        assert!(
+            warnings[0].starts_with("no drawn.toml in both runs"),
+            "{warnings:?}"
+        );
+        warnings[1..].to_vec()
+    };
+    let warnings = told(both.path(), one.path());
     assert!(
         warnings.len() == 1 && warnings[0].contains("only the old one has live"),
         "{warnings:?}"
     );
-    assert_eq!(compare(one.path(), one.path()).unwrap().warnings, [""; 0]);
+    assert_eq!(told(one.path(), one.path()), [""; 0]);
 }
 
 #[test]
@@ -172,5 +181,33 @@ fn what_cannot_be_compared_is_refused() {
     assert!(error.file.unwrap().ends_with("results.csv"));
     std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
     assert!(refused().contains("other columns"));
-    assert_eq!(results().nth(KEY - 1), Some("objects"));
+    let columns: Vec<&str> = results().collect();
+    assert_eq!(columns[..NAMES], KEY[..NAMES]);
+    assert!(KEY.iter().all(|column| columns.contains(column)));
+}
+
+/// Rows that only a tolerance or the treatment of edges tells apart are compared with their own.
+#[test]
+fn tolerances_and_edges_are_told_apart() {
+    let with = |tolerance, edges, ms| {
+        let mut row = timed([ms; 4], DrawStage::Fragment);
+        row.settings.method = Method::DEFAULT;
+        row.settings.tolerance = revmap::settings::Tolerance::new(tolerance).unwrap();
+        row.settings.edges = edges;
+        row
+    };
+    let (one, four) = (Edges::OneRay, Edges::Rays(4));
+    let run = run(&[
+        with(0.0, one, 10.0),
+        with(0.25, one, 5.0),
+        with(0.0, four, 40.0),
+    ]);
+    let found = compare(run.path(), run.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Even; 3]);
+    let ratios: Vec<f64> = found.pairs.iter().map(|p| p.time.unwrap().value).collect();
+    assert_eq!(ratios, [1.0; 3]);
+    let text = as_text(&found, None);
+    for name in ["exact 0 1 ray ", "exact 0.25 1 ray ", "exact 0 4 rays "] {
+        assert!(text.contains(name), "{text}");
+    }
 }

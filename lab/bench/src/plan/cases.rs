@@ -45,6 +45,8 @@ pub struct Plan {
     pub truth_rays: u32,
     /// True if errors are measured in pixels too.
     pub pixel_errors: bool,
+    /// True if times are those of the wall clock, also where the device has a clock.
+    pub wall_clock: bool,
 }
 
 impl Plan {
@@ -57,6 +59,7 @@ impl Plan {
             mixed: false,
             truth_rays: 1,
             pixel_errors: false,
+            wall_clock: false,
         }
     }
 

@@ -63,6 +63,34 @@ pub fn load(files: &[PathBuf]) -> Result<Vec<Named>> {
     Ok(all)
 }
 
+/// A warning for each submission that drew another scene under a name than one before it, and one for
+/// all that do not say what they drew.
+#[must_use]
+pub fn warnings(all: &[Named]) -> Vec<String> {
+    let different = |(number, one): (usize, &Named)| {
+        let differing = |other: &Named| -> Vec<String> {
+            let views = one.submission.drawn.iter();
+            let known = |name: &String| other.submission.drawn.get(name);
+            let views = views.filter(|(name, own)| known(name).is_some_and(|d| d != *own));
+            views.map(|(name, _)| name.clone()).collect()
+        };
+        let mut others = all[..number].iter().map(|o| (o, differing(o)));
+        let (other, views) = others.find(|(_, views)| !views.is_empty())?;
+        let (a, b, views) = (&other.file, &one.file, views.join(", "));
+        Some(format!(
+            "{a} and {b} drew different scenes as {views}: their figures do not compare"
+        ))
+    };
+    let silent = all.iter().filter(|one| one.submission.drawn.is_empty());
+    let silent: Vec<&str> = silent.map(|one| one.file.as_str()).collect();
+    let silent = (!silent.is_empty()).then(|| {
+        let files = silent.join(", ");
+        format!("no digests of scenes in {files}, of an earlier version: views of one name are taken for one scene")
+    });
+    let found = all.iter().enumerate().filter_map(different);
+    found.chain(silent).collect()
+}
+
 /// Writes `results.csv`, `report.html` and the charts; returns the table that is printed, for a
 /// terminal of this width if it is for one.
 ///
@@ -74,6 +102,7 @@ pub fn write(all: &[Named], folder: &Path, width: Option<usize>) -> Result<Strin
     all.iter().for_each(|one| page.lead(finding(one)));
     page.chapter("Devices");
     page.table(&devices(all));
+    warnings(all).iter().for_each(|text| page.text(text));
     page.chapter("Against the RBM baseline");
     page.text("Each method's time of a frame over that of one RBM baseline for both stages, drawn in the fragment stage by the same device: geometric means over the pictures, with 95 % intervals. Below 1 the method is faster. Ratios of devices compare; times depend on what else a machine does.");
     for (count, figure) in charts(all).into_iter().enumerate() {

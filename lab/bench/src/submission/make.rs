@@ -2,6 +2,7 @@
 
 use super::{Described, FORMAT, Line, OnePicture, OneShader, Pictures, Submission, figure, short};
 use crate::columns::Context;
+use crate::drawn::Drawn;
 use crate::exhibit::cell;
 use crate::machine::Machine;
 use crate::measure::Measured;
@@ -63,6 +64,7 @@ pub fn make(
         plan: plan_name.to_owned(),
         date: machine.date.chars().take("2026-01-31".len()).collect(),
         clock: clock(&measured.rows, report.kind).to_owned(),
+        drawn: Drawn::of(plan).digests(),
         size: rows.first().map(|r| r.size()).unwrap_or_default(),
         device: Described {
             name: report.name.clone(),

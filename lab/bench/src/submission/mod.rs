@@ -8,6 +8,7 @@ mod make;
 
 pub use make::make;
 
+use super::drawn::fnv1a_64;
 use super::measure::RenderedCase;
 use super::stats::Interval;
 use crate::method::MethodSettings;
@@ -53,6 +54,9 @@ pub struct Submission {
     pub clock: String,
     /// Pixels of each picture: `800x600`.
     pub size: String,
+    /// A digest of the scene of each view; none in files of earlier versions.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub drawn: BTreeMap<String, String>,
     /// The device.
     pub device: Described,
     /// The main table: every method in both stages, over groups of pictures.
@@ -167,11 +171,14 @@ impl Submission {
         ] {
             text += &format!("{key} = {}\n", inline(value)?);
         }
+        if !self.drawn.is_empty() {
+            text += &format!("drawn = {}\n", inline(&self.drawn)?);
+        }
         text += &format!("device = {}\n", inline(&self.device)?);
         text += &list("lines", &self.lines)?;
         text += &list("pictures", &self.pictures)?;
         text += &list("shaders", &self.shaders)?;
-        let sum = fnv1a_64(text.as_bytes());
+        let sum = fnv1a_64(text.bytes());
         Ok(format!("{text}{SUM}\"{sum:016x}\"\n"))
     }
 
@@ -199,7 +206,7 @@ impl Submission {
             );
             return fault(&message);
         }
-        let sum = format!("{SUM}\"{:016x}\"", fnv1a_64(content.as_bytes()));
+        let sum = format!("{SUM}\"{:016x}\"", fnv1a_64(content.bytes()));
         if last.trim_end() != sum {
             return fault(
                 "was changed: its checksum differs from its content; get the file again from its sender",
@@ -257,13 +264,6 @@ fn short(value: f64) -> f64 {
     super::names::number(value, 5).parse().unwrap_or(value)
 }
 
-/// FNV-1a of 64 bits (Fowler, Noll, Vo).
-fn fnv1a_64(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
-
 /// Checksums of the pictures of a run: 64 bits over the colours of all pixels, four bytes each, as a
 /// PNG stores them.
 #[derive(Default)]
@@ -276,7 +276,7 @@ impl Pictures {
     /// [`ErrorKind::OutOfHostMemory`].
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let picture = Picture::of(seen.frame)?;
-        let sum = fnv1a_64(picture.rgba.as_flattened());
+        let sum = fnv1a_64(picture.rgba.as_flattened().iter().copied());
         self.0.push((seen.case.view, seen.case.settings, sum));
         Ok(())
     }

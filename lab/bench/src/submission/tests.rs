@@ -138,7 +138,7 @@ fn files_that_cannot_count_are_refused() {
     let text = made("card", "cpu", 0.1).text().unwrap();
     let signed = |text: &str| {
         let end = text.rfind(SUM).unwrap();
-        let sum = fnv1a_64(&text.as_bytes()[..end]);
+        let sum = fnv1a_64(text[..end].bytes());
         format!("{}{SUM}\"{sum:016x}\"\n", &text[..end])
     };
     for (from, to, wanted) in [
@@ -186,6 +186,7 @@ fn devices_stand_side_by_side() {
     let all = gather::load(&files).unwrap();
     let labels: Vec<&str> = all.iter().map(|one| one.label.as_str()).collect();
     assert_eq!(labels, ["card 1.2 (1)", "card 1.2 (2)", "other 1.2"]);
+    assert_eq!(gather::warnings(&all), [""; 0]);
     let out = folder.path().join("out");
     std::fs::create_dir(&out).unwrap();
     let said = gather::write(&all, &out, None).unwrap();
@@ -209,14 +210,31 @@ fn devices_stand_side_by_side() {
     );
 }
 
-/// Vectors of <http://www.isthe.com/chongo/tech/comp/fnv/>.
+/// Submissions of other programs may have another suite: it is told, and so is a file that does not
+/// say what it drew.
 #[test]
-fn the_published_vectors() {
-    for (text, sum) in [
-        ("", 0xcbf2_9ce4_8422_2325),
-        ("a", 0xaf63_dc4c_8601_ec8c),
-        ("foobar", 0x8594_4171_f739_67e8),
-    ] {
-        assert_eq!(fnv1a_64(text.as_bytes()), sum, "{text}");
-    }
+fn submissions_of_different_scenes_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut other = made("other", "cpu", 0.1);
+    other.drawn.insert("spindle".to_owned(), "1".to_owned());
+    other.drawn.insert("vase".to_owned(), "2".to_owned());
+    let mut older = made("older", "cpu", 0.1);
+    older.drawn.clear();
+    let files = [
+        file(&folder, "a.toml", &made("card", "cpu", 0.1)),
+        file(&folder, "b.toml", &other),
+        file(&folder, "c.toml", &older),
+    ];
+    let all = gather::load(&files).unwrap();
+    let told = gather::warnings(&all);
+    assert_eq!(told.len(), 2, "{told:?}");
+    let wanted = "a.toml and b.toml drew different scenes as spindle: ";
+    assert!(
+        told[0].starts_with(wanted) && !told[0].contains("vase"),
+        "{told:?}"
+    );
+    assert!(
+        told[1].starts_with("no digests of scenes in c.toml"),
+        "{told:?}"
+    );
 }

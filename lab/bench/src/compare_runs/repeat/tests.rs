@@ -36,7 +36,7 @@ fn rows(part: f64, wrong: usize) -> Vec<Row> {
 fn unlike(kept: &[Row], new: &[Row]) -> Vec<(Verdict, String)> {
     let (kept, new) = (folder_of(kept, "dev", "drv"), folder_of(new, "dev", "drv"));
     let methods = ["exact", "baseline"].map(str::to_owned);
-    let claims = claims(kept.path(), new.path(), &methods).unwrap();
+    let (claims, _) = claims(kept.path(), new.path(), &methods).unwrap();
     let unlike = claims
         .into_iter()
         .filter(|c| c.verdict != Verdict::Repeated);
