@@ -100,17 +100,10 @@ fn stretch(view: &View) -> f64 {
     if view.parallel {
         return 1.0;
     }
-    let [low, high] = view.corners();
-    [
-        (low.x, low.y),
-        (high.x, low.y),
-        (low.x, high.y),
-        (high.x, high.y),
-    ]
-    .map(|(x, y)| view.dir_00 + (x - 0.5) * view.dir_x + (y - 0.5) * view.dir_y)
-    .map(|ray| ray.length() / ray.dot(view.forward))
-    .into_iter()
-    .fold(1.0, f64::max)
+    (view.corner_rays())
+        .map(|ray| ray.length() / ray.dot(view.forward))
+        .into_iter()
+        .fold(1.0, f64::max)
 }
 
 /// A pixel's shorter side at unit depth.

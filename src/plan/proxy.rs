@@ -26,16 +26,20 @@ fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
 /// True if rays to all of an object's copies begin outside of the solid, and the box cuts nothing
 /// of it.
 pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
-    let apart = |copy| is_apart(surface, seen_from(object, copy, view).0);
+    let reach = view.farthest_start();
+    let apart = |copy: &Placement| {
+        let eye = seen_from(object, copy, view).0;
+        is_apart(surface, eye, reach / copy.scale.min_element())
+    };
     !view.parallel && is_whole(object, surface) && object.placements().iter().all(apart)
 }
 
-/// True if a point of object space, relative to the axis, is clear of the solid's bounding
-/// cylinder.
-pub(crate) fn is_apart(surface: &OffsetSurface, point: DVec3) -> bool {
+/// True if a ball about a point of object space, relative to the axis, is clear of the solid's
+/// bounding cylinder. `reach`: the ball's radius.
+pub(crate) fn is_apart(surface: &OffsetSurface, point: DVec3, reach: f64) -> bool {
     let [r_max, z_min, z_max] = surface.extent();
-    let point = flat(point);
-    point.x > r_max + CLEARANCE || point.y < z_min - CLEARANCE || point.y > z_max + CLEARANCE
+    let (point, far) = (flat(point), CLEARANCE + reach);
+    point.x > r_max + far || point.y < z_min - far || point.y > z_max + far
 }
 
 /// The eye, relative to the axis, and the direction of sight, both in object space. The depth of a

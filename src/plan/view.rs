@@ -17,6 +17,16 @@ pub enum DepthOrder {
     Reversed,
 }
 
+impl DepthOrder {
+    /// The depth of the near plane in clip space, and 1 if depth grows away from the eye, else -1.
+    pub(crate) fn near_and_sense(self) -> [f64; 2] {
+        match self {
+            Self::Normal => [0.0, 1.0],
+            Self::Reversed => [1.0, -1.0],
+        }
+    }
+}
+
 /// The rectangle of the framebuffer onto which the view is projected, in pixels. It may be partly or
 /// wholly outside of the framebuffer: what is outside is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +95,8 @@ pub struct View {
     pub(crate) depth_bias: f64,
     /// `t` of the near plane.
     pub(crate) near: f64,
+    /// `t` at which rays begin: that of the near plane, or 0 in a scene's view.
+    pub(crate) start: f64,
     pub(crate) order: DepthOrder,
     pub(crate) viewport: Viewport,
     pub(crate) parallel: bool,
@@ -104,7 +116,7 @@ impl View {
     pub const ROW_STEP: u32 = GROUP_PIXELS;
 
     /// The view of `camera` for pictures of `size` pixels. Depth is 0 at `near` and 1 at `far`,
-    /// both measured along the view.
+    /// both measured along the view. Rays begin at `near`: that plane cuts solids.
     ///
     /// # Errors
     /// The errors of [`CameraFrame::new`]; [`ErrorKind::Content`] unless `0 < near < far`.
@@ -145,6 +157,7 @@ impl View {
         Ok(Self {
             depth: [constant, factor],
             near,
+            start: near,
             ray_width,
             ..Self::of_rays(camera.eye, rays, clip_from_world, viewport)
         })
@@ -169,6 +182,7 @@ impl View {
             depth_range: [0.0, 1.0],
             depth_bias: 0.0,
             near: 0.0,
+            start: 0.0,
             order: DepthOrder::Normal,
             viewport,
             parallel: false,
@@ -291,11 +305,16 @@ impl View {
 
     /// The view of a host's matrices, which act on column vectors. `projection * view` takes a
     /// world point to Vulkan's clip space (`0 <= z <= w`). The projection may include jitter, an
-    /// off-centre frustum, infinite depth or reversed depth.
+    /// off-centre frustum, infinite depth or reversed depth. Rays begin at the near plane, which
+    /// cuts solids as it cuts meshes.
+    ///
+    /// A projection of OpenGL (`-w <= z <= w`) is not refused, for it is a projection of Vulkan with a
+    /// near plane where `z` is 0: in perspective about twice as far away as meant.
     ///
     /// # Errors
-    /// [`ErrorKind::Content`] for a projection whose near plane is not at right angles to the view,
-    /// or that mirrors the picture; for an empty viewport; for numbers that are not finite.
+    /// [`ErrorKind::Content`] for a projection whose depth runs against `order`, whose near plane is
+    /// not at right angles to the view, or that mirrors the picture; for an empty viewport; for
+    /// numbers that are not finite.
     pub fn from_matrices(
         view: DMat4,
         projection: DMat4,
@@ -344,39 +363,46 @@ impl View {
                 "the view mirrors the picture; turn one axis of the projection or of the viewport round",
             ));
         }
-        let near_value = f64::from(u8::from(order == DepthOrder::Reversed));
+        let [near_value, sense] = order.near_and_sense();
+        // The sign decides about both planes: the far one is behind the near one, or at infinity.
+        if sense * factor >= 0.0 {
+            return Err(wrong(format!(
+                "the projection's {}; give a projection for this depth order",
+                against(order)
+            )));
+        }
         let near = factor / (near_value - constant);
         if !(near > 0.0 && near.is_finite()) {
             return Err(wrong(
-                "the near plane is not in front of the eye; give a projection for this depth order",
+                "the near plane is not in front of the eye; give a projection whose near plane is",
             ));
         }
         let rays = [dir_00, dir_x, dir_y, forward];
         Ok(Self {
             depth: [constant, factor],
             near,
+            start: near,
             order,
             ..Self::of_rays(eye, rays, clip_from_world, viewport)
         })
     }
 
     /// The view of a scene's camera for pictures of `size` pixels, with a depth range that contains
-    /// every solid before the eye. The near end is at least a ten-thousandth of the far one.
+    /// every solid before the eye. The near end is at least a ten-thousandth of the far one, and cuts
+    /// nothing: rays begin at the eye.
     ///
     /// # Errors
     /// The errors of [`CameraFrame::new`].
     pub fn of_scene(scene: &Scene, size: (u32, u32)) -> Result<Self> {
         let camera = CameraFrame::new(&scene.camera, size.0, size.1)?;
-        Self::from_camera(&scene.camera, size, camera.depth_range(scene))
+        let view = Self::from_camera(&scene.camera, size, camera.depth_range(scene))?;
+        Ok(Self { start: 0.0, ..view })
     }
 
     /// The view of parallel rays that begin in the near plane, where `t` is 0.
     fn parallel(clip_from_world: DMat4, viewport: Viewport, order: DepthOrder) -> Result<Self> {
         let inverse = clip_from_world.inverse();
-        let (near_value, sense) = match order {
-            DepthOrder::Normal => (0.0, 1.0),
-            DepthOrder::Reversed => (1.0, -1.0),
-        };
+        let [near_value, sense] = order.near_and_sense();
         let point = |x: f64, y: f64| {
             let p = inverse * viewport.clip(x, y).extend(near_value).extend(1.0);
             p.truncate() / p.w
@@ -392,10 +418,16 @@ impl View {
         let level = dir_x.dot(forward).abs() + dir_y.dot(forward).abs();
         let finite = forward.is_finite() && w != 0.0;
         let is_level = level <= 1e-6 * (dir_x.length() + dir_y.length());
-        if !(finite && turned > 0.0 && is_level) {
+        if !(finite && is_level) {
             return Err(wrong(
-                "the parallel projection is oblique, mirrors, or is none; give one at right angles to the view, for this depth order",
+                "the parallel projection is oblique, or is none; give one at right angles to the view",
             ));
+        }
+        if turned <= 0.0 {
+            return Err(wrong(format!(
+                "the parallel projection mirrors the picture, or its {}; turn one axis round, or give a projection for this depth order",
+                against(order)
+            )));
         }
         let rays = [forward, dir_x, dir_y, forward];
         Ok(Self {
@@ -483,6 +515,24 @@ impl View {
     pub(crate) fn pixel_size(&self) -> f64 {
         self.dir_x.length()
     }
+
+    /// The directions through the corners of the viewport, in perspective.
+    pub(crate) fn corner_rays(&self) -> [DVec3; 4] {
+        let [low, high] = self.corners();
+        [
+            [low.x, low.y],
+            [high.x, low.y],
+            [low.x, high.y],
+            [high.x, high.y],
+        ]
+        .map(|[x, y]| self.dir_00 + (x - 0.5) * self.dir_x + (y - 0.5) * self.dir_y)
+    }
+
+    /// The largest distance from the eye at which a ray begins, in perspective.
+    pub(crate) fn farthest_start(&self) -> f64 {
+        let lengths = self.corner_rays().map(DVec3::length);
+        self.start * lengths.into_iter().fold(0.0, f64::max)
+    }
 }
 
 /// The direction around which the picture's axes turn.
@@ -500,6 +550,14 @@ fn check_steps(first: DVec3, steps: [DVec3; 2]) -> Result<()> {
     Err(wrong(
         "a pixel of this viewport and projection is no number; give sizes and positions in pixels",
     ))
+}
+
+/// The fault of a projection whose depth runs against an order.
+fn against(order: DepthOrder) -> &'static str {
+    match order {
+        DepthOrder::Normal => "depth does not grow from 0 at the near plane",
+        DepthOrder::Reversed => "depth does not fall from 1 at the near plane",
+    }
 }
 
 fn wrong(message: impl Into<String>) -> Error {

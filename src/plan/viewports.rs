@@ -1,4 +1,5 @@
-//! Views and plans of viewports of any numbers: refused by name, or planned within the picture.
+//! Views of any matrices, and plans of viewports of any numbers: refused by name, or planned within
+//! the picture.
 #![allow(clippy::unwrap_used)]
 
 use super::path::Conditions;
@@ -266,6 +267,80 @@ fn depths_are_in_the_range_of_the_viewport() {
         ] {
             let error = plain.with_depth_range(range).unwrap_err();
             assert!(error.to_string().contains("depth range"), "{error}");
+        }
+    }
+}
+
+/// Depths in clip space at the near and the far plane of a projection, and the distance of the far
+/// plane.
+#[derive(Clone, Copy, Debug)]
+struct Range {
+    ends: [f64; 2],
+    far: f64,
+}
+
+/// A view along x through a projection of this range.
+fn view_of_range(of: Range, parallel: bool, order: DepthOrder) -> Result<View> {
+    let (near, [first, last]) = (0.1, of.ends);
+    let deep = of.far - near;
+    // Depth is (z x + w) / x in perspective, z x + w for parallel rays.
+    let (z, w, bottom) = match (parallel, of.far.is_finite()) {
+        (true, _) => (
+            (last - first) / deep,
+            first - near * (last - first) / deep,
+            DVec4::W,
+        ),
+        (_, true) => {
+            let z = (of.far * last - near * first) / deep;
+            (z, near * (first - z), DVec4::X)
+        }
+        (_, false) => (last, near * (first - last), DVec4::X),
+    };
+    let lens = DMat4::from_cols(
+        DVec4::new(0.0, -1.0, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0, 0.0),
+        DVec4::new(z, 0.0, 0.0, w),
+        bottom,
+    );
+    let viewport = Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: 64.0,
+        height: 48.0,
+    };
+    View::from_matrices(DMat4::IDENTITY, lens.transpose(), viewport, order)
+}
+
+/// A projection whose depth runs against the order of the pass is refused, whatever its rays, its far
+/// plane and its range are: otherwise far solids are drawn over near ones.
+#[test]
+fn projections_of_the_other_depth_order_are_refused() {
+    const VULKAN: [f64; 2] = [0.0, 1.0];
+    const OPENGL: [f64; 2] = [-1.0, 1.0];
+    for parallel in [false, true] {
+        for far in [100.0, 0.2, f64::INFINITY] {
+            // Parallel rays without a far plane have no depths.
+            if parallel && far.is_infinite() {
+                continue;
+            }
+            for [a, b] in [VULKAN, OPENGL] {
+                for (ends, order, other) in [
+                    ([a, b], DepthOrder::Normal, DepthOrder::Reversed),
+                    ([b, a], DepthOrder::Reversed, DepthOrder::Normal),
+                ] {
+                    let of = Range { ends, far };
+                    let view = view_of_range(of, parallel, order);
+                    assert!(view.is_ok(), "{parallel} {of:?} {order:?}: {view:?}");
+                    let error = view_of_range(of, parallel, other).unwrap_err();
+                    assert_eq!(error.kind, ErrorKind::Content);
+                    assert_eq!(error.key.as_deref(), Some("view"));
+                    let remedy = "give a projection for this depth order";
+                    assert!(
+                        error.message.contains(remedy),
+                        "{parallel} {of:?} {other:?}: {error}"
+                    );
+                }
+            }
         }
     }
 }

@@ -21,6 +21,7 @@ mod embedding;
 mod embedding_bias;
 mod embedding_crowds;
 mod embedding_lists;
+mod embedding_near;
 mod embedding_outputs;
 mod embedding_samples;
 mod embedding_tools;

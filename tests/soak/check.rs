@@ -41,8 +41,6 @@ pub enum Fault {
 pub struct Same {
     /// Pixels that show a solid.
     pub hits: usize,
-    /// Pixels at the near plane that differ.
-    pub tied: usize,
     /// True if some object took another draw path.
     pub other_path: bool,
 }
@@ -108,70 +106,24 @@ pub fn check(host: &Host, device: &Device, drawn: &Drawn, fault: Fault) -> Resul
             }
         }
     }
-    let mut same = Same {
+    let same = Same {
         hits,
-        tied: 0,
         other_path: drawn.paths != new.paths,
     };
     if wrong.is_empty() {
         return Ok(same);
     }
-    let (count, at_near) = (wrong.len(), near_plane(host, device, drawn, &model)?);
-    wrong.retain(|pixel| !at_near[*pixel]);
-    same.tied = count - wrong.len();
-    if wrong.is_empty() {
-        return Ok(same);
-    }
     found(format!(
-        "{}: {} pixels differ from a fresh renderer's, {} beside them at the near plane:{text} drawn by {}; \
+        "{}: {} pixels differ from a fresh renderer's:{text} drawn by {}; \
          fresh {}; {} objects, {} copies, view {} of {kind:?}",
         drawn.name,
         wrong.len(),
-        same.tied,
         summary(&drawn.paths),
         summary(&new.paths),
         drawn.model.things.len(),
         drawn.model.copies(),
         drawn.seen.name,
     ))
-}
-
-/// The pixels that show the near plane within a solid. If several solids are there, all have its
-/// depth, and the order of draws decides which one shows.
-fn near_plane(
-    host: &Host,
-    device: &Device,
-    drawn: &Drawn,
-    model: &Model,
-) -> Result<Vec<bool>, Finding> {
-    let mut kind = (*drawn.kind).clone();
-    let several = kind.options.samples > 1;
-    kind.options.samples = 1;
-    let pixels = kind.pixels();
-    let near: f32 = if kind.options.reversed { 1.0 } else { 0.0 };
-    let one = Drawn {
-        kind: Rc::new(kind),
-        depths: true,
-        model: drawn.model.clone(),
-        paths: Vec::new(),
-        planes: Vec::new(),
-        name: String::new(),
-        seen: drawn.seen,
-    };
-    let planes = fresh(host, device, &one, model)?.planes;
-    // Compute has the depths first, in the same buffer.
-    let depths = &planes[planes.len() - 1][..4 * pixels];
-    let is_near = |n: usize| depths[4 * n..4 * n + 4] == near.to_le_bytes();
-    let width = one.kind.width();
-    let beside = |n: usize| {
-        let reach = usize::from(several);
-        let (x, y) = (n % width, n / width);
-        (y.saturating_sub(reach)..=(y + reach).min(pixels / width - 1)).any(|y| {
-            let row = x.saturating_sub(reach)..=(x + reach).min(width - 1);
-            row.into_iter().any(|x| is_near(y * width + x))
-        })
-    };
-    Ok((0..pixels).map(beside).collect())
 }
 
 fn fresh(host: &Host, device: &Device, drawn: &Drawn, model: &Model) -> Result<Fresh, Finding> {

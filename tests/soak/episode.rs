@@ -181,7 +181,6 @@ impl<'a> Episode<'a> {
             let tally = &mut self.log.tally;
             tally.count("compared", 1);
             tally.count("compared with hits", u64::from(same.hits > 0));
-            tally.count("pixels at the near plane", same.tied as u64);
             tally.count("other draw paths", u64::from(same.other_path));
             let name = drawn.seen.name;
             tally.count(format!("view {name}"), 1);

@@ -81,7 +81,8 @@ pub struct RevmapCamera {
 }
 
 /// A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
-/// (0 <= z <= w).
+/// (0 <= z <= w). A projection whose depth runs against depth_order is refused. The near plane cuts
+/// solids as it cuts meshes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RevmapView {

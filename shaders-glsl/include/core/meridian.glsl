@@ -7,7 +7,7 @@
 const uint FACE_X = 0u;
 const uint FACE_Y = 1u;
 const uint FACE_Z = 2u;
-const uint FACE_NONE = 3u; // the eye, or the clipping cylinder
+const uint FACE_NONE = 3u; // the start of the ray, or the clipping cylinder
 
 struct Meridian {
     vec3 o; // point at s = 0, relative to the axis
@@ -28,10 +28,10 @@ vec2 point_rz(Meridian m, float s)
     return vec2(sqrt(max(rr, 0.0)), m.o.z + s * m.v.z);
 }
 
-// Clips the ray `eye + t v`, t >= -base, to the box, the solid's height and the cylinder around it. Returns false if
+// Clips the ray `eye + t v`, t >= start, to the box, the solid's height and the cylinder around it. Returns false if
 // the ray misses them. There is a single return: software drivers execute both sides of a branch, and an early return
 // adds a lane mask to all that follows.
-bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
+bool clip_ray(vec3 eye, vec3 v, float base, float start, out Meridian m)
 {
     float R = shape.half_side;
     vec3 low = vec3(-R - shape.axis, shape.clip_low);
@@ -51,9 +51,9 @@ bool clip_ray(vec3 eye, vec3 v, float base, out Meridian m)
     float t_out = min(far.x, min(far.y, far.z));
     m.face_in = t_in == near.z ? FACE_Z : t_in == near.x ? FACE_X : FACE_Y;
     m.face_out = t_out == far.z ? FACE_Z : t_out == far.x ? FACE_X : FACE_Y;
-    m.from_eye = t_in <= -base;
+    m.from_eye = t_in <= start;
     m.face_in = m.from_eye ? FACE_NONE : m.face_in;
-    t_in = max(t_in, -base);
+    t_in = max(t_in, start);
 
     m.base = base;
     m.v = v;

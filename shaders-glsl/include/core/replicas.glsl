@@ -34,7 +34,7 @@ bool is_solid(vec3 p, inout uint steps)
 #endif
 }
 
-bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
+bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout Hit hit)
 {
     // Lattice units: a cell has size 1 and the box's lower corner is at 0.
     vec3 count = vec3(shape.replicas);
@@ -46,7 +46,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
     vec3 t_high = (count - o) * inverse;
     vec3 near = min(t_low, t_high);
     vec3 far = max(t_low, t_high);
-    float t = max(max(near.x, near.y), max(near.z, -base));
+    float t = max(max(near.x, near.y), max(near.z, start));
     float t_out = min(far.x, min(far.y, far.z));
     vec3 stride = vec3(greaterThanEqual(d, vec3(0.0)));
     vec3 cell = clamp(floor(o + t * d), vec3(0.0), count - 1.0);
@@ -61,7 +61,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
             local = in_cell(o, cell);
             local_v = d * sense * size;
         }
-        bool met = trace_solid(local, local_v, base, REPLICAS == 0u ? span : EVERYWHERE, inside, hit);
+        bool met = trace_solid(local, local_v, base, start, REPLICAS == 0u ? span : EVERYWHERE, inside, hit);
         vec3 next = (cell + stride - o) * inverse;
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
@@ -85,11 +85,13 @@ bool trace_replicas(vec3 eye, vec3 v, float base, vec2 span, inout Hit hit)
     return false;
 }
 
-// Traces the ray `eye + t v`, t >= -base. The ray has no hit outside the range `span` of t.
+// Traces the ray `eye + t v`. The eye is at t = -base, or the point that is shaded. The ray begins there, or at the near
+// plane, before which nothing is where rays begin outside of all solids. It has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit = NO_HIT;
-    return trace_replicas(eye, v, base, span, hit);
+    float start = (OUTSIDE == 1u || casts() ? 0.0 : frame_block.ray_start) - base;
+    return trace_replicas(eye, v, base, start, span, hit);
 }
 
 #endif

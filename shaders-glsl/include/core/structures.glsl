@@ -52,6 +52,9 @@ struct FrameData {
     float depth_range; // its value of depth 1, minus first_depth
     float far_depth; // depth in clip space of the far plane
     float ray_width; // width of the part of a pixel that a ray stands for: 1, or less if a pixel has several rays
+    float ray_start; // depth at which rays from the eye begin: that of a host's near plane, 0 in a scene's view
+    float unused;
+    vec2 unused_too;
     Light lights[MAX_LIGHTS];
 };
 

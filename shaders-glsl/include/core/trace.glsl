@@ -61,10 +61,10 @@ uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout
 //
 // `hit.steps` counts look-ups even without a hit. `inside`: the ray comes from a replica that is solid where the ray
 // enters. `span`: range of t outside which the ray has no hit.
-bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
+bool trace_solid(vec3 eye, vec3 v, float base, float start, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
-    if (!clip_ray(eye, v, base, m)) {
+    if (!clip_ray(eye, v, base, start, m)) {
         return false;
     }
     float s = 0.0;

@@ -3,8 +3,8 @@
 use crate::gpu::content::entry::{Last, PreparedObject};
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::vk::output::Output;
+use crate::plan::View;
 use crate::plan::casters::Hierarchy;
-use crate::plan::{DepthOrder, View};
 use crate::scene::{Lighting, Object, Placement};
 use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT};
 use crate::shader::{
@@ -165,10 +165,7 @@ pub(super) fn frame_block(
     }
     let [constant, factor] = view.clip_depth();
     let [least, most] = view.depth_range;
-    let (sense, near_depth) = match view.order {
-        DepthOrder::Normal => (1.0, 0.0),
-        DepthOrder::Reversed => (-1.0, 1.0),
-    };
+    let [near_depth, sense] = view.order.near_and_sense().map(|value| value as f32);
     let [clip_x, clip_y] = view.clip_rows();
     let v = &view.viewport;
     let [width, height] = [v.width, v.height.abs()].map(|side| side as u32);
@@ -202,6 +199,7 @@ pub(super) fn frame_block(
         depth_range: (most - least) as f32,
         far_depth: 1.0 - near_depth,
         ray_width: (view.ray_width * output.ray_width()) as f32,
+        ray_start: view.start as f32,
         lights,
         ..FrameBlock::default()
     }

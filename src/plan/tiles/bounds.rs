@@ -20,6 +20,10 @@ pub(crate) struct Cylinder {
 /// is its depth.
 pub(crate) struct Projector {
     eye: DVec3,
+    /// Depth at which rays begin.
+    pub(super) start: f64,
+    /// The largest distance from the eye at which a ray begins.
+    farthest_start: f64,
     rows: DMat3,
     /// Products of each map with itself, and of the first two with the third.
     squares: DVec3,
@@ -91,6 +95,8 @@ impl Projector {
                 last_pixel(high.y).min(MOST_PIXELS as i32 - 1),
             ],
             eye: view.eye,
+            start: view.start,
+            farthest_start: view.farthest_start(),
             squares: rows.map(DVec3::length_squared).into(),
             products: DVec2::new(rows[0].dot(rows[2]), rows[1].dot(rows[2])),
             rows: DMat3::from_cols_array_2d(&rows.map(|r| r.to_array())).transpose(),
@@ -132,6 +138,11 @@ impl Projector {
             eye: -(turn.transpose() * place) / copy.scale,
             least_scale: copy.scale.min_element(),
         }
+    }
+
+    /// The largest distance from the eye at which a ray begins, object units.
+    pub fn reach(&self, axes: &ProjectedAxes) -> f64 {
+        self.farthest_start / axes.least_scale
     }
 
     /// A length in object units that covers at least the margin everywhere on a cylinder.

@@ -124,7 +124,8 @@ impl Cover {
         }
     }
 
-    /// Adds the pixels that a copy hides. The copy must be wholly in front of the eye.
+    /// Adds the pixels that a copy hides. The copy must be wholly behind the
+    /// near plane.
     pub fn add(&mut self, axes: &ProjectedAxes, inner: &Cylinders, pixels: [u16; 4]) {
         let high = pixels[3] - pixels[1];
         // The section through the axis that faces the eye.

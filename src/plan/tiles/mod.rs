@@ -164,7 +164,7 @@ impl<'a> Visible<'a> {
         }
     }
 
-    /// True if the eye is outside of all copies of a batch that may show.
+    /// True if rays begin outside of all copies of a batch that may show.
     pub fn is_apart(&self, batch: usize) -> bool {
         self.batches[batch].surface.is_some() && self.strips.iter().all(|s| s.apart[batch])
     }

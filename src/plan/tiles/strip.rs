@@ -49,7 +49,7 @@ pub(super) struct Strip<'a> {
     tiles: Vec<[u32; 2]>,
     /// Number of every instance that may show.
     pub copies: Vec<u32>,
-    /// For each batch, true if the eye is outside of the bounding cylinder of each copy that may show.
+    /// For each batch, true if rays begin outside of the bounding cylinder of each copy that may show.
     pub apart: Vec<bool>,
 }
 
@@ -177,9 +177,12 @@ impl<'a> Strip<'a> {
         }
         self.copies.push(item.copy);
         if let Some(surface) = batch.surface {
-            self.apart[item.batch as usize] &= is_apart(surface, axes.eye);
+            let reach = self.projector.reach(&axes);
+            self.apart[item.batch as usize] &= is_apart(surface, axes.eye, reach);
         }
-        if let Some(inner) = batch.inner.filter(|_| in_front) {
+        // The near plane may cut what hides others.
+        let is_whole = f64::from(near) > self.projector.start;
+        if let Some(inner) = batch.inner.filter(|_| is_whole) {
             self.cover.add(&axes, inner, pixels);
         }
     }

@@ -86,8 +86,8 @@ pub extern "C" fn revmap_renderer_end_frame(renderer: *mut RevmapRenderer) -> Re
 }
 
 /// Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
-/// height pixels. Depth is 0 at near and 1 at far, both along the view. The output's depth order is
-/// REVMAP_DEPTH_ORDER_NORMAL.
+/// height pixels. Depth is 0 at near and 1 at far, both along the view, and near cuts solids. The
+/// output's depth order is REVMAP_DEPTH_ORDER_NORMAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_renderer_prepare_camera(
     renderer: *mut RevmapRenderer,

@@ -17,11 +17,11 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
     return true;
 }
 
-bool trace_solid(vec3 eye, vec3 v, float base, vec2 span, bool inside, inout Hit hit)
+bool trace_solid(vec3 eye, vec3 v, float base, float start, vec2 span, bool inside, inout Hit hit)
 {
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.
-    return clip_ray(eye, v, base, m) && shape.table_fact_2 != 0u && hit_at(eye, v, m.t_start, hit);
+    return clip_ray(eye, v, base, start, m) && shape.table_fact_2 != 0u && hit_at(eye, v, m.t_start, hit);
 }
 
 #endif

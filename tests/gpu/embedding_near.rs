@@ -1,0 +1,192 @@
+//! A host's near plane cuts solids as it cuts meshes: rays begin in it.
+#![allow(unsafe_code)]
+
+use crate::common::host::{self, Attachments, Host, Options, borrow, open, order, viewport};
+use crate::common::shapes;
+use crate::embedding::{hundred, options, three};
+use crate::embedding_outputs::{by_proxies_of, depth_only};
+use ash::vk;
+use glam::{DMat4, DVec3, DVec4};
+use rayon::prelude::*;
+use revmap::cast::RayCaster;
+use revmap::gpu::{Device, DrawPath, Output, PassFormats, View};
+use revmap::scene::{Clip, Scene, Shadow};
+use revmap::settings::{Planes, SearchSettings, Solver};
+use std::collections::HashSet;
+
+/// The matrices of a scene's camera with this near plane, for reversed depths without a far plane, or
+/// for usual ones.
+fn matrices(scene: &Scene, near: f64, options: &Options, parallel: bool) -> [DMat4; 2] {
+    let [view, mut lens] =
+        host::view_and_projection(scene.camera.eye, scene.camera.target, options);
+    let far = 50.0;
+    let (z, w) = match (parallel, options.reversed) {
+        (true, true) => (1.0 / (far - near), far / (far - near)),
+        (true, false) => (-1.0 / (far - near), -near / (far - near)),
+        (false, true) => (0.0, near),
+        (false, false) => (far / (near - far), near * far / (near - far)),
+    };
+    (lens.z_axis.z, lens.w_axis.z) = (z, w);
+    if parallel {
+        let wide = DVec4::new(1.0 / 0.8, -1.0 / 0.6, 1.0, 1.0);
+        lens = DMat4::from_cols(
+            DVec4::X * wide.x,
+            DVec4::Y * wide.y,
+            DVec4::Z * z,
+            DVec4::new(0.0, 0.0, w, 1.0),
+        );
+    }
+    [view, lens]
+}
+
+/// The depth along the view of what each pixel shows, by rays from the near plane.
+fn wanted(scene: &Scene, [view, lens]: [DMat4; 2], near: f64, options: &Options) -> Vec<f64> {
+    let objects = scene.objects.iter();
+    let casters: Vec<_> = objects.map(|o| RayCaster::new(o).unwrap()).collect();
+    let back = (lens * view).inverse();
+    let forward = -view.transpose().z_axis.truncate();
+    let (width, height) = (options.width, options.height);
+    let at = |size: u32, k: u32| 2.0 * (f64::from(k) + 0.5) / f64::from(size) - 1.0;
+    let first = if options.reversed { 1.0 } else { 0.0 };
+    let pixel = |n: u32| {
+        let (x, y) = (at(width, n % width), at(height, n / width));
+        let [from, to] = [first, 0.5].map(|z| back.project_point3(DVec3::new(x, y, z)));
+        let way = (to - from) / (to - from).dot(forward);
+        let hits = casters.iter().filter_map(|caster| caster.cast(from, way));
+        near + hits.map(|hit| hit.t).fold(f64::INFINITY, f64::min)
+    };
+    (0..width * height).into_par_iter().map(pixel).collect()
+}
+
+/// Depths of a scene in a pass of colours, in a pass of depths alone, and in compute.
+fn depths(
+    (host, device): (&Host, &Device),
+    scene: &Scene,
+    view: &View,
+    settings: &SearchSettings,
+    options: &Options,
+    parallel: bool,
+) -> Vec<(&'static str, Vec<f32>, Vec<DrawPath>)> {
+    let alone = PassFormats {
+        depth: order(options),
+        ..depth_only(parallel)
+    };
+    let color = PassFormats {
+        depth: order(options),
+        ..host::color_pass()
+    };
+    let mut passes = vec![("depth", alone, &[][..])];
+    if !parallel {
+        passes.push(("color", color, &[(host::COLOR, 4)]));
+    }
+    if settings.solver == Solver::Live && !parallel {
+        passes.remove(0);
+    }
+    let mut all = Vec::new();
+    for (name, pass, formats) in passes {
+        let into = Attachments::new(host, *options, formats).unwrap();
+        let mut renderer = host::renderer_of(device, Output::Pass(pass), settings, 1, scene);
+        let clears = vec![vk::ClearColorValue::default(); formats.len()];
+        host::draw_into(host, &into, &clears, &mut renderer, view, None);
+        all.push((name, into.depths(), renderer.draw_paths()));
+    }
+    if !parallel && !options.reversed {
+        let pixels = (options.width * options.height) as usize;
+        let mut words = vec![1f32.to_bits(); pixels];
+        words.resize(2 * pixels, 0);
+        let output = Output::Compute(Planes::Color);
+        let mut renderer = host::renderer_of(device, output, settings, 1, scene);
+        let found = host::draw_words(host, &words, &mut renderer, view, None);
+        let found = found[..pixels].iter().map(|word| f32::from_bits(*word));
+        all.push(("compute", found.collect(), renderer.draw_paths()));
+    }
+    all
+}
+
+/// What is before the near plane is not drawn, and what the plane cuts shows its inner side, by every
+/// search, draw path and stage.
+#[test]
+fn the_near_plane_cuts_solids() {
+    let host = open();
+    let device = borrow(&host);
+    let mut replicas = three();
+    replicas.objects[0].repeat = [2, 3, 1];
+    let mut cut = three();
+    cut.objects[0].clip = Clip::Box;
+    cut.objects[0].axis = [0.45, 0.5];
+    cut.objects[0].offset.extend = 0.3;
+    let mut shadows = three();
+    shadows.shadow = Shadow::Hard;
+    let mut within = three();
+    within.camera.eye = DVec3::new(0.02, 0.01, 0.5);
+    within.camera.target = DVec3::new(-0.3, 0.4, 0.45);
+    let mut alone = three();
+    alone.objects.truncate(1);
+    alone.objects[0].profile = shapes::glass().into();
+    let scenes = [
+        ("three", three(), vec![1.5, 2.95, 6.0]),
+        ("one", alone, vec![3.05]),
+        ("copies", hundred(), vec![2.6, 3.5]),
+        ("replicas", replicas, vec![2.9]),
+        ("cut by the box", cut, vec![3.1]),
+        ("shadows", shadows, vec![2.9]),
+        ("an eye within", within, vec![0.01, 0.3]),
+    ];
+    let of = |solver| SearchSettings {
+        solver,
+        ..SearchSettings::exact()
+    };
+    let searches = [
+        by_proxies_of(0),
+        by_proxies_of(u32::MAX),
+        of(Solver::Quadric),
+        of(Solver::Live),
+    ];
+    let mut paths = HashSet::new();
+    for (name, scene, all) in &scenes {
+        for (near, reversed, parallel) in all.iter().flat_map(|near| {
+            [(false, false), (true, false), (false, true)].map(|(r, p)| (*near, r, p))
+        }) {
+            let options = Options {
+                reversed,
+                ..options()
+            };
+            let both = matrices(scene, near, &options, parallel);
+            let [look, lens] = both;
+            let view = View::from_matrices(look, lens, viewport(&options), order(&options));
+            let view = view.unwrap();
+            let truth = wanted(scene, both, near, &options);
+            for settings in &searches {
+                if parallel && settings.solver == Solver::Live {
+                    continue;
+                }
+                let every = depths((&host, &device), scene, &view, settings, &options, parallel);
+                for (pass, found, own) in every {
+                    paths.extend(own);
+                    let off = |(depth, t): (&f32, &f64)| {
+                        let place =
+                            view.t_at(f64::from(*depth)) + if parallel { near } else { 0.0 };
+                        let empty = *depth == if reversed { 0.0 } else { 1.0 };
+                        let far = (place - t).abs() > 4e-3;
+                        if empty { t.is_finite() } else { far }
+                    };
+                    let wrong = found.iter().zip(&truth).filter(|pair| off(*pair)).count();
+                    let hits = truth.iter().filter(|t| t.is_finite()).count();
+                    let case = format!(
+                        "{name}, near {near}, reversed {reversed}, parallel {parallel}, {}, {pass}",
+                        settings.solver
+                    );
+                    println!("{case}: {wrong} of {hits}");
+                    let most = if settings.solver == Solver::Live {
+                        8
+                    } else {
+                        2
+                    };
+                    assert!(wrong <= most, "{case}: {wrong} of {hits}");
+                }
+            }
+        }
+    }
+    let every = [DrawPath::Cells, DrawPath::Box, DrawPath::Tiles];
+    assert!(every.iter().all(|path| paths.contains(path)), "{paths:?}");
+}
