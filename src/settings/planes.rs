@@ -5,7 +5,9 @@ use crate::error::{Result, usage};
 /// The requested planes of a frame; others are neither computed nor stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Planes {
-    /// Colour only, 8-bit sRGB.
+    /// Colour only. A pass gets linear RGBA, which the attachment's format encodes: give a view of an
+    /// `_SRGB` format. An attachment of a `_UNORM` format holds linear values, and a float format keeps
+    /// values above 1. Compute and pictures without a host have 8-bit sRGB.
     Color,
     /// Depth only, for shadow maps. In a host's pass only.
     Depth {
@@ -22,9 +24,9 @@ pub enum Planes {
 /// The values of one attachment. Channels that it does not name are 0, and alpha is 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Plane {
-    /// The shaded colour, linear RGBA. A float format keeps values above 1.
+    /// The shaded colour, linear RGBA, in formats as for [`Planes::Color`].
     Color,
-    /// The colour of the surface before light, linear RGB.
+    /// The colour of the surface before light, linear RGB, in formats as for [`Planes::Color`].
     BaseColor,
     /// The unit normal in the world, with bumps, facing the eye: x, y, z. Signed or float formats.
     Normal,

@@ -182,7 +182,9 @@ enum RevmapPlanes
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    /// Colour only, 8-bit sRGB.
+    /// Colour only. A pass gets linear RGBA, which the attachment's format encodes: give a view of an
+    /// _SRGB format. An attachment of a _UNORM format holds linear values, and a float format keeps
+    /// values above 1. Compute and pictures without a host have 8-bit sRGB.
     REVMAP_PLANES_COLOR = 0,
     /// Every plane of RevmapPlane, in 32-bit floats.
     REVMAP_PLANES_ALL = 1,
@@ -786,7 +788,8 @@ typedef struct RevmapPass {
     /// For a render pass: the pass. The pass must live as long as the renderer. Passes that are
     /// compatible with it may be begun instead.
     VkRenderPass render_pass;
-    /// For dynamic rendering: formats of the colour attachments; read during the call.
+    /// For dynamic rendering: formats of the colour attachments; read during the call. Colours are
+    /// linear, and the format encodes them: see REVMAP_PLANES_COLOR.
     const VkFormat *color_formats;
     /// For dynamic rendering: number of the colour attachments.
     uint32_t color_format_count;
@@ -839,7 +842,8 @@ typedef struct RevmapComputeTarget {
 } RevmapComputeTarget;
 
 /// A host's view. Vectors are columns, matrices are stored column by column, clip space is Vulkan's
-/// (0 <= z <= w).
+/// (0 <= z <= w). A projection whose depth runs against depth_order is refused. The near plane cuts
+/// solids as it cuts meshes.
 typedef struct RevmapView {
     /// sizeof(RevmapView).
     uint32_t size;
@@ -1202,8 +1206,8 @@ RevmapResult revmap_renderer_prepare(struct RevmapRenderer *renderer,
 RevmapResult revmap_renderer_end_frame(struct RevmapRenderer *renderer);
 
 /// Prepares the frame like revmap_renderer_prepare(), seen by a camera in pictures of width *
-/// height pixels. Depth is 0 at near and 1 at far, both along the view. The output's depth order is
-/// REVMAP_DEPTH_ORDER_NORMAL.
+/// height pixels. Depth is 0 at near and 1 at far, both along the view, and near cuts solids. The
+/// output's depth order is REVMAP_DEPTH_ORDER_NORMAL.
 RevmapResult revmap_renderer_prepare_camera(struct RevmapRenderer *renderer,
                                             VkCommandBuffer command_buffer,
                                             uint32_t slot,
@@ -1351,7 +1355,8 @@ RevmapResult revmap_host_image_is_held(const struct RevmapHostImage *image,
 RevmapResult revmap_host_image_destroy(struct RevmapHostImage *image);
 
 /// Sets an image as the colours of an object, in place of its color_map; null for that map again.
-/// Frames that were prepared earlier keep their image.
+/// What is read counts as linear: give sRGB texels a view of an _SRGB format. Frames that were prepared
+/// earlier keep their image.
 RevmapResult revmap_renderer_set_color_image(struct RevmapRenderer *renderer,
                                              RevmapObject object,
                                              const struct RevmapHostImage *image);

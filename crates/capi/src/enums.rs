@@ -77,7 +77,9 @@ pub enum RevmapMapFormat {
 #[repr(u32)]
 #[derive(Clone, Copy)]
 pub enum RevmapPlanes {
-    /// Colour only, 8-bit sRGB.
+    /// Colour only. A pass gets linear RGBA, which the attachment's format encodes: give a view of an
+    /// _SRGB format. An attachment of a _UNORM format holds linear values, and a float format keeps
+    /// values above 1. Compute and pictures without a host have 8-bit sRGB.
     Color = 0,
     /// Every plane of RevmapPlane, in 32-bit floats.
     All = 1,

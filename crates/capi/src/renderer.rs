@@ -57,7 +57,8 @@ pub struct RevmapPass {
     /// For a render pass: the pass. The pass must live as long as the renderer. Passes that are
     /// compatible with it may be begun instead.
     pub render_pass: vk::RenderPass,
-    /// For dynamic rendering: formats of the colour attachments; read during the call.
+    /// For dynamic rendering: formats of the colour attachments; read during the call. Colours are
+    /// linear, and the format encodes them: see REVMAP_PLANES_COLOR.
     pub color_formats: *const vk::Format,
     /// For dynamic rendering: number of the colour attachments.
     pub color_format_count: u32,

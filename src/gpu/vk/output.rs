@@ -40,7 +40,8 @@ pub struct PassFormats {
     pub depth_test: DepthTest,
     /// The bias for slopes of [`Planes::Depth`]; none for other planes.
     pub slope_bias: SlopeBias,
-    /// The planes that the fragment shader writes, one per attachment.
+    /// The planes that the fragment shader writes, one per attachment. Colours are linear, and the
+    /// attachment's format encodes them ([`Planes::Color`]).
     pub planes: Planes,
 }
 

@@ -225,7 +225,8 @@ fn set(
 }
 
 /// Sets an image as the colours of an object, in place of its color_map; null for that map again.
-/// Frames that were prepared earlier keep their image.
+/// What is read counts as linear: give sRGB texels a view of an _SRGB format. Frames that were prepared
+/// earlier keep their image.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_renderer_set_color_image(
     renderer: *mut RevmapRenderer,
