@@ -1,6 +1,6 @@
 //! Checks a scene's values. Every message gives the key as in a scene file.
 
-use super::{CameraFrame, Light, Lighting, Object, Offset, Placement, Scene};
+use super::{CameraFrame, Copies, Light, Lighting, Object, Offset, Placement, Scene};
 use crate::error::{Error, Result, content};
 use glam::DVec3;
 use std::fmt::{Debug, Display};
@@ -123,8 +123,14 @@ impl Object {
         let cells = || format!("1 to {MAX_REPEAT}");
         within("repeat", &self.repeat, 1..=MAX_REPEAT, cells)?;
         self.placement.check()?;
-        let instances = |copies: &[Placement]| under("instances", copies, Placement::check);
-        self.instances.check(instances)
+        self.instances.check()
+    }
+}
+
+impl Copies {
+    /// Checks every value, unless all were found valid before.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.unless_checked(|copies| under("instances", copies, Placement::check))
     }
 }
 

@@ -44,8 +44,8 @@ impl Copies {
         known.get_or_init(|| Clusters::new(self))
     }
 
-    /// Checks all placements, unless they were found valid before.
-    pub(crate) fn check<E>(
+    /// Calls `all` with all placements, unless an earlier call found them valid.
+    pub(crate) fn unless_checked<E>(
         &self,
         all: impl FnOnce(&[Placement]) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -131,12 +131,12 @@ mod tests {
     fn a_change_is_seen_by_all_that_follows_from_it() {
         let mut copies: Copies = vec![Placement::default(); 100].into();
         let before = copies.clone();
-        assert_eq!(copies.check(|_| Err("bad")), Err("bad"));
-        assert_eq!(copies.check(|_| Ok::<_, &str>(())), Ok(()));
-        assert_eq!(before.check(|_| Err("looked at twice")), Ok(()));
+        assert_eq!(copies.unless_checked(|_| Err("bad")), Err("bad"));
+        assert_eq!(copies.unless_checked(|_| Ok::<_, &str>(())), Ok(()));
+        assert_eq!(before.unless_checked(|_| Err("looked at twice")), Ok(()));
         assert_eq!(copies.clusters().all()[0].high.x, 0.0);
         copies.iter_mut().for_each(|copy| copy.position.x = 3.0);
-        assert_eq!(copies.check(|_| Err("bad")), Err("bad"));
+        assert_eq!(copies.unless_checked(|_| Err("bad")), Err("bad"));
         assert_eq!(copies.clusters().all()[0].high.x, 3.0);
         assert_eq!(before.clusters().all()[0].high.x, 0.0);
         assert_ne!(copies, before);

@@ -12,7 +12,7 @@ use revmap::error::ErrorKind::{self, Unsupported, Usage};
 use revmap::gpu::{
     ComputeTarget, Device, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer, View,
 };
-use revmap::scene::{Camera, Lighting, Object, Shadow};
+use revmap::scene::{Camera, Lighting, Object, Offset, Placement, Shadow};
 use revmap::settings::{Planes, SearchSettings, Solver};
 use std::sync::Arc;
 
@@ -237,8 +237,88 @@ fn another_renderers_object_is_refused() {
     }
 }
 
-/// Shadows between more shape maps than shaders read: the frame is refused, and the next one has
-/// the lights of the one before.
+/// A message about values names the object: its key, with its place among all, and its name.
+#[test]
+fn setters_name_the_object() {
+    let color = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
+    let mut renderer = Renderer::new(device(), color, &SearchSettings::exact(), 1).unwrap();
+    let profile = Arc::new(shapes::vase());
+    let mut add = |name: &str| renderer.add(Object::new(name, profile.clone())).unwrap();
+    let [first, _, vase] = ["first", "second", "vase"].map(&mut add);
+    renderer.remove(first).unwrap();
+    let mut flat = Object::new("another name", profile.clone());
+    flat.placement.scale.y = 0.0;
+    let offset = Offset {
+        extend: f64::NAN,
+        ..Offset::default()
+    };
+    let (copies, name) = (vec![Placement::default(), flat.placement], "vase");
+    for (found, key, name) in [
+        (renderer.set_offset(vase, offset), "extend", name),
+        (renderer.set_placement(vase, flat.placement), "scale", name),
+        (
+            renderer.set_instances(vase, copies),
+            "instances.1.scale",
+            name,
+        ),
+        (renderer.set(vase, flat.clone()), "scale", name),
+    ] {
+        let error = found.unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Content);
+        assert_eq!(error.key, Some(format!("object.1.{key}")), "{error}");
+        assert!(error.message.contains(name), "{error}");
+    }
+    let error = renderer.add(flat).unwrap_err();
+    assert_eq!(error.key.as_deref(), Some("object.2.scale"));
+    assert!(error.message.contains("another name"), "{error}");
+    // The number is all that is known of an object that is not there.
+    for error in [
+        renderer.set_offset(first, Offset::default()).unwrap_err(),
+        renderer.set_offset(first, offset).unwrap_err(),
+        renderer.set_mask(first, 1).unwrap_err(),
+        renderer.set_color_image(first, None).unwrap_err(),
+        renderer.remove(first).unwrap_err(),
+    ] {
+        assert_eq!(error.kind, Usage);
+        let number = first.to_bits().to_string();
+        assert!(error.message.contains(&number), "{error}");
+    }
+}
+
+/// More copies than the device takes are those of an object.
+#[test]
+fn too_many_copies_name_the_object() {
+    let layer = Layer::take();
+    let host = open();
+    let mask = Mask {
+        storage: 1 << 20,
+        ..Mask::default()
+    };
+    let instance = layer.instance(&host.entry, &host.instance, mask);
+    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
+    let color = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
+    let mut renderer = Renderer::new(&poorer, color, &SearchSettings::exact(), 1).unwrap();
+    let mut object = Object::new("vase", shapes::vase().into());
+    let id = renderer.add(object.clone()).unwrap();
+    let many = vec![Placement::default(); 100_000];
+    object.instances = many.clone().into();
+    for (error, key) in [
+        (
+            renderer.set_instances(id, many).unwrap_err(),
+            "object.0.instances",
+        ),
+        (
+            renderer.set(id, object.clone()).unwrap_err(),
+            "object.0.instances",
+        ),
+        (renderer.add(object).unwrap_err(), "object.1.instances"),
+    ] {
+        assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
+        assert_eq!(error.key.as_deref(), Some(key), "{error}");
+        assert!(error.message.contains("vase"), "{error}");
+    }
+}
+
 /// Shadows between too many shapes are refused in each frame, until the host takes them back. The
 /// lights stay as they were set, so no other change is lost with them.
 #[test]

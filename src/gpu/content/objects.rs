@@ -126,7 +126,17 @@ impl Objects {
 
     /// Returns the entry of an object, or an error if the object does not exist.
     pub fn entry(&self, id: ObjectId) -> Result<&Entry> {
-        self.get(id).ok_or_else(gone)
+        self.get(id).ok_or_else(|| gone(id))
+    }
+
+    /// The same error of an object's values, with the object's key and name; another error if there is
+    /// no such object.
+    pub fn named(&self, id: ObjectId, error: Error) -> Error {
+        let position = self.ordered().position(|(number, _)| number == id.number());
+        match (self.entry(id), position) {
+            (Ok(entry), Some(position)) => named(error, position, &entry.set.object),
+            _ => gone(id),
+        }
     }
 
     /// Returns the entry of an object, with what must be made anew marked.
@@ -134,7 +144,7 @@ impl Objects {
         self.entry(id)?;
         self.stale = true;
         let keeps_last = self.keeps_last;
-        let entry = self.at_mut(id.number()).ok_or_else(gone)?;
+        let entry = self.at_mut(id.number()).ok_or_else(|| gone(id))?;
         if let (true, Last::Same) = (keeps_last, &entry.set.last) {
             entry.set.last = Last::Was(LastValues::of(&entry.set.object));
         }
@@ -164,7 +174,8 @@ impl Objects {
             let message = format!("more than {MOST_NUMBERS} objects; make copies instead");
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
-        let instances = self.allocate(object.placements().len())?;
+        let instances = self.allocate(object.placements().len());
+        let instances = instances.map_err(|error| named(error, self.len(), &object))?;
         let number = self.free.pop().unwrap_or_else(|| {
             let number = self.numbered.len() as u32;
             let id = ObjectId::first(self.renderer, number);
@@ -222,7 +233,7 @@ impl Objects {
                 "{count} copies beside {} others; the device takes {most} at once: draw fewer",
                 self.copies
             );
-            return Err(Error::new(ErrorKind::TooLarge, message));
+            return Err(Error::new(ErrorKind::TooLarge, message).at_key("instances"));
         };
         let count = all - self.copies;
         let end = self.instances();
@@ -283,16 +294,33 @@ impl Objects {
         let new = self.allocate(count);
         let (range, result) = match new {
             Ok(range) => (range, Ok(())),
-            Err(error) => (self.allocate(kept)?, Err(error)),
+            Err(error) => (self.allocate(kept)?, Err(self.named(id, error))),
         };
         self.change(id, Stale::State)?.set.instances = range;
         result
     }
 }
 
-fn gone() -> Error {
-    let message = "the object was removed, or is another renderer's";
+fn gone(id: ObjectId) -> Error {
+    let id = id.to_bits();
+    let message = format!("the object {id} was removed, or is another renderer's");
     Error::new(ErrorKind::Usage, message)
+}
+
+/// The same error of an object's values, with the key `object.N`, and with the object's name or the
+/// file of its profile. `position`: N.
+pub(in crate::gpu) fn named(error: Error, position: usize, object: &Object) -> Error {
+    let key = error.key.as_deref().unwrap_or("profile");
+    let file = object.file.as_ref().filter(|_| key == "profile");
+    let key = Some(format!("object.{position}.{key}"));
+    match file {
+        Some(file) => Error { key, ..error }.in_file(file),
+        None => Error {
+            key,
+            message: format!("{} (object {:?})", error.message, object.name),
+            ..error
+        },
+    }
 }
 
 #[cfg(test)]

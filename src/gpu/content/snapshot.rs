@@ -3,7 +3,7 @@
 //! [`SceneFacts`]. They are made anew for changed objects, and for all objects if those facts change.
 
 use super::entry::{Boundary, Derived, Entry, PreparedObject, Stale};
-use super::objects::Objects;
+use super::objects::{Objects, named};
 use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
@@ -295,10 +295,7 @@ impl Maker<'_> {
         let settings = self.demands.settings;
         let object = entry.shape();
         let solver = self.facts.solver_of(boundary, settings.solver);
-        check_format(&entry.set.object, solver, settings).map_err(|mut e| {
-            e.key = (e.key).map(|key| format!("object.{position}.{key}"));
-            e
-        })?;
+        check_format(&entry.set.object, solver, settings)?;
         let map_facts = map.as_ref().map_or_else(
             || MapKey::new(object, &entry.growth(), settings).unbaked(&object.profile),
             |map| map.facts,
@@ -347,17 +344,6 @@ impl Maker<'_> {
         if !self.notes.contains(&note) {
             self.notes.push(note);
         }
-    }
-}
-
-/// Adds the key `object.N.profile` and the object's file to an error without them.
-fn named(mut error: Error, position: usize, object: &Object) -> Error {
-    if error.key.is_none() {
-        error = error.at_key(format!("object.{position}.profile"));
-    }
-    match &object.file {
-        Some(file) => error.in_file(file),
-        None => error,
     }
 }
 

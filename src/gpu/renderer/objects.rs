@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::error::{Error, ErrorKind, Result, content};
 use crate::gpu::content::entry::Stale;
-use crate::gpu::content::objects::ObjectId;
+use crate::gpu::content::objects::{ObjectId, named};
 use crate::gpu::resources::textures::{HostImage, ObjectImages};
 use crate::scene::{Copies, Lighting, Object, Offset, Placement, Shadow};
 use crate::shader::generated::MAX_LIGHTS;
@@ -12,13 +12,16 @@ impl Renderer {
     /// Adds an object, which is drawn from the next prepared frame on, after all earlier objects.
     ///
     /// # Errors
-    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key
+    /// `object.N...`, where N counts objects in order, and the object's name;
     /// [`TooLarge`](crate::error::ErrorKind::TooLarge) for more copies than the device takes (its
     /// `maxStorageBufferRange` over [`INSTANCE_BYTES`](crate::gpu::INSTANCE_BYTES), over twice as many
     /// bytes with motion) or 2^24 objects.
     pub fn add(&mut self, object: Object) -> Result<ObjectId> {
-        object.check()?;
-        self.content.objects.add(object)
+        let objects = &mut self.content.objects;
+        let checked = object.check();
+        checked.map_err(|error| named(error, objects.len(), &object))?;
+        objects.add(object)
     }
 
     /// Removes an object. Frames that were prepared earlier keep it until they are done.
@@ -40,10 +43,11 @@ impl Renderer {
     /// Sets all values of an object. Equal values cost nothing.
     ///
     /// # Errors
-    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
-    /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
+    /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key and the name
+    /// as in [`Renderer::add`]; [`Usage`](crate::error::ErrorKind::Usage) for an object that does not
+    /// exist.
     pub fn set(&mut self, id: ObjectId, object: Object) -> Result<()> {
-        object.check()?;
+        self.accept(id, object.check())?;
         let latest = self.object(id)?;
         if latest.same_look(&object) {
             if latest.instances != object.instances {
@@ -54,6 +58,11 @@ impl Renderer {
         self.content.objects.resize(id, object.placements().len())?;
         self.content.objects.change(id, Stale::Shape)?.set.object = object;
         Ok(())
+    }
+
+    /// Names the object in the error of values that were checked for it.
+    fn accept(&self, id: ObjectId, checked: Result<()>) -> Result<()> {
+        checked.map_err(|error| self.content.objects.named(id, error))
     }
 
     /// Sets which views show an object: those whose [mask](crate::gpu::View::with_mask) shares a bit
@@ -71,8 +80,8 @@ impl Renderer {
 
     /// Sets an image of the host as the colours of an object, in place of its
     /// [`color_map`](crate::scene::Texturing::color_map); `None` for that map again. The image's upper
-    /// edge is at the top of the object, as a map's. Frames that were prepared earlier keep their
-    /// image.
+    /// edge is at the top of the object, as a map's. What is read counts as linear: give sRGB texels a
+    /// view of an `_SRGB` format. Frames that were prepared earlier keep their image.
     ///
     /// # Errors
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
@@ -115,7 +124,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::set`].
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
-        offset.check()?;
+        self.accept(id, offset.check())?;
         if self.object(id)?.offset != offset {
             self.content
                 .objects
@@ -132,7 +141,7 @@ impl Renderer {
     /// # Errors
     /// Same as [`Renderer::set`].
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
-        placement.check()?;
+        self.accept(id, placement.check())?;
         if self.object(id)?.placement != placement {
             self.content
                 .objects
@@ -150,7 +159,7 @@ impl Renderer {
     /// Same as [`Renderer::set`].
     pub fn set_instances(&mut self, id: ObjectId, instances: impl Into<Copies>) -> Result<()> {
         let instances = instances.into();
-        instances.check(|all| all.iter().try_for_each(Placement::check))?;
+        self.accept(id, instances.check())?;
         self.content.objects.resize(id, instances.len().max(1))?;
         self.content
             .objects

@@ -81,9 +81,24 @@ fn renderers_and_objects() {
             chamfer: 1.0,
         };
         ok! { revmap_renderer_set_offset(renderer, object, &moved); }
+        info.name = c"spindle".as_ptr();
+        info.instance_count = 0;
+        ok! { revmap_renderer_set(renderer, object, &info); }
+        let wrong = RevmapOffset {
+            bevel: -1.0,
+            ..moved
+        };
+        let flat = RevmapPlacement {
+            scale: [0.0; 3],
+            ..info.placement
+        };
         fail! {
             Usage, "null": revmap_renderer_set_offset(renderer, object, null());
-            Usage, "object": revmap_renderer_remove(renderer, u64::MAX);
+            Content, "object.0.bevel: is -1.0": revmap_renderer_set_offset(renderer, object, &wrong);
+            Content, "(object \"spindle\")": revmap_renderer_set_offset(renderer, object, &wrong);
+            Content, "object.0.scale": revmap_renderer_set_placement(renderer, object, &flat);
+            Content, "object.0.instances.0.scale": revmap_renderer_set_instances(renderer, object, &flat, 1);
+            Usage, "the object 18446744073709551615 was removed": revmap_renderer_remove(renderer, u64::MAX);
         }
         let (mut number, mut caster) = (0, null_mut());
         fail! {
@@ -114,6 +129,18 @@ fn renderers_and_objects() {
         view.size = size_of::<RevmapView>() as u32;
         fail! {
             Content, "view": revmap_renderer_prepare(renderer, some, 0, &view);
+        }
+        // Depth falls from 1 at 0.1 to -1 at 100.
+        let (near, far) = (0.1, 100.0);
+        for axis in 0..4 {
+            view.view[5 * axis] = 1.0;
+        }
+        (view.projection[0], view.projection[5]) = (1.0, -1.0);
+        view.projection[10] = (far + near) / (far - near);
+        (view.projection[11], view.projection[14]) = (-1.0, 2.0 * far * near / (far - near));
+        view.viewport = [0.0, 0.0, 64.0, 48.0];
+        fail! {
+            Content, "give a projection for this depth order": revmap_renderer_prepare(renderer, some, 0, &view);
         }
         let mut target = sized!(RevmapComputeTarget);
         fail! {
