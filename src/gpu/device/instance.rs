@@ -2,6 +2,7 @@
 //! layers.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::loader_variables::{hidden_drivers, hidden_layers};
 use crate::gpu::vk::call::{Call, kind_of};
 use ash::ext::debug_utils;
 use ash::{ext, khr, vk};
@@ -67,7 +68,7 @@ impl Instance {
         })?;
         // SAFETY: plain query.
         let offered = unsafe { entry.enumerate_instance_extension_properties(None) }
-            .call("vkEnumerateInstanceExtensionProperties")?;
+            .map_err(|code| no_driver("vkEnumerateInstanceExtensionProperties", code))?;
         let (mut layers, mut extensions) = (Vec::new(), Vec::new());
         let mut flags = vk::InstanceCreateFlags::empty();
         if is_among(&offered, khr::portability_enumeration::NAME) {
@@ -96,13 +97,8 @@ impl Instance {
             info = info.push_next(&mut features);
         }
         // SAFETY: `info` and all it points to live until the call returns.
-        let raw = unsafe { entry.create_instance(&info, None) }.map_err(|code| {
-            let message = format!(
-                "no Vulkan driver answered (vkCreateInstance: {code:?}); {}",
-                packages(OS).driver
-            );
-            Error::new(kind_of(code), message)
-        })?;
+        let raw = unsafe { entry.create_instance(&info, None) }
+            .map_err(|code| no_driver("vkCreateInstance", code))?;
         let mut made = Self {
             raw,
             messenger: None,
@@ -163,6 +159,19 @@ impl Drop for Instance {
     }
 }
 
+/// The error of a call that failed for want of a driver. The loader also fails with the code of a full
+/// memory if a file that it reads is damaged.
+pub(crate) fn no_driver(call: &str, code: vk::Result) -> Error {
+    let what = format!("no Vulkan driver answered ({call}: {code:?})");
+    let memory = "free memory of the host, or mend the damaged .json file of a driver or layer";
+    let (kind, remedy) = match (hidden_drivers(), code) {
+        (Some(variable), _) => (ErrorKind::Unsupported, variable),
+        (_, vk::Result::ERROR_OUT_OF_HOST_MEMORY) => (kind_of(code), memory.to_owned()),
+        _ => (kind_of(code), packages(OS).driver.to_owned()),
+    };
+    Error::new(kind, format!("{what}; {remedy}"))
+}
+
 /// True if an extension is among these.
 pub(crate) fn is_among(offered: &[vk::ExtensionProperties], extension: &CStr) -> bool {
     let is = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
@@ -172,14 +181,14 @@ pub(crate) fn is_among(offered: &[vk::ExtensionProperties], extension: &CStr) ->
 fn require_layer(entry: &ash::Entry) -> Result<()> {
     // SAFETY: plain query.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }
-        .call("vkEnumerateInstanceLayerProperties")?;
+        .map_err(|code| no_driver("vkEnumerateInstanceLayerProperties", code))?;
     let is = |layer: &vk::LayerProperties| layer.layer_name_as_c_str() == Ok(VALIDATION);
     if layers.iter().any(is) {
         return Ok(());
     }
+    let remedy = hidden_layers().unwrap_or_else(|| packages(OS).layers.to_owned());
     let message = format!(
-        "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not installed; {}",
-        packages(OS).layers
+        "{VALIDATION_VARIABLE} is set but the layer VK_LAYER_KHRONOS_validation is not found; {remedy}"
     );
     Err(Error::new(ErrorKind::Unsupported, message))
 }

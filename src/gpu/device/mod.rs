@@ -3,6 +3,7 @@
 pub(crate) mod budget;
 pub(crate) mod instance;
 pub(crate) mod limits;
+mod loader_variables;
 pub(crate) mod report;
 
 use crate::error::Result;

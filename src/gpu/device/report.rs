@@ -2,9 +2,9 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::frame::MAX_PIXELS;
-use crate::gpu::device::instance::{API_VERSION, Instance, is_among, packages};
+use crate::gpu::device::instance::{API_VERSION, Instance, is_among, no_driver, packages};
 use crate::gpu::device::limits::lacking;
-use crate::gpu::vk::call::Call;
+use crate::gpu::device::loader_variables::hidden_drivers;
 use crate::gpu::vk::pipelines::DeviceConstants;
 use crate::shader::generated::{GROUP_PIXELS, MOST_OWN_VECTORS, PATCH_VECTORS};
 use ash::vk;
@@ -165,14 +165,15 @@ fn variable() -> Option<String> {
 }
 
 fn none() -> Error {
-    let message = format!("the Vulkan loader found no device; {}", packages(OS).driver);
+    let remedy = hidden_drivers().unwrap_or_else(|| packages(OS).driver.to_owned());
+    let message = format!("the Vulkan loader found no device; {remedy}");
     Error::new(ErrorKind::Unsupported, message)
 }
 
 fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
     // SAFETY: plain query of a live instance.
-    let all =
-        unsafe { instance.raw.enumerate_physical_devices() }.call("vkEnumeratePhysicalDevices")?;
+    let all = unsafe { instance.raw.enumerate_physical_devices() }
+        .map_err(|code| no_driver("vkEnumeratePhysicalDevices", code))?;
     let inspected = |(index, physical)| inspect(&instance.raw, index, physical);
     Ok(all.into_iter().enumerate().map(inspected).collect())
 }

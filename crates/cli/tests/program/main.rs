@@ -6,6 +6,8 @@ mod bad_input;
 mod bench_command;
 mod bench_compare;
 mod command_line;
+#[cfg(target_os = "linux")]
+mod drivers;
 mod inputs;
 #[cfg(target_os = "linux")]
 mod memory;
