@@ -107,6 +107,13 @@ impl Bake {
         if !self.quiet {
             let warnings = profile.warnings.iter();
             warnings.for_each(|w| output::warn(&with_options(w)));
+            let old = beside(&map_file);
+            if slopes.is_none() && old.exists() {
+                output::warn(&format!(
+                    "{}: is of an earlier run, and stays beside the new map; remove it, or give --height-map",
+                    old.display()
+                ));
+            }
         }
         self.tell(&format!(
             "{}: {}x{} texels, {}, baked in {took:.1} ms",

@@ -137,6 +137,13 @@ fn maps_are_baked_under_the_names_that_were_asked_for() {
     assert_eq!(bench.names().join(" "), made);
     assert_eq!(size(&bench, "map.spherical.png"), (40, 80));
     assert_eq!(size(&bench, "map.displacement.png"), (32, 16));
+
+    // A displacement map of an earlier run is not of the new map.
+    let again = "bake half.png -o map.png --profile-axis left --map-rows 80";
+    let said = lines(&bench.done(again));
+    let word = "warning: map.displacement.png: is of an earlier run";
+    assert!(said.len() == 1 && said[0].contains(word), "{said:?}");
+    assert!(lines(&bench.done(&format!("{again} --height-map waves.png"))).is_empty());
 }
 
 #[test]
