@@ -7,6 +7,9 @@ use revmap::error::Result;
 use revmap_files::{Smooth, write_outline};
 use std::path::PathBuf;
 
+/// A larger part of the area that differs is told.
+const CHANGED: f64 = 0.01;
+
 /// Writes the outline of a drawing or picture as an SVG of a few curves, to be changed by hand
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
@@ -37,7 +40,7 @@ impl Profile {
         )?;
         // As `render` reads a profile in place of a scene.
         let profile = self.profile.read(Smooth::Auto)?;
-        let [lines, curves] =
+        let written =
             write_outline(&profile, &self.output, self.tolerance).map_err(|e| match &e.key {
                 Some(_) => usage("--tolerance", e.message),
                 None => e,
@@ -45,10 +48,18 @@ impl Profile {
         if !self.quiet {
             let warnings = profile.warnings.iter();
             warnings.for_each(|w| output::warn(&with_options(w)));
+            if written.changed > CHANGED {
+                output::warn(&format!(
+                    "--tolerance: {:.0} % of the solid's area changed; parts thinner than the tolerance merge or vanish, give a smaller one",
+                    100.0 * written.changed
+                ));
+            }
             let points: usize = profile.outline.loops.iter().map(Vec::len).sum();
             output::result(&format!(
-                "{}: {lines} lines and {curves} curves for {points} points, within {} of the height",
+                "{}: {} lines and {} curves for {points} points, within {} of the height",
                 self.output.display(),
+                written.lines,
+                written.curves,
                 self.tolerance
             ));
         }

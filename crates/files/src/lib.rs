@@ -61,7 +61,7 @@ pub use maps::{
 };
 pub use mesh::{MESH_ENDINGS, mesh_files, write_meshes};
 pub use openexr::{read_exr, write_exr};
-pub use outline::write_outline;
+pub use outline::{WrittenOutline, write_outline};
 pub use picture::{Picture, write_png};
 pub use profile::{ProfileAxis, ProfileOptions, Smooth, profile, profile_from_bytes};
 pub use scene::{SceneFile, scene, warnings};

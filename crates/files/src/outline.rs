@@ -1,11 +1,11 @@
 //! Outlines as drawings of a few curves, which can be changed by hand and read again.
 
 use crate::profile::FLATNESS;
-use crate::write_bytes;
+use crate::{ProfileAxis, profile_from_bytes, write_bytes};
 use glam::DVec2;
 use kurbo::PathEl;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::profile::Profile;
+use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -16,24 +16,39 @@ const FINEST: f64 = 1e-7;
 /// Rounds of better parameters for a curve.
 const ROUNDS: usize = 8;
 
+/// A drawing that [`write_outline`] has written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrittenOutline {
+    /// Number of straight lines.
+    pub lines: usize,
+    /// Number of cubic curves.
+    pub curves: usize,
+    /// The area that is solid in one of profile and drawing alone, as a part of the profile's. It is
+    /// large if parts of the profile are thinner than the tolerance.
+    pub changed: f64,
+}
+
 /// Writes the outline of a profile as an SVG drawing of lines and cubic curves. Read again, it is
 /// nowhere farther than `tolerance` object units from the profile's. The right half is one path. The
-/// left half refers to it, so that only one is changed. Returns the number of lines and curves.
+/// left half refers to it, so that only one is changed.
 ///
 /// It is read with [`ProfileAxis::Center`](crate::ProfileAxis::Center).
 ///
 /// # Errors
-/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) for a tolerance below 1e-7,
+/// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) for a tolerance below 1e-7, or one that
+/// leaves no drawing that can be read,
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File) if the file cannot be written.
 pub fn write_outline(
     profile: &Profile,
     path: impl AsRef<Path>,
     tolerance: f64,
-) -> Result<[usize; 2]> {
+) -> Result<WrittenOutline> {
     let path = path.as_ref();
+    let refused = |message| Err(Error::new(ErrorKind::Usage, message).at_key("tolerance"));
     if tolerance.is_nan() || tolerance < FINEST {
-        let message = format!("is {tolerance}; give {FINEST} object units or more");
-        return Err(Error::new(ErrorKind::Usage, message).at_key("tolerance"));
+        return refused(format!(
+            "is {tolerance}; give {FINEST} object units or more"
+        ));
     }
     let pieces = profile
         .outline
@@ -44,8 +59,34 @@ pub fn write_outline(
     let is_curve = |piece: &&Piece| piece.handles.is_some();
     let curves = pieces.iter().flatten().filter(is_curve).count();
     let lines = pieces.iter().flatten().count() - curves;
-    write_bytes(path, text(profile, &pieces).as_bytes())?;
-    Ok([lines, curves])
+    let text = text(profile, &pieces);
+    let again = match profile_from_bytes(text.as_bytes(), ProfileAxis::Center) {
+        Ok(again) => again,
+        Err(_) => {
+            return refused(format!(
+                "is {tolerance}, which leaves no shape; give a smaller one"
+            ));
+        }
+    };
+    write_bytes(path, text.as_bytes())?;
+    Ok(WrittenOutline {
+        lines,
+        curves,
+        changed: difference(&profile.outline, &again.outline) / profile.outline.area(),
+    })
+}
+
+/// The area that is within one of two outlines.
+fn difference(a: &Outline, b: &Outline) -> f64 {
+    let points = [a, b].map(|outline| outline.loops.iter().flatten());
+    let reach = points.into_iter().flatten();
+    let reach = reach.fold(1.0, |m: f64, p| m.max(p.abs().max_element()));
+    let grid = Grid::for_extent(reach);
+    let [a, b] = [a, b].map(|o| Region::enclosed(grid, &o.loops, FillRule::NonZero));
+    [a.difference(&b), b.difference(&a)]
+        .iter()
+        .map(|part| part.outline(grid).area())
+        .sum()
 }
 
 /// A line or a cubic curve to `end`.

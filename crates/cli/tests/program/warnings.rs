@@ -75,6 +75,25 @@ fn pictures_that_show_nothing() {
     warned_once(&bench, &format!("{still} --turn 0"), &["--turn or --vary"]);
 }
 
+/// Fins of 1 % of the height merge within 2 % of it.
+#[test]
+fn a_coarse_outline_says_what_it_changed() {
+    let bench = Bench::new();
+    let fins: String = (5..95)
+        .step_by(2)
+        .map(|y| format!("M20 {y}H80v1H20z"))
+        .collect();
+    let path = format!("<path d='M40 5H60V95H40Z{fins}'/>");
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>";
+    bench.file("fins.svg", format!("{svg}{path}</svg>"));
+    let profile = "profile fins.svg -o clean.svg";
+    assert_eq!(warned(&bench, profile), [""; 0]);
+    let words = ["--tolerance: ", " % of the solid's area changed"];
+    warned_once(&bench, &format!("{profile} --tolerance 0.02"), &words);
+    let words = ["--tolerance: is 1, which leaves no shape"];
+    bench.refused("profile fins.svg -o a.svg --tolerance 1", 2, &words);
+}
+
 #[test]
 fn options_that_are_passed_over() {
     let bench = Bench::new();

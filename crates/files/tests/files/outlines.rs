@@ -49,7 +49,9 @@ fn outlines_are_read_again_as_the_same_solid() {
     assert!(files.len() >= 12);
     for file in files {
         let before = read(&file);
-        let pieces = write_outline(&before, &clean, 1e-5).unwrap();
+        let written = write_outline(&before, &clean, 1e-5).unwrap();
+        let pieces = [written.lines, written.curves];
+        assert!(written.changed < 1e-3, "{written:?}");
         let after = profile(&clean, ProfileAxis::Center).unwrap();
         let found = [apart(&before, &after), apart(&after, &before)];
         let points: usize = before.outline.loops.iter().map(Vec::len).sum();
@@ -76,14 +78,14 @@ fn tolerances_are_kept_and_used() {
     let clean = folder.path().join("clean.svg");
     let bottle = read(&crate::asset("profiles/bottle.png"));
     let pieces = |tolerance| -> usize {
-        let count = write_outline(&bottle, &clean, tolerance).unwrap();
+        let written = write_outline(&bottle, &clean, tolerance).unwrap();
         let after = profile(&clean, ProfileAxis::Center).unwrap();
         let found = apart(&bottle, &after).max(apart(&after, &bottle));
         assert!(
             found <= tolerance + 1e-8 && found > 0.1 * tolerance,
             "{found} {tolerance}"
         );
-        count.iter().sum()
+        written.lines + written.curves
     };
     let (few, many) = (pieces(3e-3), pieces(1e-5));
     assert!(few < 40 && many > 2 * few, "{few} {many}");
@@ -93,4 +95,40 @@ fn tolerances_are_kept_and_used() {
     }
     let error = write_outline(&bottle, folder.path().join("none/a.svg"), 1e-5).unwrap_err();
     assert!(error.to_string().contains("none/a.svg"));
+}
+
+/// A solid between two fins, in a drawing of 100 x 100.
+const FINS: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>\
+    <path d='M40 5H60V95H40ZM20 5H80V6H20ZM20 7H80V8H20ZM20 94H80V95H20Z'/></svg>";
+
+/// Every tolerance is refused, or leaves a drawing that is read again; its change is measured.
+#[test]
+fn what_is_written_is_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let clean = folder.path().join("clean.svg");
+    let fins = revmap_files::profile_from_bytes(FINS.as_bytes(), ProfileAxis::Center).unwrap();
+    let pawn = read(&crate::asset("profiles/pawn.svg"));
+    let mut refused = 0;
+    for shape in [&fins, &pawn] {
+        for tolerance in [1e-5, 1e-3, 0.02, 0.1, 0.3, 1.0, 1e9, f64::INFINITY] {
+            let _ = std::fs::remove_file(&clean);
+            match write_outline(shape, &clean, tolerance) {
+                Ok(written) => {
+                    let after = profile(&clean, ProfileAxis::Center).unwrap();
+                    let gained = (after.outline.area() / shape.outline.area() - 1.0).abs();
+                    assert!(written.changed + 1e-9 >= gained, "{written:?} {gained}");
+                }
+                Err(e) => {
+                    assert_eq!(e.kind, ErrorKind::Usage);
+                    assert!(e.to_string().contains("leaves no shape"), "{e}");
+                    assert!(tolerance >= 0.1 && !clean.exists(), "{tolerance}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(refused >= 4, "{refused}");
+    let changed = |tolerance| write_outline(&fins, &clean, tolerance).unwrap().changed;
+    assert!(changed(1e-5) < 1e-9);
+    assert!(changed(0.02) > 0.03, "{}", changed(0.02));
 }
