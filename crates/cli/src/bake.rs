@@ -60,6 +60,9 @@ pub struct ProfileArguments {
     /// noise needs, none for a clean picture [default: 0 in bake, auto in profile]
     #[arg(long, value_name = "PIXELS|auto", value_parser = smooth)]
     profile_smooth: Option<Smooth>,
+    /// Leaves out strokes of a drawing thinner than this part of its height, such as dimension lines
+    #[arg(long, value_name = "PART", default_value_t = 0.0)]
+    profile_min_stroke: f64,
 }
 
 impl ProfileArguments {
@@ -70,6 +73,7 @@ impl ProfileArguments {
             threshold: self.profile_threshold,
             invert: self.profile_invert,
             smooth: self.profile_smooth.unwrap_or(smooth),
+            min_stroke: self.profile_min_stroke,
         };
         revmap_files::profile(&self.profile, options).map_err(|mut e| {
             e.message = with_options(&e.message);
@@ -141,8 +145,9 @@ impl Bake {
 /// A message with options in place of the keys of a scene file.
 pub fn with_options(message: &str) -> String {
     let mut text = message.replace("profile_invert = true", "profile_invert");
-    for key in ["axis", "invert", "smooth", "threshold"] {
-        let (key, option) = (format!("profile_{key}"), format!("--profile-{key}"));
+    for key in ["axis", "invert", "smooth", "threshold", "min_stroke"] {
+        let option = format!("--profile-{}", key.replace('_', "-"));
+        let key = format!("profile_{key}");
         text = text.replace(&format!("{key} = "), &format!("{option} "));
         text = text.replace(&key, &option);
     }

@@ -26,6 +26,8 @@ pub(super) struct Canvas {
     pub two_tone: bool,
     /// All paint that is not white counts as dark.
     pub tinted: bool,
+    /// Strokes thinner than this are left out, with their markers; object units.
+    pub min_stroke: f64,
     /// Maps the page to `(r, z)`.
     pub page: Affine,
     /// Some geometry was beyond the drawing area.
@@ -109,10 +111,17 @@ impl Canvas {
     /// What nodes paint. `to_profile` maps their coordinates to `(r, z)`.
     pub fn paints(&self, nodes: &[Node], to_profile: Affine) -> Result<Vec<Paint>> {
         let mut paints = Vec::new();
+        let mut is_thin = false;
         for node in nodes {
             match node {
+                Node::Group(group) if group.is_marker && is_thin => {}
                 Node::Group(group) => self.group(group, to_profile, &mut paints)?,
                 Node::Path(path) => {
+                    let width = path.band.as_ref().map(|b| self.width(b, to_profile));
+                    is_thin = width.is_some_and(|width| width < self.min_stroke);
+                    if is_thin {
+                        continue;
+                    }
                     let region = match &path.band {
                         None => {
                             check_reach(&path.curve, to_profile)?;
@@ -146,6 +155,12 @@ impl Canvas {
             paints: own,
         });
         Ok(())
+    }
+
+    /// The width of a stroke, object units.
+    pub fn width(&self, band: &Band, to_profile: Affine) -> f64 {
+        let to_profile = if band.on_page { self.page } else { to_profile };
+        band.style.width * magnification(to_profile)
     }
 
     /// The region that a stroke covers.

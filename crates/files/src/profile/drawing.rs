@@ -24,8 +24,9 @@ use std::cell::Cell;
 /// Places of less than this area are small, square object units.
 const SMALL: f64 = 2e-3;
 
-/// A profile from the text of an SVG drawing (or its gzip-compressed form).
-pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
+/// A profile from the text of an SVG drawing (or its gzip-compressed form). Strokes thinner than
+/// `min_stroke`, in heights, are left out.
+pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Result<Profile> {
     let drawing = svg::read(bytes)?;
     let (width, height) = drawing.size;
     let (left, radius, from) = match axis {
@@ -43,10 +44,16 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
         grid: Grid::for_extent(radius.max(1.0)),
         two_tone: !has_translucency(&drawing.content),
         tinted: false,
+        min_stroke,
         page,
         cuts: Cell::new(false),
     };
     let paints = canvas.paints(&drawing.content, page)?;
+    if paints.is_empty() && min_stroke > 0.0 {
+        return Err(content_fault(
+            "all shapes of the drawing are thin strokes, which are left out; give a smaller profile_min_stroke",
+        ));
+    }
     if paints.is_empty() {
         return Err(content_fault(
             "the drawing has no shape; draw the solid dark on white",
@@ -61,6 +68,11 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     };
     let place = |x: f64| format!("x = {:.4}", user(x));
     let page_at = [left / height, width / height];
+    let strokes = canvas.thin_strokes(&drawing.content);
+    let rest = match strokes.is_empty() {
+        true => None,
+        false => Some(canvas.without_thin().dark_region(&drawing.content)?),
+    };
     let mut seen = whole.outline(canvas.grid);
     let mut cuts = Vec::new();
     if canvas.cuts.get()
@@ -72,6 +84,13 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     }
     let pale = || canvas.pale(&drawing.content, seen.area());
     let form = Silhouette::of_outline(&seen, page_at, &place);
+    let solid = rest.as_ref().map(|rest| rest.outline(canvas.grid));
+    let solid = solid
+        .as_ref()
+        .map(|s| Silhouette::of_outline(s, page_at, &place));
+    let marks = rest
+        .as_ref()
+        .and_then(|rest| canvas.marks(&strokes, &whole, rest));
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
@@ -83,10 +102,15 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
     without_slivers(&mut profile.outline);
     let outline = &profile.outline;
     if outline.area() <= 0.0 {
-        let aside = form.aside(axis).map(|aside| half_empty_fault(&aside));
+        let aside = solid.as_ref().unwrap_or(&form).elsewhere(axis);
+        let aside = aside.map(|aside| half_empty_fault(&aside));
         let pale = || pale().map(|pale| content_fault(format!("the drawing is empty: {pale}")));
+        let lines = rest.as_ref().filter(|rest| rest.is_empty()).map(|_| {
+            content_fault("the lines of the drawing are too thin to be solid; fill the shape")
+        });
         return Err(aside
             .or_else(pale)
+            .or(lines)
             .unwrap_or_else(|| empty_fault("drawing")));
     }
     if outline.area() >= radius * (1.0 - 1e-9) {
@@ -97,13 +121,18 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis) -> Result<Profile> {
             "the drawing looks like a light solid on dark ground; draw the solid dark on white if light is solid"
                 .to_owned(),
         ],
-        false => {
+        false => match marks.filter(|_| pale().is_none()) {
+            Some(marks) => {
+                let solid = solid.and_then(|solid| solid.placed(axis));
+                marks.into_iter().chain(solid).collect()
+            }
+            None => {
             let mut hints = form.hints(outline, axis, pale);
             hints.extend(cuts.iter().map(|edge| {
                 format!("the drawing is cut by the {edge} edge of the page; move it into the page, or enlarge the page")
             }));
             hints
-        }
+        }}
     });
     profile.warnings = warnings;
     Ok(profile)

@@ -9,8 +9,21 @@ pub(super) const ALIKE: f64 = 0.05;
 const SLACK: f64 = 0.02;
 /// The part of the rows that an edge must follow to be straight.
 const MOST: f64 = 0.8;
+/// The part of the rows that an edge must follow to be the axis of a hollow half, and how many times
+/// more rows it must follow than the other edge.
+const SOME: f64 = 0.1;
+const MORE: f64 = 2.0;
 /// Bands of rows whose halves are compared.
 const BANDS: usize = 16;
+/// Columns that are looked at.
+const COLUMNS: usize = 256;
+
+/// A straight edge of a silhouette, at a place across the rows.
+#[derive(Clone, Copy)]
+pub(super) enum Edge {
+    Left(f64),
+    Right(f64),
+}
 
 /// The outer ends of the rows.
 pub(super) struct Ends {
@@ -27,6 +40,54 @@ impl Ends {
         Self {
             rows: rows.iter().enumerate().filter_map(ends).collect(),
             step,
+        }
+    }
+
+    /// The ends of columns as those of rows: place from the left, upper and lower end.
+    pub fn of_columns(rows: &[Row], step: f64) -> Self {
+        let [low, high] = Self::of(rows, step).reach();
+        let across = (high - low) / COLUMNS as f64;
+        let column = |i: usize| {
+            let x = low + across * (i as f64 + 0.5);
+            let has = |row: &Row| row.iter().any(|[from, to]| *from <= x && x < *to);
+            let [first, last] = [rows.iter().position(has)?, rows.iter().rposition(has)?];
+            Some([x - low, first as f64 * step, (last + 1) as f64 * step])
+        };
+        Self {
+            rows: (0..COLUMNS).filter_map(column).collect(),
+            step: across,
+        }
+    }
+
+    /// The outermost ends.
+    pub fn reach(&self) -> [f64; 2] {
+        let reach = |[low, high]: [f64; 2], row: &[f64; 3]| [low.min(row[1]), high.max(row[2])];
+        self.rows.iter().fold([f64::INFINITY, 0.0], reach)
+    }
+
+    /// The only straight edge, which is the axis of half a profile.
+    pub fn edge(&self) -> Option<Edge> {
+        let straight = [Self::left, Self::right].map(|end| self.is_straight(end));
+        match straight {
+            [true, false] => Some(Edge::Left(self.median(Self::left))),
+            [false, true] => Some(Edge::Right(self.median(Self::right))),
+            _ => None,
+        }
+    }
+
+    /// The outermost edge that far more rows follow than the other: the axis of a hollow half.
+    pub fn long_edge(&self) -> Option<Edge> {
+        let [low, high] = self.reach();
+        let share = |is: &dyn Fn(&[f64; 3]) -> bool| {
+            self.rows.iter().filter(|row| is(row)).count() as f64 / self.rows.len() as f64
+        };
+        let left = share(&|row| row[1] <= low + 1.0);
+        let right = share(&|row| row[2] >= high - 1.0);
+        let is_long = |one: f64, other: f64| one >= SOME && one >= MORE * other;
+        match (is_long(left, right), is_long(right, left)) {
+            (true, _) => Some(Edge::Left(low)),
+            (_, true) => Some(Edge::Right(high)),
+            _ => None,
         }
     }
 

@@ -4,7 +4,7 @@
 //! Drawings and pictures share these rules. Both give rows of solid spans and the outline of the
 //! half right of the axis.
 
-use super::ends::{ALIKE, Ends, Row};
+use super::ends::{ALIKE, Edge, Ends, Row};
 use super::{ProfileAxis, gaps};
 use glam::DVec2;
 use revmap::profile::{FillRule, Grid, Outline, Region, Segment, loop_area};
@@ -19,6 +19,10 @@ const LEAST_ROWS: usize = 8;
 const RUN: usize = 3;
 /// A solid lower than this part of the picture may be a ring beside the axis.
 const LOW: f64 = 0.5;
+/// A solid of which more than this part of the width is on one side may be half a profile.
+const ONE_SIDED: f64 = 0.4;
+/// A half that is this many times wider than high may be on its side.
+const FLAT: f64 = 1.5;
 /// A wall below this part of the height is thin.
 const THIN: f64 = 0.08;
 /// A shape is an outline drawing if its walls are thin along this part of its border.
@@ -110,20 +114,22 @@ impl<'a> Silhouette<'a> {
                 self.what
             ))];
         }
+        let is_low = Ends::of(&self.rows, self.step).rows.len() < LEAST_ROWS;
+        let hollow = || hollow(half).filter(|_| !is_low);
+        let found = self.placed(axis).or_else(hollow);
+        found.into_iter().chain(gaps::hints(half)).collect()
+    }
+
+    /// A warning about the place of the solid about the axis.
+    pub(super) fn placed(&self, axis: ProfileAxis) -> Option<String> {
         let ends = Ends::of(&self.rows, self.step);
-        if ends.rows.len() < LEAST_ROWS {
-            return gaps::hints(half);
-        }
-        let found = match axis {
+        match axis {
+            _ if ends.rows.len() < LEAST_ROWS => None,
             ProfileAxis::Left => self
                 .whole_as_half(&ends)
-                .or_else(|| self.mirrored_half(&ends)),
-            ProfileAxis::Center | ProfileAxis::At(_) => self
-                .half_as_whole(&ends)
-                .or_else(|| self.beside_the_axis(&ends)),
-        };
-        let found = found.or_else(|| hollow(half));
-        found.into_iter().chain(gaps::hints(half)).collect()
+                .or_else(|| self.half_in_the_page(&ends)),
+            ProfileAxis::Center | ProfileAxis::At(_) => self.beside_the_axis(&ends),
+        }
     }
 
     /// A solid that is even about a line well beside the axis. Its half has no meaning.
@@ -140,42 +146,74 @@ impl<'a> Silhouette<'a> {
             .flatten()
     }
 
-    /// A straight end on one side and a form on the other are half a profile.
-    fn half_as_whole(&self, ends: &Ends) -> Option<String> {
-        let [at, end] = [ends.median(Ends::left), ends.median(Ends::right)];
-        match (ends.is_straight(Ends::left), ends.is_straight(Ends::right)) {
-            (true, false) if (at - self.axis).abs() > ends.slack() => {
-                let axis = match at {
-                    ..=1.0 => "\"left\"".to_owned(),
-                    _ => self.fraction(at),
-                };
-                Some(format!(
-                    "the {} looks like half a profile, whose straight left edge is the axis; set profile_axis = {axis}{}",
-                    self.what,
-                    ends.or_turn_it()
-                ))
-            }
-            (false, true) if (end - self.axis).abs() > ends.slack() => Some(format!(
-                "{}, and set profile_axis = \"left\"{}",
-                self.mirror_it(),
-                ends.or_turn_it()
-            )),
-            _ => None,
-        }
+    /// Why nothing is right of the axis: the solid is even about another line, or it is half a
+    /// profile.
+    pub(super) fn elsewhere(&self, axis: ProfileAxis) -> Option<String> {
+        let ends = Ends::of(&self.rows, self.step);
+        let half = || {
+            let is_other = axis != ProfileAxis::Left && ends.rows.len() >= LEAST_ROWS;
+            let edge = || ends.edge().or_else(|| ends.long_edge());
+            Some(self.half(is_other.then(edge).flatten()?, &ends))
+        };
+        self.aside(axis).or_else(half)
     }
 
-    /// A straight end at the right border and a form on the left are half a profile, mirrored.
-    fn mirrored_half(&self, ends: &Ends) -> Option<String> {
-        let at_border = ends.median(Ends::right) >= self.width - 1.0;
-        let is_half = ends.is_straight(Ends::right) && !ends.is_straight(Ends::left);
-        (at_border && is_half).then(|| self.mirror_it())
-    }
-
-    fn mirror_it(&self) -> String {
+    /// What to do with half a profile whose axis is `edge`.
+    fn half(&self, edge: Edge, ends: &Ends) -> String {
         let what = self.what;
+        let (name, at, mirror) = match edge {
+            Edge::Left(at) => ("left", at, ""),
+            Edge::Right(at) => ("right", self.width - at, "mirror it, and "),
+        };
+        let remedy = match self.set_axis(at) {
+            Some(set) => format!("{mirror}{set}"),
+            None => "move it into the page".to_owned(),
+        };
         format!(
-            "the {what} looks like half a profile, whose straight right edge is the axis; mirror it"
+            "the {what} looks like half a profile, whose straight {name} edge is the axis; {remedy}{}",
+            ends.or_turn_it()
         )
+    }
+
+    /// Half a profile, read with the left border as the axis: its edge is the right border, or it
+    /// is in the middle of the page.
+    fn half_in_the_page(&self, ends: &Ends) -> Option<String> {
+        let [low, high] = ends.reach();
+        let is_central = low > 1.0 && (low + high - self.width).abs() <= 2.0 * ends.slack();
+        if is_central && let Some(lying) = self.lying_half(false) {
+            return Some(lying);
+        }
+        let edge = ends.edge()?;
+        let at_border = matches!(edge, Edge::Right(at) if at >= self.width - 1.0);
+        (is_central || at_border).then(|| self.half(edge, ends))
+    }
+
+    /// A solid wider than high with one straight edge along it is half a profile on its side. Even
+    /// ones may be domes, unless the edge alone is on the border.
+    fn lying_half(&self, is_even: bool) -> Option<String> {
+        let columns = Ends::of_columns(&self.rows, self.step);
+        let height = columns.rows.iter().map(|c| c[2] - c[1]).fold(0.0, f64::max);
+        let edge = columns
+            .edge()
+            .filter(|_| columns.height() >= FLAT * height)?;
+        let page = self.rows.len() as f64 * self.step;
+        let [low, high] = Ends::of(&self.rows, self.step).reach();
+        let (free, below) = match edge {
+            Edge::Left(at) => (at, columns.reach()[1]),
+            Edge::Right(at) => (page - at, page - columns.reach()[0]),
+        };
+        let is_on_border =
+            free <= self.step && below < page - self.step && low > 1.0 && high < self.width - 1.0;
+        if is_even && !is_on_border {
+            return None;
+        }
+        let (what, name) = match edge {
+            Edge::Left(_) => (self.what, "upper"),
+            Edge::Right(_) => (self.what, "lower"),
+        };
+        Some(format!(
+            "the {what} looks like half a profile on its side, whose straight {name} edge is the axis; turn it upright, so that this edge is at the left, and set profile_axis = \"left\""
+        ))
     }
 
     /// A solid about the middle of the page that leaves the left edge free is a whole one.
@@ -194,11 +232,23 @@ impl<'a> Silhouette<'a> {
         })
     }
 
-    /// The middle of the rows is beside the axis, or tilted, or the halves are uneven.
+    /// Half a profile with another axis, or the middle of the rows is beside the axis, or tilted, or
+    /// the halves are uneven.
     fn beside_the_axis(&self, ends: &Ends) -> Option<String> {
+        let is_here = |at: f64| (at - self.axis).abs() <= ends.slack();
+        let is_half = ends.is_straight(Ends::left) && is_here(ends.median(Ends::left));
+        if is_half || matches!(ends.long_edge(), Some(Edge::Left(at)) if is_here(at)) {
+            return None;
+        }
         let line = ends.middle_line();
         let is_even = line.residual <= ends.slack();
-        if is_even && line.drift.abs() > (1.5 * ends.slack()).max(2.0) {
+        let is_tilted = is_even && line.drift.abs() > (1.5 * ends.slack()).max(2.0);
+        let may_be_half = (is_tilted || !is_even) && ends.one_sided(|_| self.axis) > ONE_SIDED;
+        let hollow_edge = || ends.long_edge().filter(|_| may_be_half);
+        if let Some(edge) = ends.edge().or_else(hollow_edge) {
+            return Some(self.half(edge, ends));
+        }
+        if is_tilted {
             let angle = (line.drift / ends.height()).atan().to_degrees().abs();
             let what = self.what;
             return Some(format!(
@@ -206,29 +256,40 @@ impl<'a> Silhouette<'a> {
             ));
         }
         if is_even && (line.middle - self.axis).abs() > ends.slack() {
+            let what = self.what;
+            let remedy = match self.set_axis(line.middle) {
+                Some(set) => format!("{set}, or crop the {what}"),
+                None => "move it into the page".to_owned(),
+            };
             return Some(format!(
-                "the middle of the solid is beside the axis, at {} in place of {}; set profile_axis = {}, or crop the {}{}",
+                "the middle of the solid is beside the axis, at {} in place of {}; {remedy}{}",
                 (self.place)(line.middle),
                 (self.place)(self.axis),
-                self.fraction(line.middle),
-                self.what,
                 ends.or_turn_it()
             ));
         }
         let axis = |row: f64| if is_even { line.at(row) } else { self.axis };
         let part = ends.one_sided(axis);
-        (part > ALIKE).then(|| {
+        let lying = self.lying_half(part <= ALIKE);
+        let uneven = || {
             format!(
                 "the halves of the solid differ by {:.0} % of its width, and the right one is taken; set profile_axis, or remove what is on one side alone{}",
                 100.0 * part,
                 ends.or_turn_it()
             )
-        })
+        };
+        lying.or_else(|| (part > ALIKE).then(uneven))
     }
 
-    /// A part of the width.
-    fn fraction(&self, at: f64) -> String {
-        format!("{}", (1e4 * at / self.width).round() / 1e4)
+    /// The key that moves the axis; `None` beside the page.
+    fn set_axis(&self, at: f64) -> Option<String> {
+        let fraction = (1e4 * at / self.width).round() / 1e4;
+        match at.abs() <= 1.0 {
+            true => Some("set profile_axis = \"left\"".to_owned()),
+            false => (0.0..1.0)
+                .contains(&fraction)
+                .then(|| format!("set profile_axis = {fraction}")),
+        }
     }
 }
 

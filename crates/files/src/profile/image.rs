@@ -1,7 +1,7 @@
 //! Profiles from pictures: dark is solid.
 
 use super::form::{Silhouette, is_shell};
-use super::{ProfileOptions, options, transparency};
+use super::{ProfileOptions, options, thin_lines, transparency};
 use crate::content_fault;
 use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;
@@ -30,6 +30,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     if let Some(header) = Header::of_png(bytes).filter(|h| h.kind() == Some("shape")) {
         return baked(bytes, &header);
     }
+    options.for_picture()?;
     let picture = decode(bytes, KINDS)?;
     let (width, height) = (picture.width, picture.height);
     if width < 2 || height < 2 {
@@ -71,7 +72,7 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
     let traced = Raster { coverage, ..raster };
     let form = Silhouette::of_pixels(&solid, width as usize, 0.5 * f64::from(halves));
     let is_empty = traced.coverage.par_iter().all(|&c| c <= 0.5);
-    if let Some(aside) = form.aside(options.axis).filter(|_| is_empty) {
+    if let Some(aside) = form.elsewhere(options.axis).filter(|_| is_empty) {
         return Err(half_empty_fault(&aside));
     }
     let mut profile = trace_split(traced, split)?;
@@ -82,7 +83,13 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         return Ok(profile);
     }
     let of_form = |half: &_| {
-        let mut hints = form.hints(half, options.axis, || None);
+        let marked = thin_lines::warnings(
+            &solid,
+            width as usize,
+            0.5 * f64::from(halves),
+            options.axis,
+        );
+        let mut hints = marked.unwrap_or_else(|| form.hints(half, options.axis, || None));
         hints.extend(cut_out);
         hints
     };

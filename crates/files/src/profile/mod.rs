@@ -8,10 +8,13 @@ mod form;
 mod gaps;
 mod image;
 mod layer;
+mod marks;
 mod noise;
 mod options;
 mod paint;
 mod svg;
+mod thin_lines;
+mod thin_strokes;
 mod tile;
 mod transparency;
 
@@ -60,7 +63,7 @@ pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> R
     let options = options.into();
     options.check()?;
     if svg::is_markup(bytes) {
-        drawing::profile(bytes, options.for_drawing()?)
+        drawing::profile(bytes, options.for_drawing()?, options.min_stroke)
     } else {
         image::profile(bytes, &options)
     }

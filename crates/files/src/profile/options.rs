@@ -66,6 +66,9 @@ pub struct ProfileOptions {
     pub invert: bool,
     /// Gaussian blur that removes noise before the outline is traced. For pictures only.
     pub smooth: Smooth,
+    /// Strokes thinner than this part of the height are left out, such as dimensions, centre lines
+    /// and the frame of a sheet. For drawings only.
+    pub min_stroke: f64,
 }
 
 impl Default for ProfileOptions {
@@ -75,6 +78,7 @@ impl Default for ProfileOptions {
             threshold: 0.5,
             invert: false,
             smooth: Smooth::default(),
+            min_stroke: 0.0,
         }
     }
 }
@@ -115,6 +119,13 @@ impl ProfileOptions {
             let message = format!("is {pixels:?}; give pixels from 0 to {most}, or \"auto\"");
             return wrong("profile_smooth", message);
         }
+        if !(0.0..1.0).contains(&self.min_stroke) {
+            let message = format!(
+                "is {:?}; give a part of the height, 0 or more and below 1",
+                self.min_stroke
+            );
+            return wrong("profile_min_stroke", message);
+        }
         Ok(())
     }
 
@@ -123,6 +134,7 @@ impl ProfileOptions {
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
         let mut own = Self {
             axis: ProfileAxis::default(),
+            min_stroke: 0.0,
             ..*self
         };
         if own.smooth == Smooth::Auto {
@@ -130,6 +142,15 @@ impl ProfileOptions {
         }
         own.unset("counts for pictures alone; leave it out for a drawing")?;
         Ok(self.axis)
+    }
+
+    /// Refuses options that apply only to drawings.
+    pub(super) fn for_picture(&self) -> Result<()> {
+        let own = Self {
+            min_stroke: self.min_stroke,
+            ..Self::default()
+        };
+        own.unset("counts for drawings alone; leave it out for a picture")
     }
 
     /// Refuses every option: a polygon has no file.
@@ -145,6 +166,7 @@ impl ProfileOptions {
             _ if self.threshold != plain.threshold => "profile_threshold",
             _ if self.invert => "profile_invert",
             _ if self.smooth != plain.smooth => "profile_smooth",
+            _ if self.min_stroke != plain.min_stroke => "profile_min_stroke",
             _ => return Ok(()),
         };
         Err(content_fault(message).at_key(key))

@@ -188,6 +188,9 @@ impl Reader {
             Some(None) => Smooth::Auto,
             None => options.smooth,
         };
+        keys.set("profile_min_stroke", &mut options.min_stroke)?;
+        let of_option = |e| below(keys, "profile", e);
+        options.check().map_err(of_option)?;
         let widths = polygon.iter().flatten().map(|[r, _]| *r);
         let mut radius = widths.filter(|r| r.is_finite()).fold(RADIUS, f64::max);
         keys.set("radius", &mut radius)?;

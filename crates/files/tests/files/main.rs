@@ -2,6 +2,7 @@
 //! every source.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod annotation;
 mod browser_rules;
 mod damaged_files;
 mod drawings;

@@ -233,6 +233,91 @@ fn halves_and_lying_solids() {
     both_warned(&lying, Center, "on its side");
 }
 
+/// Half a vase, half a cup and half a bolt, on the right of `x = 0` or on the left.
+#[test]
+fn halves_about_any_axis_are_given_it() {
+    let vase = HALF.replace("M50 8", "M0 8");
+    let cup = "M0 90H14C18 80 22 40 30 12H26C18 40 15 70 11 78H0z";
+    let bolt = "M0 10H18V25H8V90H0z";
+    let half = |form: &str, at: i32, side: i32| {
+        path(
+            form,
+            &format!("transform='translate({at}) scale({side} 1)'"),
+        )
+    };
+    for form in [&vase, cup, bolt] {
+        for (at, axis) in [(0, "\"left\""), (10, "0.1"), (30, "0.3"), (62, "0.62")] {
+            let words = format!("axis; set profile_axis = {axis}");
+            for bytes in [half(form, at, 1), pictured(&half(form, at, 1), 300)] {
+                match profile_from_bytes(&bytes, Center) {
+                    Ok(profile) => {
+                        let found = profile.warnings.join("\n");
+                        assert!(found.contains(&words), "{at} {words}: {found}");
+                    }
+                    Err(e) => assert!(e.to_string().contains(&words), "{at} {words}: {e}"),
+                }
+                // The axis that is named is right.
+                let axis = axis.parse().unwrap_or(Left);
+                assert_eq!(read(&bytes, axis).warnings, [""; 0], "{at}");
+            }
+        }
+        for (at, axis) in [(100, "\"left\""), (90, "0.1"), (70, "0.3"), (38, "0.62")] {
+            let words = format!("mirror it, and set profile_axis = {axis}");
+            for bytes in [half(form, at, -1), pictured(&half(form, at, -1), 300)] {
+                let found = profile_from_bytes(&bytes, Center);
+                let found = found.map_or_else(|e| e.to_string(), |p| p.warnings.join("\n"));
+                assert!(found.contains(&words), "{at} {words}: {found}");
+            }
+        }
+        // Half of a page, and nothing else of it.
+        both_silent(&half(form, 50, 1), Center);
+    }
+    // In the middle of a page that is read from its left edge.
+    both_warned(&half(&vase, 39, 1), Left, "set profile_axis = 0.39");
+    both_warned(
+        &half(&vase, 61, -1),
+        Left,
+        "mirror it, and set profile_axis = 0.39",
+    );
+    both_silent(&half(&vase, 20, 1), Left);
+}
+
+#[test]
+fn a_half_on_its_side_is_to_be_turned() {
+    let flat = |d: &str| {
+        let head = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 40'>";
+        format!("{head}<path d='{d}'/></svg>").into_bytes()
+    };
+    let spindle = "M10 40V30H40C50 30 50 15 70 15S90 32 120 32 140 22 160 22 185 34 190 36V40Z";
+    for axis in [Center, Left] {
+        warned(
+            &flat(spindle),
+            axis,
+            "straight lower edge is the axis; turn it upright",
+        );
+    }
+    let hanging = "M10 0V10H40C50 10 50 25 70 25S90 8 120 8 140 18 160 18 185 6 190 4V0Z";
+    warned(
+        &flat(hanging),
+        Center,
+        "straight upper edge is the axis; turn it upright",
+    );
+    // Alike at both ends, it may be a dome, unless it ends at the border of the page.
+    let barrel = "M20 40H180V30C170 15 120 10 100 10S30 15 20 30z";
+    warned(
+        &flat(barrel),
+        Center,
+        "straight lower edge is the axis; turn it upright",
+    );
+    // A plate and domes are upright.
+    let plate = "M0 40H180V34L60 30L30 20H0z";
+    let dome = "M20 38H180C170 20 120 10 100 10S30 20 20 38z";
+    let cropped = "M0 40H200C170 20 120 0 100 0S30 20 0 40z";
+    for (upright, axis) in [(plate, Left), (dome, Center), (cropped, Center)] {
+        assert_eq!(read(&flat(upright), axis).warnings, [""; 0]);
+    }
+}
+
 /// A ball of one grey on another.
 fn ball(solid: u8, ground: u8, noise: u8) -> Vec<u8> {
     png(GrayImage::from_fn(128, 128, |x, y| {

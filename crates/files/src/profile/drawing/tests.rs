@@ -7,7 +7,7 @@ fn drawn(body: &str) -> Result<Outline> {
     let text = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100">{body}</svg>"##
     );
-    profile(text.as_bytes(), ProfileAxis::Left).map(|p| p.outline)
+    profile(text.as_bytes(), ProfileAxis::Left, 0.0).map(|p| p.outline)
 }
 
 /// Asserts the area of the drawn solid, square user units.
@@ -132,7 +132,7 @@ fn shapes_that_abut_leave_no_crack() {
 #[test]
 fn the_right_half_of_a_silhouette() {
     let text = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="-10 0 20 40"><circle cx="0" cy="20" r="8"/></svg>"#;
-    let p = profile(text.as_bytes(), ProfileAxis::Center).unwrap();
+    let p = profile(text.as_bytes(), ProfileAxis::Center, 0.0).unwrap();
     let b = p.outline.bounds().unwrap();
     assert_eq!((p.radius, b.r_min), (0.25, 0.0));
     for (found, wanted) in [(b.r_max, 0.2), (b.z_min, 0.3), (b.z_max, 0.7)] {

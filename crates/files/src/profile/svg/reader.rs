@@ -326,7 +326,13 @@ impl<'a> Reader<'a> {
             };
             painted = true;
             let shape = match part {
-                1 => stroked(node, style, &curve, thickness, diagonal)?,
+                1 => stroked(
+                    (node, self.notes.line(node)),
+                    style,
+                    &curve,
+                    thickness,
+                    diagonal,
+                )?,
                 _ => plain(&curve.path),
             };
             out.push(Drawn::Path(Path {

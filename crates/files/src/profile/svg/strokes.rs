@@ -16,9 +16,9 @@ const MOST_OVERLAPS: f64 = 2e5;
 /// Gaps between round or square dashes of at most this part of the width are closed.
 const CLOSED_GAP: f64 = 2.5e-3;
 
-/// The path that an element's stroke covers, without its colour.
+/// The path that an element's stroke covers, without its colour. `line`: of the element.
 pub(super) fn stroked(
-    node: Node,
+    (node, line): (Node, u32),
     style: &Style,
     curve: &Curve,
     width: f64,
@@ -47,6 +47,7 @@ pub(super) fn stroked(
         band: Some(Band {
             style: stroke,
             on_page,
+            line,
         }),
         ..Path::plain(curve.path.clone(), FillRule::NonZero)
     })

@@ -52,6 +52,8 @@ pub(in crate::profile) struct Band {
     pub style: Stroke,
     /// The width is in pixels of the page (`vector-effect="non-scaling-stroke"`).
     pub on_page: bool,
+    /// The element's line.
+    pub line: u32,
 }
 
 /// The union of shapes, cut by a further clip.
