@@ -216,6 +216,7 @@ impl Reader {
                 let mut profile =
                     Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
                 profile.warnings.extend(polygon::cut_off(&points, radius));
+                profile.warnings.extend(polygon::open_wall(&points));
                 profile.warnings.extend(gap_hints(&profile.outline));
                 let profile = Arc::new(profile);
                 self.polygons.push((points, radius, profile.clone()));
