@@ -48,11 +48,19 @@ impl Scene {
                 "is where the eye is; look at some other point",
             );
         }
+        // An axis that is never parallel to the view.
+        let upright = match view.z.abs() > 0.9 * view.length() {
+            true => "[0, 1, 0]",
+            false => "[0, 0, 1]",
+        };
+        if camera.up.try_normalize().is_none() {
+            return content("camera.up", format!("has no length; give {upright}"));
+        }
         CameraFrame::new(camera, 1, 1)?;
         if camera.up.normalize().cross(view.normalize()).length() < 1e-9 {
             return content(
                 "camera.up",
-                "is parallel to the view; turn it, as to [0, 1, 0]",
+                format!("is parallel to the view; turn it, as to {upright}"),
             );
         }
         Ok(())

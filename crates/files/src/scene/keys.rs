@@ -52,10 +52,10 @@ macro_rules! items {
 }
 items! {
     f64: "a number", "numbers", number;
-    // Numbers that overflow become infinite, and the scene's check refuses them.
+    // Numbers that overflow become infinite, or the largest: the scene's check refuses them.
     f32: "a number", "numbers", |v| number(v).map(|x| x as Self);
     u32: "a whole number that is not negative", "whole numbers that are not negative",
-        |v: &Value| v.as_integer().and_then(|i| Self::try_from(i).ok());
+        |v: &Value| v.as_integer().filter(|i| *i >= 0).map(|i| Self::try_from(i).unwrap_or(Self::MAX));
     bool: "true or false", "of true or false", Value::as_bool;
 }
 
@@ -107,7 +107,8 @@ impl<'a> Keys<'a> {
         match table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(keys),
             Some(stranger) if keys.path.is_empty() && is_of_object(stranger) => {
-                let message = format!("unknown key; did you mean `object.0.{stranger}`?");
+                let message =
+                    format!("unknown key; write it below [[object]], or set object.0.{stranger}");
                 Err(keys.fail(stranger, message))
             }
             Some(stranger) => Err(keys.fail(stranger, unknown(stranger, &known))),
@@ -288,10 +289,6 @@ pub(super) fn path_hint(name: &str) -> Option<&'static str> {
 /// A value as messages show it: its type, and the value itself if it is short.
 fn describe(value: &Value) -> String {
     match value {
-        Value::String(s) if decimal_comma(s).is_some() => {
-            let point = decimal_comma(s).unwrap_or_default();
-            format!("the text {s:?}; write {point}")
-        }
         Value::String(s) if s.chars().count() <= 40 => format!("the text {s:?}"),
         Value::String(_) => "a long text".to_owned(),
         Value::Integer(i) => format!("{i}"),
@@ -372,7 +369,6 @@ Chamfer => object.0.Chamfer: unknown key; did you mean `chamfer`?
 xyzzy => object.0.xyzzy: unknown key; known here: bevel, chamfer, ";
     const TYPES: &str = r#"
 "much" => expected a number, found the text "much"
-"-,05" => expected a number, found the text "-,05"; write -0.05
 -1 => expected a whole number that is not negative, found -1
 [1, 2] => expected 3 whole numbers that are not negative in brackets, found 2 values
 [true, 1, false] => expected 3 of true or false in brackets, found 1
@@ -401,11 +397,11 @@ xyzzy => object.0.xyzzy: unknown key; known here: bevel, chamfer, ";
             let table = format!("bevel = {value}").parse().unwrap();
             let keys = Keys::new(&table, "", KNOWN).unwrap();
             let found = match number {
-                0 | 1 => keys.get::<f64>("bevel").err(),
-                2 => keys.get::<u32>("bevel").err(),
-                3 => keys.get::<[u32; 3]>("bevel").err(),
-                4 => keys.get::<[bool; 3]>("bevel").err(),
-                5 => keys.text("bevel").err(),
+                0 => keys.get::<f64>("bevel").err(),
+                1 => keys.get::<u32>("bevel").err(),
+                2 => keys.get::<[u32; 3]>("bevel").err(),
+                3 => keys.get::<[bool; 3]>("bevel").err(),
+                4 => keys.text("bevel").err(),
                 _ => keys.pairs("bevel").err(),
             };
             let wanted = wanted

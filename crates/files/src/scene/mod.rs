@@ -9,6 +9,7 @@ mod keys;
 mod overrides;
 mod polygon;
 mod reader;
+mod spelling;
 mod warnings;
 
 pub use keys::decimal_comma;
@@ -120,8 +121,7 @@ impl SceneFile {
     fn choose_camera(&mut self, sets: &[String]) -> Result<()> {
         let of_object = |set: &&String| set.trim_start().starts_with("object.");
         let sets: Vec<String> = sets.iter().filter(of_object).cloned().collect();
-        let scene = self.reader.scene(&overrides::applied(&self.root, &sets)?)?;
-        scene.check()?;
+        let scene = self.read(&sets)?;
         let Some(object) = scene.objects.first() else {
             return Ok(());
         };
@@ -159,14 +159,20 @@ impl SceneFile {
             if self.chooses_camera {
                 self.choose_camera(sets)?;
             }
-            let scene = self.reader.scene(&overrides::applied(&self.root, sets)?)?;
-            scene.check()?;
-            Ok(scene)
+            self.read(sets)
         };
         read().map_err(|e: Error| match &self.file {
             Some(file) => e.in_file(file),
             None => e,
         })
+    }
+
+    fn read(&mut self, sets: &[String]) -> Result<Scene> {
+        let root = overrides::applied(&self.root, sets)?;
+        let scene = self.reader.scene(&root);
+        let scene = scene.map_err(|e| spelling::hinted(e, &root))?;
+        scene.check()?;
+        Ok(scene)
     }
 
     /// The file's text with each of `sets` (as in [`SceneFile::scene`]) replacing the file's value.
@@ -228,7 +234,25 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let spanned = error.span().and_then(|span| text.get(span)).unwrap_or("");
     let duplicate = (message == "duplicate key").then(|| format!(" `{}`", spanned.trim()));
     let whole = text.lines().nth(line - 1).unwrap_or("");
-    let remedy = spelling(whole).map_or(String::new(), |spelled| format!("; {spelled}"));
+    let header = |line: &&str| line.starts_with('[') && line.contains(|c: char| c.is_alphabetic());
+    let table = text.lines().take(line).filter(header).last();
+    let table = table.map_or("", |l| {
+        l.split('#')
+            .next()
+            .unwrap_or(l)
+            .trim()
+            .trim_matches(['[', ']'])
+    });
+    // What the parser says of numbers beyond its types.
+    let is_large = ["overflowed", "too large", "as i128"].map(|words| message.contains(words));
+    let (message, remedy) = match is_large.contains(&true) {
+        true => (
+            "a number is too large".to_owned(),
+            spelling::range(whole, table),
+        ),
+        false => (message, spelling::of_line(whole, table)),
+    };
+    let remedy = remedy.map_or(String::new(), |remedy| format!("; {remedy}"));
     let message = match not_toml(text) {
         Some(what) => what.to_owned(),
         None => format!(
@@ -237,17 +261,6 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
         ),
     };
     file_fault(message).at_key(format!("line {line}, column {column}"))
-}
-
-/// How to write the value of a line that TOML does not take.
-fn spelling(line: &str) -> Option<String> {
-    let value = line.split_once('=')?.1;
-    if value.contains('"') && value.contains('\\') {
-        return Some("write / in paths, or single quotes about them".to_owned());
-    }
-    let value = value.split('#').next().unwrap_or(value).trim();
-    let plain = decimal_comma(value).or_else(|| overrides::with_plain_numbers(value))?;
-    (plain != value).then(|| format!("write {plain}"))
 }
 
 /// What a text is that cannot be meant as TOML.

@@ -44,10 +44,11 @@ fn put<'s>(
     let path = |steps: &[&'s str]| [above, steps].concat();
     let numbered = below.first().is_some_and(|b| b.parse::<usize>().is_ok());
     if numbered && !table.contains_key(*step) {
-        return Err(match below {
-            [_] => format!(
-                "the scene has no `{step}` to change; set the whole list first, as in {}=[0, 0, 0]",
-                path(&[*step]).join(".")
+        return Err(match step {
+            _ if !["light", "object"].contains(step) => format!(
+                "the scene has no `{step}` to change; set the whole list first, as in {}={}",
+                path(&[*step]).join("."),
+                example(step)
             ),
             _ => format!(
                 "the scene has no [[{step}]] to change; add one to the file, or set {step}=[{{}}] first"
@@ -85,6 +86,20 @@ fn put<'s>(
             put(inner, (&path(&[*step, *index]), below), value)
         }
         _ => Err(format!("`{step}` is a value, which has no keys below it")),
+    }
+}
+
+/// A list that the key `name` takes.
+fn example(name: &str) -> &'static str {
+    match name {
+        "polygon" => "[[0, 0], [0.5, 0], [0, 1]]",
+        "up" => "[0, 0, 1]",
+        "direction" => "[0, 0, -1]",
+        "scale" | "repeat" => "[1, 1, 1]",
+        "mirror" => "[false, false, false]",
+        "rotation" | "background" => "[0, 0, 0, 1]",
+        "texture_repeat" | "texture_offset" | "axis" => "[1, 1]",
+        _ => "[0, 0, 0]",
     }
 }
 
@@ -126,8 +141,8 @@ fn plain_number(word: &str) -> Option<String> {
         return None; // a word, such as inf
     }
     match unsigned.bytes().all(|b| b.is_ascii_digit()) {
-        true => word.parse::<i64>().ok().map(|n| n.to_string()),
-        false => word.parse::<f64>().ok().map(|x| format!("{x:?}")),
+        true if word.parse::<i64>().is_ok() => word.parse::<i64>().ok().map(|n| n.to_string()),
+        _ => word.parse::<f64>().ok().map(|x| format!("{x:?}")),
     }
 }
 
@@ -184,7 +199,7 @@ bevel => sets: "bevel" assigns nothing
 object.2.bevel=1 => object.2.bevel: there is no object.2: the scene has 2
 object.bevel=1 => object.bevel: `object` is a list; say which: object.0.bevel
 object.0=1 => object.0: is a table; name a key of it
-camera.up.2=1 => no `up` to change; set the whole list first, as in camera.up=[0, 0, 0]
+camera.up.2=1 => no `up` to change; set the whole list first, as in camera.up=[0, 0, 1]
 light.0.radius=1 => no [[light]] to change; add one
 camera.fov_y.x=1 => camera.fov_y.x: `fov_y` is a value
 camera..x=1 => a part of the key is empty

@@ -331,6 +331,9 @@ fn placement(keys: &Keys) -> Result<Placement> {
     }
     let mut turn = 0.0f64;
     keys.set("turn", &mut turn)?;
+    if !turn.is_finite() {
+        return Err(keys.fail("turn", format!("is {turn:?}; give degrees")));
+    }
     if turn != 0.0 {
         placement.rotation *= DQuat::from_rotation_z(turn.to_radians());
     }

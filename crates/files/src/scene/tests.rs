@@ -344,7 +344,10 @@ fn the_file_is_named() {
             "bakground = 1",
             "s.toml: bakground: unknown key; did you mean `background`?",
         ),
-        ("extend = 1", "did you mean `object.0.extend`?"),
+        (
+            "extend = 1",
+            "write it below [[object]], or set object.0.extend",
+        ),
         (&missing, "none.png: object.0.profile:"),
     ] {
         std::fs::write(&file, text).unwrap();

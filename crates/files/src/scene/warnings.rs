@@ -23,10 +23,16 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     let mut found = Vec::new();
     let fov = scene.camera.fov_y;
     if fov < NARROW {
-        found.push(format!(
-            "camera.fov_y: is {fov} degrees; if radians are meant, give {:.1}",
-            fov.to_degrees()
-        ));
+        let size = if fov < 1e-3 {
+            format!("{fov:e}")
+        } else {
+            format!("{fov}")
+        };
+        let remedy = match fov.to_degrees() {
+            ..NARROW => format!("give more than {NARROW}, such as {}", Camera::FOV_Y),
+            meant => format!("if radians are meant, give {meant:.1}"),
+        };
+        found.push(format!("camera.fov_y: is {size} degrees; {remedy}"));
     }
     let mut color = |key: &str, channels: &[f32], most: f32| {
         if let Some(c) = channels.iter().find(|c| **c > most) {

@@ -1,0 +1,252 @@
+//! Hints that propose a value are fed back: none is refused at the same key.
+
+#![allow(clippy::unwrap_used)]
+use super::super::keys::OBJECT;
+use super::super::reader::{CAMERA, LIGHT};
+use super::super::{scene, warnings};
+use super::*;
+use crate::{ProfileAxis, profile_from_bytes};
+use revmap::error::Result;
+use revmap::scene::Scene;
+
+const EYE: &str = "eye = [2, 0, 0.5]\n";
+const CONE: &str = "polygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n";
+
+/// A scene with a line in the table of its key.
+fn text(table: &str, line: &str) -> String {
+    let within = |name| if table == name { line } else { "" };
+    let eye = if line.starts_with("eye") { "" } else { EYE };
+    let target = "target = [0, 0, 0.5]\n";
+    let target = if line.starts_with("target") {
+        ""
+    } else {
+        target
+    };
+    let cone = match line {
+        _ if line.starts_with("polygon") => "",
+        _ if line.starts_with("profile") => "profile = \".\"\n",
+        _ => CONE,
+    };
+    let [root, camera, light, object] = ["", "camera", "light", "object"].map(within);
+    format!(
+        "{root}\n[camera]\n{eye}{target}{camera}\n[[light]]\n{light}\n[[object]]\n{cone}{object}\n"
+    )
+}
+
+fn read(text: &str, sets: &[String]) -> Result<Scene> {
+    SceneFile::parse(text, "").and_then(|mut file| file.scene(sets))
+}
+
+/// Values that are refused for most keys.
+const VALUES: &str = r#".5 5. -.5 +5. 07 -0,5 0,5 1,000 1e400 -1e400 1.e400 12345678901234567890
+    -12345678901234567890 99999999999999999999999999999999999999999999 0x1ffffffffffffffffff 1,5e400 True FALSE
+    "0,5" "1,000" ".5" "1" "1e400" "-0,5" "True" [.5,1,0] [1e400,3,2] [12345678901234567890,1,1] [1,.5] [1.e400,0,0,1]
+    [True,False,True] ["0,5",1,1] ["1,000",1,2] [[0,.1],[.3,.1],[0,.9]] [[0,1e400],[.3,.1],[0,.9]] 1,000,000 1.5.2 1e12. 5e12.
+    [-.5,-1,-1] [0,5] 0.1f inf nan"#;
+
+/// Every key with every value: what is proposed is taken, or the next refusal is of another key.
+#[test]
+fn a_proposed_spelling_is_taken() {
+    let tables = [("", "background ambient shadow"), ("camera", CAMERA)];
+    let tables = tables
+        .into_iter()
+        .chain([("light", LIGHT), ("object", OBJECT)]);
+    let (mut proposed, mut ranged) = (0, 0);
+    for (table, keys) in tables {
+        for key in keys.split_whitespace() {
+            for value in VALUES.split_whitespace() {
+                let line = format!("{key} = {value}");
+                let Err(refusal) = read(&text(table, &line), &[]) else {
+                    continue;
+                };
+                let message = refusal.to_string();
+                assert!(
+                    !message.contains("i128") && !message.contains("write inf"),
+                    "{line}: {message}"
+                );
+                if message.contains("too large") {
+                    ranged += usize::from(message.contains("; give "));
+                }
+                let Some((_, hints)) = message.split_once("; write ") else {
+                    continue;
+                };
+                for hint in hints.split(" or ") {
+                    proposed += 1;
+                    let again = read(&text(table, &format!("{key} = {hint}")), &[]);
+                    let at_key = |e: Error| e.to_string().contains(&format!("{key}:"));
+                    assert!(!again.is_err_and(at_key), "{line}: {message}");
+                }
+            }
+        }
+    }
+    assert!(proposed > 80 && ranged > 100, "{proposed} {ranged}");
+}
+
+/// Assignments, and the start of the proposal in their refusal.
+const SETS: &str = "
+camera.up=[0,0,0] => give |camera.up
+camera.up=[-4,0,0] => as to |camera.up
+camera.eye=[0,0,3] camera.up=[0,0,1] => as to |camera.up
+camera.eye=[0,3,0.5] camera.up=[0,1,0] => as to |camera.up
+camera.eye=[0,3,0.5] camera.up=[0,0,0] => give |camera.up
+object.0.rotation=[0,0,0,0] => quaternion; |object.0.rotation
+object.0.extend=0,5 => write |object.0.extend
+object.0.map_rows=\"100\" => write |object.0.map_rows
+";
+
+#[test]
+fn a_proposed_value_is_taken() {
+    let scene = text("", "");
+    for (sets, wanted) in SETS.lines().filter_map(|line| line.split_once(" => ")) {
+        let sets: Vec<String> = sets.split(' ').map(str::to_owned).collect();
+        let (before, key) = wanted.split_once('|').unwrap();
+        let message = read(&scene, &sets).unwrap_err().to_string();
+        let (_, hint) = message.split_once(before).expect(&message);
+        let hint = hint.split(" is ").next().unwrap();
+        let mended = [sets.as_slice(), &[format!("{key}={hint}")]].concat();
+        assert!(read(&scene, &mended).is_ok(), "{message}");
+    }
+    // Parts of lists that the scene does not have.
+    let bare = scene.replace(CONE, "");
+    let missing = "camera.up object.0.color object.0.scale object.0.position object.0.repeat object.0.mirror \
+        object.0.rotation object.0.axis object.0.texture_repeat object.0.texture_offset object.0.polygon background \
+        ambient";
+    for key in missing.split_whitespace() {
+        let scene = if key == "object.0.polygon" {
+            &bare
+        } else {
+            &scene
+        };
+        let refusal = read(scene, &[format!("{key}.1=1")])
+            .unwrap_err()
+            .to_string();
+        let (_, hint) = refusal.split_once("as in ").expect(&refusal);
+        assert!(read(scene, &[hint.to_owned()]).is_ok(), "{refusal}");
+    }
+    let dark = scene.replace("[[light]]", "");
+    let refusal = read(&dark, &["light.0.radius=1".to_owned()]).unwrap_err();
+    let (_, hint) = refusal.message.split_once("or set ").unwrap();
+    let hint = hint.strip_suffix(" first").unwrap();
+    assert!(read(&dark, &[hint.to_owned()]).is_ok(), "{refusal}");
+}
+
+#[test]
+fn a_proposed_field_of_view_is_wide_enough() {
+    for fov in ["1e-300", "1e-9", "1e-4", "0.0349", "0.035", "0.7", "1.9999"] {
+        let scene = read(&text("camera", &format!("fov_y = {fov}")), &[]).unwrap();
+        let found = warnings(&scene, 80, 60);
+        assert!(found.len() == 1 && found[0].len() < 100, "{found:?}");
+        let digits = |c: char| !c.is_ascii_digit() && c != '.';
+        let hint = found[0].rsplit(' ').next().unwrap().trim_matches(digits);
+        let again = read(&text("camera", &format!("fov_y = {hint}")), &[]).unwrap();
+        assert_eq!(warnings(&again, 80, 60), [""; 0], "{found:?}");
+    }
+}
+
+/// `name = value` in a warning.
+fn assigned(text: &str, name: &str) -> Option<String> {
+    let (_, rest) = text.split_once(&format!("{name} = "))?;
+    let end = rest.find(']').map_or(rest.len(), |at| at + 1);
+    let end = if rest.starts_with('[') {
+        end
+    } else {
+        rest.find([',', ';', ' ', '\n']).unwrap_or(rest.len())
+    };
+    Some(rest[..end].trim_end_matches(" and").to_owned())
+}
+
+#[test]
+fn a_proposed_box_holds_the_points() {
+    for points in [
+        [[50.0, -10.0], [65.0, 6.0], [44.5, 88.0]],
+        [[0.0, -0.5], [0.3, 0.5], [0.0, 0.5]],
+        [[0.0, 2.0], [40.0, 2.0], [0.0, 2.5]],
+        [[0.0, 0.0], [9999.0, 0.0], [0.0, 1e4]],
+        [[0.0, 0.0], [0.8, 0.0], [0.0, 1.0]],
+    ] {
+        let of = |points: &[[f64; 2]], more: &str| {
+            let scene = text("object", &format!("polygon = {points:?}\n{more}"));
+            read(&scene, &[]).unwrap().objects[0]
+                .profile
+                .warnings
+                .clone()
+        };
+        let found = of(&points, "radius = 0.5").join("\n");
+        let number =
+            |text: Option<&str>| text.and_then(|t| t.split([' ', ',']).next()?.parse::<f64>().ok());
+        let by = number(found.split_once("give r / ").map(|(_, rest)| rest)).unwrap_or(1.0);
+        let low = assigned(&found, "position").map_or(0.0, |p| {
+            let last = p.trim_end_matches(']').rsplit(", ").next().unwrap();
+            last.parse().unwrap()
+        });
+        let radius = assigned(&found, "radius").unwrap_or("0.5".to_owned());
+        let mut more = format!("radius = {radius}\n");
+        for key in ["scale", "position"] {
+            more += &assigned(&found, key).map_or(String::new(), |v| format!("{key} = {v}\n"));
+        }
+        let fitted = points.map(|[r, z]| [r / by, (z - low) / by]);
+        assert_eq!(of(&fitted, &more), [""; 0], "{found}");
+    }
+}
+
+/// A picture of `solid` and `ground` with a ball about a place of the width.
+fn ball(solid: u8, ground: u8, at: f64) -> Vec<u8> {
+    crate::png_bytes(image::GrayImage::from_fn(200, 120, |x, y| {
+        let from = (f64::from(x) - 200.0 * at).hypot(f64::from(y) - 60.0);
+        image::Luma([if from < 40.0 { solid } else { ground }])
+    }))
+}
+
+/// What is said of a picture or drawing, as a warning or a refusal.
+fn said(bytes: &[u8], lines: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p"), bytes).unwrap();
+    let file = folder.path().join("s.toml");
+    let object = format!("profile = \"p\"\n{lines}");
+    std::fs::write(&file, text("object", "").replace(CONE, &object)).unwrap();
+    let found = scene(&file).map(|scene| scene.objects[0].profile.warnings.join("\n"));
+    found.unwrap_or_else(|e| e.to_string())
+}
+
+#[test]
+fn a_proposed_key_of_a_profile_mends_it() {
+    let half = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-8z";
+    let drawn = |at: f64, side: i32| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='{half}' \
+             transform='translate({at}) scale({side} 1) translate(-50)'/></svg>"
+        )
+        .into_bytes()
+    };
+    for bytes in [
+        ball(255, 0, 0.5),
+        ball(10, 250, 0.3),
+        ball(10, 250, 0.75),
+        drawn(30.0, 1),
+        drawn(0.0, 1),
+        drawn(85.0, 1),
+    ] {
+        let before = said(&bytes, "");
+        let keys = ["profile_axis", "profile_threshold", "profile_invert"];
+        let lines = keys
+            .map(|key| assigned(&before, key).map_or(String::new(), |v| format!("{key} = {v}\n")));
+        assert!(!lines.concat().is_empty(), "{before}");
+        let after = said(&bytes, &lines.concat());
+        let cut = after.contains("cut by the right edge");
+        assert!(after.is_empty() || cut, "{before}: {after}");
+    }
+    // Beside the page there is no axis.
+    for (at, side) in [(-5.0, 1), (108.0, -1), (104.0, 1)] {
+        let found = said(&drawn(at, side), "");
+        assert!(
+            !found.contains("axis = -") && !found.contains("axis = 1"),
+            "{found}"
+        );
+    }
+    assert!(
+        profile_from_bytes(&drawn(50.0, 1), ProfileAxis::Center)
+            .unwrap()
+            .warnings
+            .is_empty()
+    );
+}
