@@ -1,14 +1,14 @@
 //! `revmap animate`: a turntable, or changing parameters, as numbered pictures or one that moves, with
 //! the time of every frame.
 
-use super::moving::{ENDINGS, Format, Playing};
+use super::moving::{ENDINGS, Format, Motion, Playing, Stillness, claim, frames_in};
 use super::options::{Drawing, Samples, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
 use super::vary::Vary;
 use clap::Args;
 use glam::{DQuat, DVec3};
-use revmap::error::{Error, ErrorKind, Result};
+use revmap::error::{ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::scene::{Camera, Scene};
 use revmap::settings::Planes;
@@ -16,16 +16,15 @@ use revmap_bench::method::Edges;
 use revmap_bench::renderer::{MethodDevice, MethodRenderer};
 use revmap_files::scene::blank;
 use revmap_files::{Picture, SceneFile};
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Draws a turntable or a sweep of parameters, as a moving picture or numbered ones
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
-    revmap animate pawn.svg --frames 50 --turn 360 -o pawn.gif --set background=[1,1,1,1]\n  \
+    revmap animate pawn.svg --frames 50 --vary object.0.extend=0:0.05 --bounce --studio -o pawn.gif\n  \
     revmap animate pawn.svg --frames 50 --turn 360 --vary object.0.bevel=0:1 --bounce -o pawn.webp\n  \
-    revmap animate pawn.svg --frames 36 --turn 360 -o out/pawn\n  \
+    revmap animate assets/scenes/chess.toml --frames 36 --turn 360 --turntable -o out/chess\n  \
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
@@ -34,10 +33,11 @@ pub struct Animate {
     /// Number of frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// Turns the camera about its target by so many degrees in all
+    /// Turns the camera about its target by so many degrees in all. The lights stay where they are
+    /// in the scene; those of --studio stay with the camera
     #[arg(long, value_name = "DEGREES")]
     turn: Option<f64>,
-    /// Turns the scene in place of the camera: the lights stay as the camera sees them
+    /// Turns the scene in place of the camera: all lights stay with the camera
     #[arg(long, requires = "turn")]
     turntable: bool,
     /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or
@@ -96,6 +96,8 @@ struct Drawn {
     blanks: Vec<Blank>,
     /// Frames of a moving picture.
     pictures: Vec<Picture>,
+    /// Of the frames that are kept.
+    stillness: Stillness,
 }
 
 impl Animate {
@@ -134,7 +136,7 @@ impl Animate {
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
         let drawn = self.draw(&device, &mut file, &varied, &first, target, &progress)?;
-        let Drawn { rows, blanks, .. } = &drawn;
+        let rows = &drawn.rows;
         device.check()?;
         kept.save(&device);
         if let Some(Target::Moving(format, path)) = target {
@@ -146,7 +148,7 @@ impl Animate {
             write_times(path, rows)?;
         }
         if !self.drawing.quiet {
-            let warnings = self.warnings(&first, &varied, blanks, target);
+            let warnings = self.warnings(&first, &varied, &drawn, target);
             warnings.iter().for_each(|w| output::warn(w));
         }
         self.tell(&device, rows, target);
@@ -179,16 +181,26 @@ impl Animate {
         &self,
         first: &Scene,
         varied: &[Vary],
-        blanks: &[Blank],
+        drawn: &Drawn,
         target: Option<Target>,
     ) -> Vec<String> {
+        let blanks = &drawn.blanks;
         let mut warnings = self.drawing.warnings(first);
         if self.samples.count > 1 && self.output.is_none() {
             warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
         }
-        if self.frames > 1 && self.turn.unwrap_or(0.0) == 0.0 && !varied.iter().any(Vary::moves) {
+        let turn = self.turn.unwrap_or(0.0);
+        if self.frames > 1 && turn == 0.0 && !varied.iter().any(Vary::moves) {
             warnings
                 .push("nothing moves, so all frames are equal; give --turn or --vary".to_owned());
+        } else if self.frames > 1 && blanks.is_empty() && drawn.stillness.stands_still() {
+            let motion = Motion {
+                scene: first,
+                step: turn / f64::from(self.frames),
+                turntable: self.turntable && !self.surroundings.studio,
+                varied,
+            };
+            warnings.push(motion.remedy());
         }
         if let Some((n, why)) = blanks.first() {
             let (count, all) = (blanks.len(), self.frames);
@@ -245,11 +257,17 @@ impl Animate {
                         draw(&mut renderer, scene)?;
                         renderer.read()
                     })?;
+                    let picture = match target {
+                        Target::Folder(_) => Picture::of(&frame)?,
+                        Target::Moving(format, _) => format.picture(&frame)?,
+                    };
+                    drawn.stillness.add(&picture);
                     match target {
                         Target::Folder(folder) => {
-                            revmap_files::write_png(&frame, self.picture(folder, n))?;
+                            let path = self.picture(folder, n);
+                            picture.write_png(&path).map_err(|e| e.in_file(path))?;
                         }
-                        Target::Moving(format, _) => drawn.pictures.push(format.picture(&frame)?),
+                        Target::Moving(..) => drawn.pictures.push(picture),
                     }
                     drawn
                         .blanks
@@ -295,7 +313,6 @@ impl Animate {
             }
             e
         })?;
-        self.surroundings.add_to(&mut scene)?;
         if let Some(turn) = self.turn {
             let returns = self.bounce && turn % 360.0 != 0.0;
             let angle = (turn * if returns { part } else { around }).to_radians();
@@ -305,6 +322,7 @@ impl Animate {
                 lights.for_each(|light| light.direction = about * light.direction);
             }
         }
+        self.surroundings.add_to(&mut scene)?;
         Ok(scene)
     }
 
@@ -350,41 +368,6 @@ pub fn turn_about_target(camera: &mut Camera, angle: f64) -> DQuat {
     let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
     camera.eye = camera.target + about * (camera.eye - camera.target);
     about
-}
-
-/// Frames in a folder, `frame-` and a number of four digits or more, in order.
-fn frames_in(folder: &Path) -> Vec<PathBuf> {
-    let is_frame = |path: &PathBuf| {
-        let name = path.file_name().and_then(OsStr::to_str);
-        let number = name.and_then(|n| n.strip_prefix("frame-")?.strip_suffix(".png"));
-        number.is_some_and(|n| n.len() >= 4 && n.bytes().all(|b| b.is_ascii_digit()))
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
-    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let mut frames: Vec<_> = paths.filter(is_frame).collect();
-    frames.sort();
-    frames
-}
-
-/// Makes the folder of frames. A folder with frames of an earlier run, `old`, is refused, unless
-/// `overwrite`: then they are removed.
-fn claim(folder: &Path, old: &[PathBuf], overwrite: bool) -> Result<()> {
-    let fail = |message: String| Error::new(ErrorKind::File, message).in_file(folder);
-    if !old.is_empty() && !overwrite {
-        let message = format!(
-            "holds {} frames of an earlier run; choose another folder, or give --overwrite to replace them",
-            old.len()
-        );
-        return Err(usage("--output", message).in_file(folder));
-    }
-    std::fs::create_dir_all(folder)
-        .map_err(|e| fail(format!("cannot be made ({e}); choose another folder")))?;
-    let removed = old.iter().try_for_each(std::fs::remove_file);
-    removed.map_err(|e| {
-        fail(format!(
-            "an earlier frame cannot be removed ({e}); choose another folder"
-        ))
-    })
 }
 
 fn write_times(path: &Path, rows: &[Row]) -> Result<()> {

@@ -172,7 +172,7 @@ pub struct Surroundings {
     /// Puts a ground below the objects, and replaces lights and background: soft light from the
     /// upper left of the camera, and a plain light grey
     #[arg(long)]
-    studio: bool,
+    pub studio: bool,
 }
 
 impl Surroundings {

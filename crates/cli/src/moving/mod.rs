@@ -1,4 +1,4 @@
-//! Moving pictures: GIF, WebP and APNG.
+//! Moving pictures: GIF, WebP and APNG; or numbered frames in a folder.
 //!
 //! | format | crate | colours | 48 frames of 640 x 360 |
 //! |---|---|---|---|
@@ -10,8 +10,13 @@
 //! (an older libwebp).
 
 mod apng;
+mod folder;
 mod gif;
+mod stillness;
 mod webp;
+
+pub use folder::{claim, frames_in};
+pub use stillness::{Motion, Stillness};
 
 use super::output::{self, usage};
 use clap::Args;
@@ -39,6 +44,15 @@ impl Format {
         all.find(is).map(|(_, format)| format)
     }
 
+    /// The most frames a second. Browsers show a frame of 10 ms or less for 100 ms. A GIF counts
+    /// in hundredths of a second, so its next delay is 20 ms.
+    fn fastest(self) -> u16 {
+        match self {
+            Self::Gif => 50,
+            Self::Webp | Self::Apng => 90,
+        }
+    }
+
     /// A frame for a file. A GIF has no soft edges, so white is put behind it.
     pub fn picture(self, frame: &Frame) -> Result<Picture> {
         if self != Self::Gif {
@@ -57,8 +71,8 @@ impl Format {
 /// How a moving picture plays
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Playing {
-    /// Frames a second of a moving picture, 1 to 100; a GIF has 50 at most [default: 25]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    /// Frames a second of a moving picture, 1 to 90; a GIF has 50 at most [default: 25]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     fps: Option<u16>,
     /// How often a moving picture plays; 0 is for ever [default: 0]
     #[arg(long, value_name = "N")]
@@ -103,11 +117,12 @@ impl Playing {
                 None => Ok(None),
             };
         };
-        if format == Format::Gif && self.fps.is_some_and(|fps| fps > 50) {
-            return Err(usage(
-                "--fps",
-                "is more than the 50 that a GIF can have; give 50, or write .webp",
-            ));
+        let fastest = format.fastest();
+        if self.fps.is_some_and(|fps| fps > fastest) {
+            let message = format!(
+                "is more than {fastest}; browsers show frames of 10 ms or less for a tenth of a second; give {fastest} or less"
+            );
+            return Err(usage("--fps", message));
         }
         if self.quality.is_some() && format != Format::Webp {
             return Err(usage("--quality", "is of .webp; other formats have none"));

@@ -1,6 +1,6 @@
 //! `revmap animate`: moving pictures, read again, and how things move in them.
 
-use crate::run::{Bench, lines};
+use crate::run::{Bench, CAMERA, CONE, SVG, lines};
 use std::fs::File;
 use std::io::BufReader;
 
@@ -103,6 +103,120 @@ fn moving_pictures_show_the_frames_of_a_folder() {
     assert_eq!(read_gif(&bench, "ever.gif").1, gif::Repeat::Infinite);
 }
 
+/// Warnings of a run that is done.
+fn warned(bench: &Bench, arguments: &str) -> Vec<String> {
+    let said = lines(&bench.done(arguments));
+    let is = |line: &String| line.starts_with("warning: ");
+    said.into_iter().filter(is).collect()
+}
+
+#[test]
+fn a_film_that_stands_still_is_named_with_what_moves() {
+    let bench = Bench::new();
+    bench.grey("rings.png", 8, 8, |_, y| 30 * y as u8);
+    bench.grey("sides.png", 8, 8, |x, _| 30 * x as u8);
+    bench.file("a.svg", SVG);
+    bench.file(
+        "aside.toml",
+        format!("{CAMERA}{CONE}position = [0.2, 0, 0]\n"),
+    );
+    let film = "animate --size 64x48 --overwrite --set background=[1,1,1,1]";
+    let (turn, vary) = ("--turn 360 --turntable", "--vary object.0.extend=0:0.02");
+    let rings = "--set object.0.color_map=rings.png";
+    let plain = ["color_map", "--bounce", "without --turntable"];
+    let outputs = ["a.gif", "a.webp", "a.apng", "frames"];
+    for (arguments, words) in [
+        (format!("scene.toml --frames 6 {turn}"), plain.as_slice()),
+        (format!("a.svg --frames 6 {turn}"), &plain),
+        (format!("a.svg --frames 6 {turn} --studio"), &plain[..2]),
+        (
+            "a.svg --frames 6 --turn 360 --studio".to_owned(),
+            &plain[..2],
+        ),
+        (format!("a.svg --frames 6 {turn} {rings}"), &plain[1..]),
+        ("a.svg --frames 2 --turn 720".to_owned(), &["whole turns"]),
+        (
+            "a.svg --frames 6 --vary object.0.chamfer=0.1:0.9".to_owned(),
+            &["object.0.chamfer"],
+        ),
+    ] {
+        for output in outputs {
+            let found = warned(&bench, &format!("{film} {arguments} -o {output}"));
+            assert_eq!(found.len(), 1, "{arguments} {output}: {found:?}");
+            for word in plain.iter().chain(words) {
+                assert_eq!(
+                    found[0].contains(word),
+                    words.contains(word),
+                    "{word}: {found:?}"
+                );
+            }
+        }
+    }
+    for arguments in [
+        format!("scene.toml {turn} --set object.0.color_map=sides.png"),
+        "scene.toml --turn 360".to_owned(),
+        format!("scene.toml {turn} {vary}"),
+        format!("scene.toml {turn} {vary} --studio"),
+        format!("aside.toml {turn}"),
+        format!("aside.toml {turn} --studio"),
+        format!("scene.toml {vary}"),
+    ] {
+        for output in ["a.webp", "frames"] {
+            let found = warned(
+                &bench,
+                &format!("{film} --frames 6 {arguments} -o {output}"),
+            );
+            assert!(found.is_empty(), "{arguments}: {found:?}");
+        }
+    }
+}
+
+/// The light of the studio stays with the camera, so no half of a turn is dark.
+#[test]
+fn a_turn_in_the_studio_is_evenly_bright() {
+    let bench = Bench::new();
+    let film = "--size 64x48 --frames 6 --studio --overwrite --set object.0.color=[0.8,0.05,0.05]";
+    for turn in ["--turn 360", "--turn 360 --turntable"] {
+        bench.done(&format!("animate scene.toml {turn} {film} -o frames"));
+        let mean = |n: u32| {
+            let path = bench.path(&format!("frames/frame-000{n}.png"));
+            let picture = image::open(path).unwrap().to_rgb8();
+            let solid = picture.pixels().filter(|p| p.0[0] / 2 > p.0[1]);
+            let red: Vec<u32> = solid.map(|p| u32::from(p.0[0])).collect();
+            assert!(red.len() > 200, "{}", red.len());
+            f64::from(red.iter().sum::<u32>()) / red.len() as f64
+        };
+        let means: Vec<f64> = (0..6).map(mean).collect();
+        let bright = means.iter().fold(0.0, |most: f64, m| most.max(*m));
+        assert!(
+            means.iter().all(|m| *m > 0.97 * bright),
+            "{turn}: {means:?}"
+        );
+    }
+}
+
+/// Browsers show a frame of 10 ms or less for 100 ms.
+#[test]
+fn the_fastest_rate_has_no_frame_of_ten_milliseconds() {
+    let bench = Bench::new();
+    let turn = "animate scene.toml --size 48x36 --frames 100 --turn 90 --set background=[1,1,1,1]";
+    bench.done(&format!("{turn} --fps 50 -o a.gif"));
+    bench.done(&format!("{turn} --fps 90 -o a.webp --quality 100"));
+    bench.done(&format!("{turn} --fps 90 -o a.apng"));
+    let all = [
+        read_gif(&bench, "a.gif").0,
+        read_webp(&bench, "a.webp"),
+        read_apng(&bench, "a.apng").0,
+    ];
+    for frames in all {
+        let mut start = 0;
+        for (end, _) in frames {
+            assert!(end - start > 10, "{start} to {end} ms");
+            start = end;
+        }
+    }
+}
+
 #[test]
 fn edges_stay_soft_or_get_a_ground() {
     let bench = Bench::new();
@@ -163,6 +277,8 @@ fn what_does_not_move_is_refused_first() {
          animate scene.toml --frames 2 -o a --fps 10               | --fps | .webp
          animate scene.toml --frames 2 --loops 2                   | --loops | .webp
          animate scene.toml --frames 2 -o a.gif --fps 60           | --fps | 50
+         animate scene.toml --frames 2 -o a.webp --fps 91          | --fps | 90 | a tenth of a second
+         animate scene.toml --frames 2 -o a.apng --fps 100         | --fps | 90 | a tenth of a second
          animate scene.toml --frames 2 -o a.gif --quality 60       | --quality | .webp
          animate scene.toml --frames 2 -o a.webp --size 16384x2    | --size | 16383
          animate scene.toml --frames 280 -o a.apng                 | --frames | 134400000 pixels | 134217728

@@ -1,0 +1,111 @@
+//! Films in which nothing is seen to move, and what would move.
+
+use crate::vary::Vary;
+use revmap::scene::Scene;
+use revmap_files::Picture;
+
+/// Pixels on a side of a block.
+const SIDE: usize = 8;
+/// Means of a block that differ by more are seen to move, parts of 255. Rounding changes single
+/// pixels of a silhouette, at most 1.2 in the mean of a block; the noise of soft shadows changes
+/// 2.0 (llvmpipe).
+const SEEN: f32 = 4.0;
+
+/// A frame as means of blocks, each of red, green and blue times alpha, and alpha.
+#[derive(PartialEq)]
+struct Blocks(Vec<[f32; 4]>);
+
+impl Blocks {
+    fn of(picture: &Picture) -> Self {
+        let width = picture.width as usize;
+        let across = width.div_ceil(SIDE);
+        let down = (picture.height as usize).div_ceil(SIDE);
+        let mut sums = vec![[0.0; 5]; across * down];
+        for (k, &[r, g, b, a]) in picture.rgba.iter().enumerate() {
+            let sum = &mut sums[k / width / SIDE * across + k % width / SIDE];
+            let opacity = f32::from(a) / 255.0;
+            let [r, g, b] = [r, g, b].map(|c| f32::from(c) * opacity);
+            for (total, v) in sum.iter_mut().zip([r, g, b, f32::from(a), 1.0]) {
+                *total += v;
+            }
+        }
+        Self(
+            sums.iter()
+                .map(|s| [0, 1, 2, 3].map(|c| s[c] / s[4]))
+                .collect(),
+        )
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        let (all, others) = (self.0.as_flattened(), other.0.as_flattened());
+        all.iter().zip(others).all(|(a, b)| (a - b).abs() <= SEEN)
+    }
+}
+
+/// Compares every frame of a film with the first.
+#[derive(Default)]
+pub struct Stillness {
+    first: Option<Blocks>,
+    moves: bool,
+}
+
+impl Stillness {
+    /// Takes the next frame.
+    pub fn add(&mut self, picture: &Picture) {
+        if self.moves {
+            return;
+        }
+        let blocks = Blocks::of(picture);
+        match &self.first {
+            Some(first) => self.moves = !blocks.is_like(first),
+            None => self.first = Some(blocks),
+        }
+    }
+
+    /// True if there are frames, and none is seen to differ from the first.
+    pub fn stands_still(&self) -> bool {
+        self.first.is_some() && !self.moves
+    }
+}
+
+/// How a film moves, for the remedy of one that stands still.
+pub struct Motion<'a> {
+    /// The first frame's scene.
+    pub scene: &'a Scene,
+    /// Degrees from one frame to the next.
+    pub step: f64,
+    /// True if the lights turn with the camera because of `--turntable` alone.
+    pub turntable: bool,
+    pub varied: &'a [Vary],
+}
+
+impl Motion<'_> {
+    /// The warning about a film that stands still.
+    pub fn remedy(&self) -> String {
+        if self.step != 0.0 && self.step % 360.0 == 0.0 {
+            return "--turn: every frame is whole turns after the one before, so all frames look alike; give less".to_owned();
+        }
+        let (mut why, mut remedies) = (String::new(), Vec::new());
+        if self.step != 0.0 {
+            why.push_str(": a solid of revolution looks the same from all sides");
+            let objects = &self.scene.objects;
+            if objects.iter().all(|o| o.texturing.color_map.is_none()) {
+                remedies.push("a colour map (--set object.0.color_map=FILE)");
+            }
+            if self.turntable && !self.scene.lights.is_empty() {
+                remedies.push("--turn without --turntable, under which the lights stay behind");
+            }
+        }
+        match self.varied.first() {
+            Some(vary) if self.step == 0.0 => {
+                why = format!(": --vary {} changes nothing that is seen", vary.key);
+                remedies.push("values farther apart, or another key");
+            }
+            _ => remedies.push("a shape that changes (--vary object.0.extend=0:0.05 --bounce)"),
+        }
+        format!(
+            "all frames look alike{why}; give {}",
+            remedies.join(", or ")
+        )
+    }
+}
