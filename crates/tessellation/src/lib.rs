@@ -17,6 +17,7 @@
 //! axis. `revmap-files` writes [`Triangles`] as files.
 
 mod meridian;
+mod parted;
 mod pixels;
 mod triangles;
 

@@ -1,5 +1,6 @@
 //! A contour's chains, thinned to rings.
 
+use super::parted::{NEAR, cleaned, parted};
 use glam::DVec2;
 use revmap::surface::{Chain, Contour};
 
@@ -34,7 +35,7 @@ const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 /// All chains as strands of at most `most` chords together, or more if corners need them.
 #[must_use]
 pub fn strands_of(contour: &Contour, most: usize) -> Vec<Strand> {
-    let lines = lines(contour);
+    let lines = lines(&cleaned(&contour.chains));
     let count =
         |tolerance: f64| -> usize { lines.iter().map(|l| l.thinned(tolerance).len() - 1).sum() };
     let [mut low, mut high] = TOLERANCES;
@@ -52,13 +53,22 @@ pub fn strands_of(contour: &Contour, most: usize) -> Vec<Strand> {
     lines.iter().map(|l| l.strand(high)).collect()
 }
 
-/// All chains as strands that are nowhere farther than `tolerance` from the contour, and do not
-/// cross each other where walls are thin.
+/// All chains as strands that are nowhere farther than `tolerance` from the contour. They do not
+/// cross each other where walls are thin, and do not meet where parts of the solid touch: there they
+/// are a quarter of the tolerance, or 1e-7 if that is more, away from the contour.
 #[must_use]
 pub fn strands_within(contour: &Contour, tolerance: f64) -> Vec<Strand> {
-    let lines = lines(contour);
+    let apart = (0.25 * tolerance).max(NEAR);
+    let chains = cleaned(&contour.chains);
+    let parted = parted(&chains, apart);
+    let left = if parted.is_some() {
+        tolerance - apart
+    } else {
+        tolerance
+    };
+    let lines = lines(parted.as_ref().unwrap_or(&chains));
     // Chords pass within this of all points, and rings are moved by at most half of it.
-    let mut chords = tolerance / 1.5;
+    let mut chords = left / 1.5;
     loop {
         let strands: Vec<Strand> = lines.iter().map(|l| l.strand(chords)).collect();
         // The finest strands are the contour, whose chains may touch.
@@ -69,11 +79,12 @@ pub fn strands_within(contour: &Contour, tolerance: f64) -> Vec<Strand> {
     }
 }
 
-fn lines(contour: &Contour) -> Vec<Line> {
-    contour.chains.iter().filter_map(Line::new).collect()
+fn lines(chains: &[Chain]) -> Vec<Line> {
+    chains.iter().map(Line::new).collect()
 }
 
-/// Returns true if any two chords cross. Chords that only touch do not.
+/// Returns true if any two chords cross, or are one there and back: a part thinner than the
+/// tolerance. Chords that only touch do not cross.
 fn crosses(strands: &[Strand]) -> bool {
     let chords = strands.iter().flat_map(|s| s.rings.windows(2));
     let mut chords: Vec<[DVec2; 2]> = chords.map(|r| [r[0].point, r[1].point]).collect();
@@ -81,7 +92,7 @@ fn crosses(strands: &[Strand]) -> bool {
     chords.sort_by(|a, b| low(a).total_cmp(&low(b)));
     let mut beside: Vec<[DVec2; 2]> = Vec::new();
     chords.iter().any(|chord| {
-        beside.retain(|c| c[0].y.max(c[1].y) > low(chord));
+        beside.retain(|c| c[0].y.max(c[1].y) >= low(chord));
         let found = beside.iter().any(|other| cross(chord, other));
         beside.push(*chord);
         found
@@ -92,7 +103,7 @@ fn cross([a, b]: &[DVec2; 2], [c, d]: &[DVec2; 2]) -> bool {
     let sides = |a: &DVec2, b: &DVec2, c: &DVec2, d: &DVec2| {
         (b - a).perp_dot(c - a) * (b - a).perp_dot(d - a) < 0.0
     };
-    sides(a, b, c, d) && sides(c, d, a, b)
+    [a, b] == [d, c] || sides(a, b, c, d) && sides(c, d, a, b)
 }
 
 /// A chain from its first point to its last; a closed one begins at a crease if it has any.
@@ -106,35 +117,30 @@ struct Line {
 }
 
 impl Line {
-    fn new(chain: &Chain) -> Option<Self> {
+    fn new(chain: &Chain) -> Self {
         let mut points = chain.points.clone();
-        points.dedup();
         if chain.closed {
             let corner = (0..points.len()).find(|&k| is_corner(&points, true, k));
             points.rotate_left(corner.unwrap_or(0));
-            let first = *points.first()?;
-            points.push(first);
-        } else {
-            points.first_mut()?.x = 0.0;
-            points.last_mut()?.x = 0.0;
+            points.push(points[0]);
         }
-        if points.len() < 3 {
-            return None;
+        let last = points.len() - 1;
+        if !chain.closed {
+            (points[0].x, points[last].x) = (0.0, 0.0);
         }
         let normals: Vec<DVec2> = points
             .windows(2)
             .map(|p| -(p[1] - p[0]).perp().normalize_or_zero())
             .collect();
-        let last = points.len() - 1;
         let mut fixed = vec![0];
         fixed.extend((1..last).filter(|&k| is_corner(&points, false, k)));
         fixed.push(last);
-        Some(Self {
+        Self {
             points,
             normals,
             fixed,
             closed: chain.closed,
-        })
+        }
     }
 
     /// The points that stay: between those that are fixed, chords as long as the tolerance allows.

@@ -1,57 +1,18 @@
-//! Triangles against the reference in double precision, and against volumes in closed form.
-#![allow(clippy::unwrap_used)]
+//! Distances to the reference, volumes in closed form, and refusals.
 
-use glam::{DVec2, DVec3};
+use crate::edges::is_watertight;
+use crate::{corners, object, scene, volume};
+use glam::DVec3;
 use revmap::error::ErrorKind;
-use revmap::maps::Projection;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
+use revmap::scene::{Camera, Clip, Object, Offset, Placement};
 use revmap_reference::{Ray, Reference};
 use revmap_tessellation::{Triangles, pixel_tolerance, strands_within};
-use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 const SCENES: [&str; 12] = [
     "bell", "bishop", "bottle", "goblet", "king", "pawn", "ridges", "ring", "rook", "sphere",
     "spindle", "vase",
 ];
-
-fn scene(name: &str) -> Scene {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes");
-    revmap_files::scene(format!("{folder}/{name}.toml")).unwrap()
-}
-
-fn object(points: &[[f64; 2]]) -> Object {
-    Object::new("polygon", Arc::new(Profile::polygon(points, 0.5).unwrap()))
-}
-
-fn corners(mesh: &Triangles) -> Vec<[DVec3; 3]> {
-    let place = |k: &u32| DVec3::from(mesh.vertices[*k as usize].position.map(f64::from));
-    let of = |t: &[u32]| [place(&t[0]), place(&t[1]), place(&t[2])];
-    mesh.indices.chunks_exact(3).map(of).collect()
-}
-
-fn volume(mesh: &Triangles) -> f64 {
-    let of = |[a, b, c]: &[DVec3; 3]| a.dot(b.cross(*c)) / 6.0;
-    corners(mesh).iter().map(of).sum()
-}
-
-/// Every edge of a triangle is that of one other, in the other direction.
-fn is_watertight(mesh: &Triangles) -> bool {
-    let bits = |k: u32| {
-        mesh.vertices[k as usize]
-            .position
-            .map(|v| (v + 0.0).to_bits())
-    };
-    let mut edges: HashMap<_, [u32; 2]> = HashMap::new();
-    for t in mesh.indices.chunks_exact(3) {
-        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (bits(a), bits(b))) {
-            edges.entry((a.min(b), a.max(b))).or_default()[usize::from(a < b)] += 1;
-        }
-    }
-    edges.values().all(|[back, forth]| back == forth)
-}
 
 /// Distance of a point to the nearest triangle.
 fn distance(triangles: &[[DVec3; 3]], p: DVec3) -> f64 {
@@ -218,61 +179,6 @@ fn volumes_are_those_of_pappus() {
             let off = (volume(&mesh) - pappus).abs();
             assert!(is_watertight(&mesh));
             assert!(off < area * tolerance, "{off} for {tolerance}");
-        }
-    }
-}
-
-#[test]
-fn normals_split_at_edges_and_coordinates_run_once_around() {
-    let can = object(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]]);
-    let mesh = Triangles::new(&can, 1e-3).unwrap();
-    for v in &mesh.vertices {
-        let [x, y, z] = v.position.map(f64::from);
-        let normal = DVec3::from(v.normal.map(f64::from));
-        let radial = DVec2::new(x, y).normalize_or_zero().extend(0.0);
-        let faces = [radial, DVec3::Z, DVec3::NEG_Z];
-        assert!(
-            faces.iter().any(|face| face.distance(normal) < 1e-6),
-            "{v:?}"
-        );
-        assert!((f64::from(v.uv[1]) - z).abs() < 1e-6);
-    }
-    // No triangle goes back across the texture.
-    for t in mesh.indices.chunks_exact(3) {
-        let u = [0, 1, 2].map(|k| mesh.vertices[t[k] as usize].uv[0]);
-        let wide = u.iter().fold(0.0f32, |m, v| m.max((v - u[0]).abs()));
-        assert!(wide < 0.1, "{u:?}");
-    }
-    let seam = mesh
-        .vertices
-        .iter()
-        .filter(|v| v.uv[0] == 1.0 && v.position[0] != 0.0);
-    assert!(seam.clone().count() > 3 && seam.clone().all(|v| v.position[0] < 0.0));
-}
-
-/// Between the rings of a straight wall, `eta` is nearly that of each point.
-#[test]
-fn bent_coordinates_get_rings_of_their_own() {
-    for projection in [Projection::Spherical, Projection::Cylindrical] {
-        let mut can = object(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]]);
-        can.texturing.projection = projection;
-        let mesh = Triangles::new(&can, 1e-2).unwrap();
-        assert!(is_watertight(&mesh));
-        let rings = mesh.vertices.iter().filter(|v| v.uv[0] == 0.0).count();
-        assert_eq!(rings > 4, projection == Projection::Spherical, "{rings}");
-        for t in mesh.indices.chunks_exact(3) {
-            let [a, b] = [t[1], t[2]].map(|k| mesh.vertices[k as usize]);
-            let middle = 0.5
-                * (DVec3::from(a.position.map(f64::from)) + DVec3::from(b.position.map(f64::from)));
-            let wanted = match projection {
-                Projection::Spherical => {
-                    1.0 - middle.truncate().length().atan2(middle.z - 0.5) / PI
-                }
-                _ => middle.z,
-            };
-            let found = 0.5 * (f64::from(a.uv[1]) + f64::from(b.uv[1]));
-            // The middle of a chord about the axis lies within the circle.
-            assert!((found - wanted).abs() < 6e-3, "{found} for {wanted}");
         }
     }
 }
