@@ -235,6 +235,15 @@ pub struct Texturing {
     pub offset: [f64; 2],
 }
 
+impl Texturing {
+    /// Returns true if textures end along `eta`, and their edge goes on beyond. Otherwise they
+    /// repeat.
+    #[must_use]
+    pub fn clamps(&self) -> bool {
+        (self.repeat[1] - 1.0).abs() < f64::EPSILON && self.projection != Projection::Planar
+    }
+}
+
 impl Default for Texturing {
     /// No textures, with cylindrical coordinates.
     fn default() -> Self {

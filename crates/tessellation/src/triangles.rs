@@ -1,7 +1,7 @@
 //! One object as triangles: rings of its contour, turned in equal steps.
 
 use super::meridian::{Ring, Strand, strands_within};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, FloatExt};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{ArcLength, Projection};
 use revmap::scene::{GrownProfiles, Growth, Object};
@@ -29,16 +29,20 @@ pub struct Triangles {
     pub vertices: Vec<Vertex>,
     /// Three for each triangle, counter-clockwise from outside.
     pub indices: Vec<u32>,
+    /// The tolerance that they were made for, object units.
+    pub tolerance: f64,
 }
 
-/// The least tolerance: positions of 32 bits are exact to 6e-8.
-const FINEST: f64 = 1e-6;
 /// Most vertices of an object.
 const MOST_VERTICES: usize = 50_000_000;
-/// Chords are halved until texture coordinates turn by less between them, parts of the texture.
+/// Chords are halved until texture coordinates between their ends are off by less, parts of the
+/// texture.
 const BEND: f64 = 1.0 / 1024.0;
 
 impl Triangles {
+    /// The least tolerance, object units: positions of 32 bits are exact to 6e-8.
+    pub const FINEST: f64 = 1e-6;
+
     /// The triangles of `object`. No point of them is farther than `tolerance` from its surface,
     /// and no point of the surface is farther from them. Half of the tolerance is for the steps
     /// about the axis, and half for chords of the contour.
@@ -49,8 +53,8 @@ impl Triangles {
     /// object's key for replicas, for a solid that the sides of its box cut, for a solid of which
     /// the offset leaves nothing, and for an outline without a surface.
     pub fn new(object: &Object, tolerance: f64) -> Result<Self> {
-        if tolerance.is_nan() || tolerance < FINEST {
-            let message = format!("is {tolerance}; give {FINEST} object units or more");
+        if tolerance.is_nan() || tolerance < Self::FINEST {
+            let message = format!("is {tolerance}; give {} object units or more", Self::FINEST);
             return Err(Error::new(ErrorKind::Usage, message).at_key("tolerance"));
         }
         let refused = |key: &str, what: &str| Error::new(ErrorKind::Content, what).at_key(key);
@@ -81,8 +85,8 @@ impl Triangles {
             let what = "the sides of the box cut the solid, and a mesh is not cut; give a radius that holds it, and the axis [0.5, 0.5]";
             return Err(refused(key, what));
         }
-        let steps = steps(widest, 0.5 * tolerance);
         let texture = Texture::new(object)?;
+        let steps = steps(widest, 0.5 * tolerance).max(texture.least_steps());
         let strands: Vec<Strand> = strands.iter().map(|s| texture.even(s)).collect();
         let count: usize = strands.iter().map(|s| s.rings.len()).sum();
         if count.saturating_mul(2 * (steps + 1)) > MOST_VERTICES {
@@ -91,6 +95,7 @@ impl Triangles {
         }
         let mut builder = Builder::new(steps, off, texture);
         strands.iter().for_each(|strand| builder.strand(strand));
+        builder.made.tolerance = tolerance;
         Ok(builder.made)
     }
 }
@@ -100,13 +105,15 @@ impl Triangles {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2^20
 fn steps(radius: f64, tolerance: f64) -> usize {
     let half = (tolerance / radius).sqrt().atan();
-    ((0.5 * PI / half).ceil() as usize).max(6)
+    (0.5 * PI / half).ceil() as usize
 }
 
 /// Texture coordinates on an object's surface.
 struct Texture<'a> {
     object: &'a Object,
     arc: Option<ArcLength>,
+    /// `eta` in the middle of the colour map's last and first row, if the map ends there.
+    ends: Option<[f64; 2]>,
 }
 
 impl<'a> Texture<'a> {
@@ -114,7 +121,22 @@ impl<'a> Texture<'a> {
         let lengths = object.texturing.projection == Projection::Arc;
         let arc = lengths.then(|| ArcLength::new(&object.profile));
         let arc = arc.transpose().map_err(|e| e.at_key("profile"))?;
-        Ok(Self { object, arc })
+        let look = &object.texturing;
+        let map = look.color_map.as_ref().and_then(|map| map.levels.first());
+        let map = map.filter(|_| look.clamps());
+        let ends = map.map(|level| {
+            let half = 0.5 / f64::from(level.height);
+            [half, 1.0 - half].map(|eta| eta + look.offset[1])
+        });
+        Ok(Self { object, arc, ends })
+    }
+
+    /// Steps about the axis. `eta` of the projection `spherical` is off by up to 0.002 between 14.
+    fn least_steps(&self) -> usize {
+        match self.object.texturing.projection {
+            Projection::Spherical => 14,
+            _ => 6,
+        }
     }
 
     /// `eta` at a point of the half-plane; that of the projection `planar` also depends on the
@@ -127,7 +149,8 @@ impl<'a> Texture<'a> {
         }
     }
 
-    /// A strand with further rings, between which `eta` is nearly linear.
+    /// A strand with further rings, between which `eta` is nearly linear, and where a colour map
+    /// ends.
     fn even(&self, strand: &Strand) -> Strand {
         let mut rings = Vec::new();
         for pair in strand.rings.windows(2) {
@@ -135,7 +158,7 @@ impl<'a> Texture<'a> {
             first.normals[0] = first.normals[1];
             let (mut last, mut part) = (pair[1], Vec::new());
             last.normals[1] = last.normals[0];
-            self.halve(first, last, 12, &mut part);
+            self.divide(first, last, 14, &mut part);
             rings.push(pair[0]);
             rings.append(&mut part);
         }
@@ -146,24 +169,41 @@ impl<'a> Texture<'a> {
         }
     }
 
-    fn halve(&self, a: Ring, b: Ring, depth: u32, rings: &mut Vec<Ring>) {
-        let point = a.point.midpoint(b.point);
-        let [from, to] = [
-            self.eta(a.point.lerp(b.point, 1e-6)),
-            self.eta(b.point.lerp(a.point, 1e-6)),
-        ];
-        if depth == 0 || (self.eta(point) - 0.5 * (from + to)).abs() < BEND {
+    fn divide(&self, a: Ring, b: Ring, depth: u32, rings: &mut Vec<Ring>) {
+        let eta = |part: f64| self.eta(a.point.lerp(b.point, part));
+        let Some(part) = division(&eta, self.ends).filter(|_| depth > 0) else {
             return;
-        }
-        let normal = (a.normals[1] + b.normals[0]).normalize_or(a.normals[1]);
-        let ring = Ring {
-            point,
-            normals: [normal; 2],
         };
-        self.halve(a, ring, depth - 1, rings);
+        let normal = a.normals[1].lerp(b.normals[0], part);
+        let ring = Ring {
+            point: a.point.lerp(b.point, part),
+            normals: [normal.normalize_or(a.normals[1]); 2],
+        };
+        self.divide(a, ring, depth - 1, rings);
         rings.push(ring);
-        self.halve(ring, b, depth - 1, rings);
+        self.divide(ring, b, depth - 1, rings);
     }
+}
+
+/// Where to divide a chord with these coordinates from 0 to 1: where it passes one of `ends`, or in
+/// the middle if it is not nearly linear. The middle alone may be right by symmetry.
+fn division(eta: &dyn Fn(f64) -> f64, ends: Option<[f64; 2]>) -> Option<f64> {
+    let [from, to] = [eta(1e-6), eta(1.0 - 1e-6)];
+    let passed = |end: &f64| (from < *end) != (to < *end);
+    if let Some(end) = ends.iter().flatten().find(|end| passed(end)) {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            let is_before = (eta(middle) < *end) == (from < *end);
+            *if is_before { &mut low } else { &mut high } = middle;
+        }
+        return Some(low).filter(|part| (1e-5..1.0 - 1e-5).contains(part));
+    }
+    let off = |k: u32| {
+        let part = f64::from(k) / 8.0;
+        (eta(part) - from.lerp(to, part)).abs()
+    };
+    (1..8).any(|k| off(k) >= BEND).then_some(0.5)
 }
 
 struct Builder<'a> {

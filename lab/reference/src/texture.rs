@@ -102,7 +102,7 @@ fn bilinear<T: Copy, const N: usize>(
     let (w, h) = (f64::from(level.width), f64::from(level.height));
     let x = (uv[0] * look.repeat[0] - look.offset[0]) * w - 0.5;
     let y = ((1.0 - uv[1]) * look.repeat[1] + look.offset[1]) * h - 0.5;
-    let clamped = look.repeat[1] == 1.0 && look.projection != Projection::Planar;
+    let clamped = look.clamps();
     let mut sum = [0.0; N];
     for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
         let (column, row) = (x.floor() + i, y.floor() + j);

@@ -7,7 +7,7 @@ use crate::gpu::memory::images::{Image, Uploads};
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, MapKey, ShapeTexture};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
-use crate::maps::{Level, MapFormat, Projection};
+use crate::maps::{Level, MapFormat};
 use crate::profile::Profile;
 use crate::scene::Texturing;
 use crate::shader::generated::MAX_SHADOW_MAPS;
@@ -166,8 +166,7 @@ impl Textures {
         let slope_map = look.displacement_map.as_ref();
         let slope_map = slope_map.filter(|_| images.relief.is_none());
         let image = |of: &Option<HostImage>| of.as_ref().map(HostImage::address);
-        let around =
-            (look.repeat[1] - 1.0).abs() < f64::EPSILON && look.projection != Projection::Planar;
+        let around = look.clamps();
         let addresses = [
             shape.as_ref().map(address),
             image(&images.color).or(color_map.map(address)),

@@ -1,11 +1,13 @@
 //! Normals and texture coordinates.
 
 use crate::edges::is_watertight;
-use crate::object;
+use crate::{SCENES, object, scene};
 use glam::{DVec2, DVec3};
-use revmap::maps::Projection;
+use revmap::maps::{ArcLength, ColorMap, Projection};
+use revmap::scene::Object;
 use revmap_tessellation::Triangles;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 #[test]
 fn normals_split_at_edges_and_coordinates_run_once_around() {
@@ -35,29 +37,129 @@ fn normals_split_at_edges_and_coordinates_run_once_around() {
     assert!(seam.clone().count() > 3 && seam.clone().all(|v| v.position[0] < 0.0));
 }
 
-/// Between the rings of a straight wall, `eta` is nearly that of each point.
+/// Every projection but `planar`, of which `eta` also depends on the azimuth.
+fn eta(object: &Object) -> Box<dyn Fn(DVec2) -> f64> {
+    match object.texturing.projection {
+        Projection::Spherical => Box::new(|p| 1.0 - p.x.atan2(p.y - 0.5) / PI),
+        Projection::Arc => {
+            let arc = ArcLength::new(&object.profile).unwrap();
+            Box::new(move |p| arc.eta(p.x, p.y))
+        }
+        _ => Box::new(|p| p.y),
+    }
+}
+
+/// The largest error of `eta` within triangles, and that of `xi` in steps about the axis.
+fn errors(object: &Object, tolerance: f64) -> [f64; 2] {
+    let mesh = Triangles::new(object, tolerance).unwrap();
+    assert!(is_watertight(&mesh));
+    let eta = eta(object);
+    let steps = mesh.vertices.iter().map(|v| f64::from(v.uv[0]));
+    let step = steps.filter(|xi| *xi > 1e-6).fold(1.0, f64::min);
+    let mut found = [0.0f64; 2];
+    for t in mesh.indices.chunks_exact(3) {
+        let v = [0, 1, 2].map(|k| mesh.vertices[t[k] as usize]);
+        let places = v.map(|v| DVec3::from(v.position.map(f64::from)));
+        let coordinates = v.map(|v| DVec2::from(v.uv.map(f64::from)));
+        for weights in WEIGHTS {
+            let mut point = DVec3::ZERO;
+            let (mut radius, mut uv) = (0.0, DVec2::ZERO);
+            for k in 0..3 {
+                point += weights[k] * places[k];
+                radius += weights[k] * places[k].truncate().length();
+                uv += weights[k] * coordinates[k];
+            }
+            // The point of the surface that is nearest is as far from the axis as the corners.
+            let off = (uv.y - eta(DVec2::new(radius, point.z))).abs();
+            let xi = 0.5 + point.y.atan2(point.x) / TAU;
+            let aside = (uv.x - xi + 0.5).rem_euclid(1.0) - 0.5;
+            found = [found[0].max(off), found[1].max(aside.abs() / step)];
+        }
+    }
+    found
+}
+
+const WEIGHTS: [[f64; 3]; 7] = [
+    [1.0 / 3.0; 3],
+    [0.1, 0.1, 0.8],
+    [0.1, 0.8, 0.1],
+    [0.8, 0.1, 0.1],
+    [0.02, 0.49, 0.49],
+    [0.49, 0.02, 0.49],
+    [0.49, 0.49, 0.02],
+];
+
+/// Solids of scenes, and cans, tubes and cones from wide to thin.
 #[test]
-fn bent_coordinates_get_rings_of_their_own() {
-    for projection in [Projection::Spherical, Projection::Cylindrical] {
-        let mut can = object(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]]);
+fn coordinates_are_right_within_triangles() {
+    let mut all: Vec<Object> = SCENES.map(|name| scene(name).objects[0].clone()).into();
+    for r in [0.35, 0.2, 0.05, 0.01, 0.001] {
+        all.push(object(&[[0.0, 0.0], [r, 0.0], [r, 1.0], [0.0, 1.0]]));
+        all.push(object(&[
+            [r, 0.1],
+            [r + 0.1, 0.1],
+            [r + 0.1, 0.6],
+            [r, 0.7],
+        ]));
+        all.push(object(&[[0.0, 0.1], [r, 0.1], [0.0, 0.93]]));
+    }
+    for mut object in all {
+        for projection in [
+            Projection::Spherical,
+            Projection::Cylindrical,
+            Projection::Arc,
+        ] {
+            object.texturing.projection = projection;
+            for tolerance in [1e-2, 5e-4] {
+                let [eta, xi] = errors(&object, tolerance);
+                println!(
+                    "{} {projection:?} {tolerance}: {eta:.5} {xi:.3}",
+                    object.name
+                );
+                let allowed = 0.002 + 0.5 * tolerance;
+                assert!(
+                    eta < allowed,
+                    "{} {projection:?} {tolerance}: {eta}",
+                    object.name
+                );
+                // Half a step on the axis, nearly a whole one where a ring is close to it.
+                assert!(xi < 1.0, "{} {projection:?} {tolerance}: {xi}", object.name);
+            }
+        }
+    }
+}
+
+/// The projection along the axis is exact.
+#[test]
+fn planar_coordinates_are_those_of_places() {
+    let mut vase = scene("vase").objects[0].clone();
+    vase.texturing.projection = Projection::Planar;
+    let side = 2.0 * vase.profile.radius;
+    for v in Triangles::new(&vase, 1e-3).unwrap().vertices {
+        let place = DVec2::from([v.position[0], v.position[1]].map(f64::from));
+        let wanted = place / side + 0.5;
+        assert!(DVec2::from(v.uv.map(f64::from)).distance(wanted) < 1e-6);
+    }
+}
+
+/// A colour map of four rows ends in the middle of its first and last, and a ring is there.
+#[test]
+fn rings_are_where_a_map_ends() {
+    let mut can = object(&[[0.0, 0.1], [0.3, 0.1], [0.3, 0.9], [0.0, 0.9]]);
+    let map = ColorMap::from_texels(1, 4, vec![[9; 4]; 4]).unwrap();
+    can.texturing.color_map = Some(Arc::new(map));
+    can.texturing.offset = [0.0, 0.1];
+    for projection in [Projection::Cylindrical, Projection::Spherical] {
         can.texturing.projection = projection;
         let mesh = Triangles::new(&can, 1e-2).unwrap();
         assert!(is_watertight(&mesh));
-        let rings = mesh.vertices.iter().filter(|v| v.uv[0] == 0.0).count();
-        assert_eq!(rings > 4, projection == Projection::Spherical, "{rings}");
         for t in mesh.indices.chunks_exact(3) {
-            let [a, b] = [t[1], t[2]].map(|k| mesh.vertices[k as usize]);
-            let middle = 0.5
-                * (DVec3::from(a.position.map(f64::from)) + DVec3::from(b.position.map(f64::from)));
-            let wanted = match projection {
-                Projection::Spherical => {
-                    1.0 - middle.truncate().length().atan2(middle.z - 0.5) / PI
-                }
-                _ => middle.z,
-            };
-            let found = 0.5 * (f64::from(a.uv[1]) + f64::from(b.uv[1]));
-            // The middle of a chord about the axis lies within the circle.
-            assert!((found - wanted).abs() < 6e-3, "{found} for {wanted}");
+            let eta = [0, 1, 2].map(|k| f64::from(mesh.vertices[t[k] as usize].uv[1]) - 0.1);
+            for end in [0.125, 0.875] {
+                let below = eta.iter().any(|eta| *eta < end - 1e-5);
+                let above = eta.iter().any(|eta| *eta > end + 1e-5);
+                assert!(!(below && above), "{eta:?}");
+            }
         }
     }
 }

@@ -1,18 +1,13 @@
 //! Distances to the reference, volumes in closed form, and refusals.
 
 use crate::edges::is_watertight;
-use crate::{corners, object, scene, volume};
+use crate::{SCENES, corners, object, scene, volume};
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::scene::{Camera, Clip, Object, Offset, Placement};
 use revmap_reference::{Ray, Reference};
 use revmap_tessellation::{Triangles, pixel_tolerance, strands_within};
 use std::f64::consts::{PI, TAU};
-
-const SCENES: [&str; 12] = [
-    "bell", "bishop", "bottle", "goblet", "king", "pawn", "ridges", "ring", "rook", "sphere",
-    "spindle", "vase",
-];
 
 /// Distance of a point to the nearest triangle.
 fn distance(triangles: &[[DVec3; 3]], p: DVec3) -> f64 {

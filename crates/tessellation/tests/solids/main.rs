@@ -11,6 +11,11 @@ use revmap::scene::{Object, Scene};
 use revmap_tessellation::Triangles;
 use std::sync::Arc;
 
+const SCENES: [&str; 12] = [
+    "bell", "bishop", "bottle", "goblet", "king", "pawn", "ridges", "ring", "rook", "sphere",
+    "spindle", "vase",
+];
+
 fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes");
     revmap_files::scene(format!("{folder}/{name}.toml")).unwrap()
