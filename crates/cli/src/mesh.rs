@@ -5,7 +5,7 @@ use super::progress::Progress;
 use clap::Args;
 use revmap::error::{Error, Result};
 use revmap::scene::{Object, Scene};
-use revmap_files::{MESH_ENDINGS, SceneFile, mesh_files, write_meshes};
+use revmap_files::{MESH_ENDINGS, SceneFile, mesh_files, stl_rounding, write_meshes};
 use revmap_tessellation::{Triangles, pixel_tolerance};
 use std::path::PathBuf;
 
@@ -42,6 +42,10 @@ pub struct Mesh {
     /// Rows of the picture, for --pixels [default: 1080]
     #[arg(long, value_name = "N", requires = "pixels", value_parser = clap::value_parser!(u32).range(1..=16384))]
     rows: Option<u32>,
+    /// Moves everything so that the position of the first object is the origin: coordinates far
+    /// from it lose digits in an .stl, and in most programs that read the other formats
+    #[arg(long)]
+    at_origin: bool,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -54,17 +58,26 @@ impl Mesh {
     pub fn run(self) -> Result<()> {
         output::check([&self.output], "--output", &MESH_ENDINGS, &[&self.scene])?;
         let mut file = SceneFile::open(&self.scene)?;
-        let scene = file.scene(&self.set)?;
+        let mut scene = file.scene(&self.set)?;
+        if self.at_origin {
+            move_to_origin(&mut scene);
+        }
         let written = mesh_files(&scene, &self.output);
         output::spare(file.files(), &written, "--output")?;
         let progress = Progress::start("making triangles", self.quiet);
         let mut meshes = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
-            let made = Triangles::new(object, self.tolerance_of(&scene, object)?);
+            let mut tolerance = self.tolerance_of(&scene, object)?;
+            if output::has_ending(&self.output, "stl") {
+                // Rounding has at most an eighth of the tolerance; more is refused by the writer.
+                let least = tolerance.min(Triangles::FINEST).max(0.875 * tolerance);
+                tolerance = (tolerance - stl_rounding(object)).max(least);
+            }
+            let made = Triangles::new(object, tolerance);
             meshes.push(made.map_err(|e| self.named(e, number))?);
             progress.report(number + 1, scene.objects.len());
         }
-        write_meshes(&scene, &meshes, &self.output)?;
+        write_meshes(&scene, &meshes, &self.output).map_err(|e| self.with_hint(e))?;
         drop(progress);
         if self.quiet {
             return Ok(());
@@ -110,6 +123,15 @@ impl Mesh {
         })
     }
 
+    /// A failure of writing, with the option that may mend it.
+    fn with_hint(&self, mut error: Error) -> Error {
+        let is_far = |key: &String| key.ends_with(".position");
+        if !self.at_origin && error.key.as_ref().is_some_and(is_far) {
+            error.message += "; --at-origin moves the first object to the origin";
+        }
+        error
+    }
+
     /// A failure with the option or the object's key, and the scene's file.
     fn named(&self, error: Error, number: usize) -> Error {
         match error.key.clone() {
@@ -126,12 +148,34 @@ impl Mesh {
     }
 }
 
+/// Moves objects and camera so that the position of the first object is the origin.
+fn move_to_origin(scene: &mut Scene) {
+    let Some(first) = scene.objects.first().map(|o| o.placements()[0].position) else {
+        return;
+    };
+    scene.camera.eye -= first;
+    scene.camera.target -= first;
+    for object in &mut scene.objects {
+        let mut copies = object.placements().to_vec();
+        copies.iter_mut().for_each(|copy| copy.position -= first);
+        match object.instances.is_empty() {
+            true => object.placement = copies[0],
+            false => object.instances = copies.into(),
+        }
+    }
+}
+
 /// Parts of the scene that no mesh has.
 fn warnings(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
     for (number, object) in scene.objects.iter().enumerate() {
         let warnings = object.profile.warnings.iter();
         found.extend(warnings.map(|w| format!("object.{number}: {w}")));
+        if object.color.iter().any(|v| *v > 1.0) && object.texturing.color_map.is_none() {
+            found.push(format!(
+                "object.{number}.color: a mesh has no colours above 1; 1 is written"
+            ));
+        }
         if object.texturing.displacement_map.is_some() && object.texturing.bump != 0.0 {
             found.push(format!(
                 "object.{number}.height_map: a mesh has no bumps; they are left out"

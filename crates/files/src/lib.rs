@@ -59,7 +59,7 @@ pub use maps::{
     BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
     shape_map, write_displacement_map, write_shape_map,
 };
-pub use mesh::{MESH_ENDINGS, mesh_files, write_meshes};
+pub use mesh::{MESH_ENDINGS, mesh_files, stl_rounding, write_meshes};
 pub use openexr::{read_exr, write_exr};
 pub use outline::{WrittenOutline, write_outline};
 pub use picture::{Picture, write_png};

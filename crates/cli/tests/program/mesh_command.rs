@@ -1,6 +1,6 @@
 //! `revmap mesh`: what it writes, says and refuses.
 
-use crate::run::{Bench, lines};
+use crate::run::{Bench, CAMERA, CONE, lines};
 
 /// Triangles that a run says it wrote.
 fn triangles(bench: &Bench, arguments: &str) -> usize {
@@ -63,4 +63,65 @@ fn all_files_are_named_and_inputs_spared() {
         &["b.0.png", "is read as well"],
     );
     assert_eq!(lines(&bench.done("mesh map.png -o c.stl --quiet")).len(), 0);
+}
+
+/// Copies of the first object and one beside it, far from the origin.
+#[test]
+fn far_objects_are_refused_as_stl_or_moved() {
+    let bench = Bench::new();
+    bench.file(
+        "copies.csv",
+        "1e6,2e6,0,0,0,0,1,1,1,1\n1000002,2000000,0,0,0,0,1,1,1,1\n",
+    );
+    let beside =
+        "[[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\nposition = [1000000, 2000003, 1]\n";
+    bench.file(
+        "far.toml",
+        format!("{CAMERA}{CONE}instances = \"copies.csv\"\n{beside}"),
+    );
+    let words = [
+        "far.toml",
+        "object.0.position",
+        "--at-origin",
+        "up to coordinates of 1024",
+    ];
+    bench.refused("mesh far.toml -o a.stl", 1, &words[1..]);
+    bench.done("mesh far.toml -o a.stl --at-origin");
+    bench.file("near.csv", "0,0,0,0,0,0,1,1,1,1\n2,0,0,0,0,0,1,1,1,1\n");
+    let beside = beside.replace("[1000000, 2000003, 1]", "[0, 3, 1]");
+    bench.file(
+        "near.toml",
+        format!("{CAMERA}{CONE}instances = \"near.csv\"\n{beside}"),
+    );
+    bench.done("mesh near.toml -o b.stl");
+    assert!(bench.read("a.stl") == bench.read("b.stl"));
+    let pixels = "--pixels 1 --set camera.eye=[1000003,2000000,0] --at-origin";
+    let far = triangles(&bench, &format!("far.toml -o a.glb {pixels}"));
+    let pixels = "--pixels 1 --set camera.eye=[3,0,0]";
+    assert_eq!(
+        far,
+        triangles(&bench, &format!("near.toml -o b.glb {pixels}"))
+    );
+    // No option helps where copies are far from each other.
+    let spread = "near.toml -o a.stl --set object.1.position=[1e6,0,0] --at-origin";
+    let output = bench.command(&format!("mesh {spread}")).output().unwrap();
+    let said = lines(&output).join(" ");
+    assert!(
+        said.contains("object.1.position") && !said.contains("--at-origin"),
+        "{said}"
+    );
+    bench.done("mesh far.toml -o a.obj");
+}
+
+#[test]
+fn what_a_material_cannot_hold_is_named() {
+    let bench = Bench::new();
+    let mesh = "mesh scene.toml -o a.obj --set object.0.color=[3,0.5,0]";
+    let said = lines(&bench.done(mesh)).join("\n");
+    assert!(
+        said.contains("object.0.color") && said.contains("above 1"),
+        "{said}"
+    );
+    let text = String::from_utf8(bench.read("a.mtl")).unwrap();
+    assert!(text.contains("Kd 1.00000 0.73536 0.00000"), "{text}");
 }

@@ -102,8 +102,9 @@ impl File {
             }
             let number = self.textures.len();
             let image = self.image_of.get(&owner);
-            self.textures
-                .push(json!({"source": image, "sampler": usize::from(solid.clamps())}));
+            self.textures.push(
+                json!({"source": image, "sampler": usize::from(solid.object.texturing.clamps())}),
+            );
             look["baseColorTexture"] = json!({"index": number});
         } else {
             look["baseColorFactor"] = json!([red, green, blue, 1.0]);

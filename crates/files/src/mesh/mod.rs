@@ -10,10 +10,12 @@ mod glb;
 mod obj;
 mod stl;
 
+pub use stl::stl_rounding;
+
 use crate::{content_fault, write_bytes};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::maps::{ColorMap, Projection};
+use revmap::maps::ColorMap;
 use revmap::scene::{Object, Placement, Scene};
 use revmap_tessellation::{Triangles, Vertex};
 use std::path::{Path, PathBuf};
@@ -54,7 +56,9 @@ pub fn mesh_files(scene: &Scene, path: &Path) -> Vec<PathBuf> {
 ///
 /// # Errors
 /// [`ErrorKind::Usage`] for another ending. [`ErrorKind::Content`] if there is not one mesh for each
-/// object, or if a file would hold more than 50,000,000 triangles, 1,000,000 copies or 4 GiB.
+/// object, if a file would hold more than 50,000,000 triangles, 1,000,000 copies or 4 GiB, or if the
+/// coordinates of an `.stl` would be rounded by more than a seventh of the triangles' tolerance
+/// ([`stl_rounding`]), with the key of the position.
 /// [`ErrorKind::File`] if a file cannot be written. All name the file.
 pub fn write_meshes(scene: &Scene, meshes: &[Triangles], path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
@@ -94,7 +98,10 @@ fn written(scene: &Scene, meshes: &[Triangles], path: &Path) -> Result<()> {
     }
     match format.as_str() {
         "glb" => write_bytes(path, &glb::bytes(&solids)?),
-        "stl" => write_bytes(path, &stl::bytes(&solids)),
+        "stl" => {
+            solids.iter().try_for_each(stl::check)?;
+            write_bytes(path, &stl::bytes(&solids))
+        }
         "obj" => obj::write(&solids, path),
         _ => {
             let message = format!("ends in none of .{}; name it so", MESH_ENDINGS.join(", ."));
@@ -131,12 +138,6 @@ impl Solid<'_> {
             (1.0 - eta) * along + up,
         ]
         .map(|v| v as f32)
-    }
-
-    /// True if the texture ends at its upper and lower edge.
-    fn clamps(&self) -> bool {
-        let look = &self.object.texturing;
-        look.repeat[1] == 1.0 && look.projection != Projection::Planar
     }
 
     /// Its colour map, unless an object before it has the same.

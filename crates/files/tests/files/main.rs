@@ -6,6 +6,7 @@ mod annotation;
 mod browser_rules;
 mod damaged_files;
 mod drawings;
+mod far_meshes;
 mod map_accuracy;
 mod meshes;
 mod outlines;

@@ -74,6 +74,7 @@ fn stl_holds_every_copy_and_the_volume() {
     let own: Vec<usize> = meshes.iter().map(|m| m.indices.len() / 3).collect();
     assert_eq!(count, 2 * own[0] + own[1] + own[2]);
     assert_eq!(bytes.len(), 84 + 50 * count);
+    assert!(!bytes.starts_with(b"solid"), "as text does");
     let corner =
         |t: usize, k: usize| [0, 1, 2].map(|n| float(&bytes, 96 + 50 * t + 12 * k + 4 * n));
     let volume = |from: usize, to: usize| -> f64 {
@@ -114,20 +115,37 @@ fn obj_shares_places_and_stands_upright() {
             .any(|p| p[0].abs() < 1e-6 && p[1] == 1.0 && p[2].abs() < 1e-6)
     );
     assert!(places.iter().any(|p| (p[2] + 5.0).abs() < 1e-6));
-    // Twice around, less a quarter; the lower tip's height of 0.1, less an eighth.
+    // Twice around, less a quarter.
     let has = |k: usize, wanted: f64| coordinates.iter().any(|c| (c[k] - wanted).abs() < 1e-6);
-    assert!(has(0, 1.75) && has(1, -0.025));
+    assert!(has(0, 1.75) && has(1, 0.25) && has(1, 0.75));
     assert!(
         normals
             .iter()
             .all(|n| (n[0].hypot(n[1]).hypot(n[2]) - 1.0).abs() < 1e-4)
     );
     let mut edges: HashMap<(usize, usize), i32> = HashMap::new();
-    for face in text.lines().filter_map(|l| l.strip_prefix("f ")) {
+    let mut clamped = 0;
+    let mut object = "";
+    for line in text.lines() {
+        object = line.strip_prefix("o ").unwrap_or(object);
+        let Some(face) = line.strip_prefix("f ") else {
+            continue;
+        };
         let corner: Vec<Vec<usize>> = face
             .split(' ')
             .map(|c| c.split('/').map(|n| n.parse().unwrap()).collect())
             .collect();
+        // The map of two rows ends in the middle of each, and is moved up by an eighth.
+        let mean = |of: &dyn Fn(usize) -> f64| (0..3).map(of).sum::<f64>() / 3.0;
+        let found = mean(&|k| coordinates[corner[k][1] - 1][1]);
+        let moved = mean(&|k| places[corner[k][0] - 1][1]) - 0.125;
+        if object.starts_with("1-") {
+            assert!(
+                (found - moved.clamp(0.25, 0.75)).abs() < 1e-5,
+                "{found} {moved}"
+            );
+            clamped += usize::from(moved < 0.25);
+        }
         for k in 0..3 {
             let (a, b) = (corner[k][0], corner[(k + 1) % 3][0]);
             *edges.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
@@ -140,11 +158,14 @@ fn obj_shares_places_and_stands_upright() {
             assert!(determinant([u, v, [n[0], n[1], n[2]]]) > 0.0);
         }
     }
+    assert!(clamped > 20);
     assert!(edges.len() > 300 && edges.values().all(|n| *n == 0));
     let names = |ending| folder.path().join(format!("a.{ending}"));
     let materials = std::fs::read_to_string(names("mtl")).unwrap();
     assert!(
-        materials.contains("Kd 0.5 0.25 3") && materials.matches("map_Kd a.1.png").count() == 2
+        materials.contains("Kd 0.73536 0.53710 1.00000")
+            && materials.contains("Ks 0.53710 0.53710 0.53710\nNs 32")
+            && materials.matches("map_Kd a.1.png").count() == 2
     );
     let map = image::open(names("1.png")).unwrap().to_rgb8();
     assert_eq!(
