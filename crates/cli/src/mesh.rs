@@ -68,9 +68,9 @@ impl Mesh {
         let mut meshes = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let mut tolerance = self.tolerance_of(&scene, object)?;
-            if output::has_ending(&self.output, "stl") {
+            if output::has_ending(&self.output, "stl") && tolerance > Triangles::FINEST {
                 // Rounding has at most an eighth of the tolerance; more is refused by the writer.
-                let least = tolerance.min(Triangles::FINEST).max(0.875 * tolerance);
+                let least = Triangles::FINEST.max(0.875 * tolerance);
                 tolerance = (tolerance - stl_rounding(object)).max(least);
             }
             let made = Triangles::new(object, tolerance);

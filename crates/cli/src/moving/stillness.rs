@@ -12,7 +12,6 @@ const SIDE: usize = 8;
 const SEEN: f32 = 4.0;
 
 /// A frame as means of blocks, each of red, green and blue times alpha, and alpha.
-#[derive(PartialEq)]
 struct Blocks(Vec<[f32; 4]>);
 
 impl Blocks {
@@ -93,7 +92,7 @@ impl Motion<'_> {
                 remedies.push("a colour map (--set object.0.color_map=FILE)");
             }
             if self.turntable && !self.scene.lights.is_empty() {
-                remedies.push("--turn without --turntable, under which the lights stay behind");
+                remedies.push("--turn without --turntable");
             }
         }
         match self.varied.first() {

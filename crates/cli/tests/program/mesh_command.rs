@@ -30,6 +30,8 @@ fn meshes_are_as_fine_as_they_are_seen() {
         2,
         "mesh scene.toml -o a.ply                              | a.ply | .glb, .obj, .stl
          mesh scene.toml -o a.glb --tolerance 0                | --tolerance | object units or more
+         mesh scene.toml -o a.stl --tolerance nan              | --tolerance | is NaN
+         mesh scene.toml -o a.stl --tolerance=-1               | --tolerance | is -1;
          mesh scene.toml -o a.glb --tolerance 1 --pixels 1     | --pixels
          mesh scene.toml -o a.glb --distance 2                 | --pixels
          mesh scene.toml -o a.glb --pixels -1                  | --pixels | above 0
