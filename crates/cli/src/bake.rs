@@ -193,11 +193,12 @@ mod tests {
 
     #[test]
     fn keys_of_scenes_become_options() {
-        let text =
-            with_options("set profile_axis = 0.1 and profile_invert = true, or profile_smooth");
+        let text = with_options(
+            "set profile_axis = 0.1 and profile_invert = true, or profile_smooth; profile_min_stroke = 0.003",
+        );
         assert_eq!(
             text,
-            "set --profile-axis 0.1 and --profile-invert, or --profile-smooth"
+            "set --profile-axis 0.1 and --profile-invert, or --profile-smooth; --profile-min-stroke 0.003"
         );
     }
 

@@ -85,12 +85,10 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
     let pale = || canvas.pale(&drawing.content, seen.area());
     let form = Silhouette::of_outline(&seen, page_at, &place);
     let solid = rest.as_ref().map(|rest| rest.outline(canvas.grid));
-    let solid = solid
-        .as_ref()
-        .map(|s| Silhouette::of_outline(s, page_at, &place));
-    let marks = rest
-        .as_ref()
-        .and_then(|rest| canvas.marks(&strokes, &whole, rest));
+    let silhouette = |outline| Silhouette::of_outline(outline, page_at, &place);
+    let solid = solid.as_ref().map(silhouette);
+    let marks = rest.as_ref();
+    let marks = marks.and_then(|rest| canvas.marks(&strokes, &whole, rest));
     let half = match axis {
         ProfileAxis::Left => whole,
         ProfileAxis::Center | ProfileAxis::At(_) => {
@@ -116,23 +114,23 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
     if outline.area() >= radius * (1.0 - 1e-9) {
         return Err(full_fault("drawing"));
     }
-    warnings.extend(match form.is_light_on_dark() {
-        true => vec![
+    let marks = marks.filter(|_| pale().is_none());
+    warnings.extend(match (form.is_light_on_dark(), marks) {
+        (true, _) => vec![
             "the drawing looks like a light solid on dark ground; draw the solid dark on white if light is solid"
                 .to_owned(),
         ],
-        false => match marks.filter(|_| pale().is_none()) {
-            Some(marks) => {
-                let solid = solid.and_then(|solid| solid.placed(axis));
-                marks.into_iter().chain(solid).collect()
-            }
-            None => {
+        (false, Some(marks)) => {
+            let hint = solid.and_then(|solid| solid.axis_hint(axis));
+            marks.into_iter().chain(hint).collect()
+        }
+        (false, None) => {
             let mut hints = form.hints(outline, axis, pale);
             hints.extend(cuts.iter().map(|edge| {
                 format!("the drawing is cut by the {edge} edge of the page; move it into the page, or enlarge the page")
             }));
             hints
-        }}
+        }
     });
     profile.warnings = warnings;
     Ok(profile)

@@ -132,6 +132,12 @@ impl<'a> Silhouette<'a> {
         }
     }
 
+    /// What [`Self::placed`] says of the axis, for a solid with lines beside it. They go before a tilt.
+    pub(super) fn axis_hint(&self, axis: ProfileAxis) -> Option<String> {
+        self.placed(axis)
+            .filter(|hint| hint.contains("profile_axis"))
+    }
+
     /// A solid that is even about a line well beside the axis. Its half has no meaning.
     pub(super) fn aside(&self, axis: ProfileAxis) -> Option<String> {
         let ends = Ends::of(&self.rows, self.step);

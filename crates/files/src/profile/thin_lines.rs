@@ -58,7 +58,7 @@ pub(super) fn warnings(
     marks.all = annotation(&marks, axis != ProfileAxis::Left);
     let found = marks.warnings("picture", "erase it");
     let form = Silhouette::of_pixels(&thick, width, axis_at);
-    (!found.is_empty()).then(|| found.into_iter().chain(form.placed(axis)).collect())
+    (!found.is_empty()).then(|| found.into_iter().chain(form.axis_hint(axis)).collect())
 }
 
 /// Solid runs of at most `most` pixels across lines: of rows for upright lines, of columns for level

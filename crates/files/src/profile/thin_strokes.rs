@@ -1,6 +1,6 @@
 //! Thin strokes of a drawing beside its filled shapes.
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, FLATNESS};
 use super::marks::{Mark, Marks, SOLID, THIN};
 use super::paint::is_dark;
 use super::svg::Node;
@@ -89,7 +89,9 @@ impl Canvas {
     ) -> Option<Vec<String>> {
         let [whole, rest] = [whole, rest].map(|region| region.outline(self.grid));
         let bounds = rest.bounds().filter(|_| rest.area() >= SOLID)?;
-        let pieces: Vec<Piece> = strokes.iter().flat_map(pieces).take(MOST_PIECES).collect();
+        // Finer ones are dropped with the slivers.
+        let strokes = strokes.iter().filter(|s| s.width > 2.0 * FLATNESS);
+        let pieces: Vec<Piece> = strokes.flat_map(pieces).take(MOST_PIECES).collect();
         // Half of a stroke along the axis is beyond it, so that places are right of the middle.
         let moved = |way: DVec2| {
             let of_piece = |piece: &Piece| {
@@ -130,6 +132,9 @@ impl Canvas {
                 line: Some(stroke.line),
             });
         }
+        if marks.is_empty() {
+            return None;
+        }
         let marks = Marks {
             all: marks,
             solid: [
@@ -143,8 +148,7 @@ impl Canvas {
         let digit = 10f64.powi(widest.log10().floor() as i32);
         let most = ((widest / digit).floor() + 1.0) * digit;
         let remedy = format!("remove it, or set profile_min_stroke = {most:.6}");
-        let warnings = marks.warnings("drawing", remedy.trim_end_matches('0'));
-        (!warnings.is_empty()).then_some(warnings)
+        Some(marks.warnings("drawing", remedy.trim_end_matches('0')))
     }
 
     /// The dark region of nodes.
