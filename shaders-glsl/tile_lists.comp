@@ -60,7 +60,7 @@ void main()
 
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
     // If the box cuts the solid, a ray may be inside the solid before it enters the box, and then hits the cut face.
-    // The tile of such a ray uses the tree.
+    // The tile of such a ray uses the tree, and so does that of a ray near the tip of a cone far from its s = 0.
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);
@@ -71,6 +71,7 @@ void main()
         // Without a ray that is sure to be between the sides, any ray may be cut.
         inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
     }
+    float start = height_of_start(beam);
     PatchRuns runs = NO_PATCHES;
     vec2 all = vec2(3e38, -3e38);
     for (uint w = 0u; w << 5 < header.x; ++w) {
@@ -80,7 +81,7 @@ void main()
             rest &= rest - 1u;
             vec2 span;
             bool meets = k < header.x && may_meet(beam, min(k, header.x), span) && span.x <= outer.y;
-            cut = cut || meets && span.x < inner.x;
+            cut = cut || meets && (span.x < inner.x || is_imprecise(beam, k, start));
             all = meets ? vec2(min(all.x, span.x), max(all.y, span.y)) : all;
             take_patch(runs, k, meets);
         }

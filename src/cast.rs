@@ -393,12 +393,13 @@ impl Meridian {
 
     /// The root in `0..=end` at which the ray enters the solid through a patch, or leaves it.
     fn root(&self, patch: &QuadricPatch, end: f64, leaves: bool) -> Option<f64> {
-        let [a, k0, k1, k2] = patch.quadric;
+        let (anchor, [a, k0, k1, k2]) = patch.about_anchor(|z| z);
         let side = if leaves { -1.0 } else { 1.0 };
         let (oz, vz) = (self.o.z, self.v.z);
+        let h = oz - anchor;
         let al = side * (a * self.a + k2 * vz * vz);
-        let be = side * (a * self.b + (0.5 * k1 + k2 * oz) * vz);
-        let ga = side * (a * self.c + k0 + oz * (k1 + k2 * oz));
+        let be = side * (a * self.b + (0.5 * k1 + k2 * h) * vz);
+        let ga = side * (a * self.c + k0 + h * (k1 + k2 * h));
         let root = (be * be - al * ga).sqrt();
         let t = if be <= 0.0 {
             ga / (root - be)

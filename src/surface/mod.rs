@@ -31,6 +31,7 @@ pub mod rows;
 mod tree;
 
 pub use chain::Chain;
+use chain::JOINT;
 pub use contour::{Contour, ContourSource, MOST_SEGMENTS};
 pub(crate) use cylinders::{CylinderPiece, Cylinders};
 pub use fit::{FitOptions, fit_patches};
@@ -69,6 +70,14 @@ impl Offset {
         self.extend + (self.bevel * self.chamfer.clamp(0.0, 1.0)).max(0.0)
     }
 }
+
+/// Height of the sheets of a cone above and below its tip, object units.
+///
+/// A ray through the tip of `r^2 = q (h^2 - APART^2)` has the term `q APART^2` under the root, times the
+/// square of its slope. Shaders compute it as the difference of products of size `(q h)^2`, with fewer
+/// than 16 roundings, `h` from where they count the ray's roots to the tip. That is at most half a row of
+/// [`ROWS`], so the square of this number is `16 * 2^-24 / 512^2`.
+const APART: f64 = 1.0 / 524_288.0;
 
 /// A part of the boundary that one quadric of revolution describes; monotone in `z`, solid on its
 /// left.
@@ -114,6 +123,27 @@ impl QuadricPatch {
         } else {
             -a * (k0 + z * (k1 + z * k2))
         }
+    }
+
+    /// The anchor, and `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 h + k2 h^2` with `h = z - anchor`.
+    ///
+    /// The anchor is the `z` of the end nearer to the axis, as `rounded` returns it. There `G` has its
+    /// smallest terms, so a flat cone keeps its tip: about `z = 0` the terms of its `G` are hundreds of
+    /// times as large, and their rounding joins its two sheets.
+    ///
+    /// The sheets of a cone `r^2 = q h^2` meet in a tip on the axis. Rays through the tip have a double
+    /// root, and rounding decides whether they have one at all. So the sheets are kept [`APART`].
+    pub(crate) fn about_anchor(&self, rounded: impl Fn(f64) -> f64) -> (f64, [f64; 4]) {
+        let (start, end) = (self.start, self.end);
+        let inner = if start.x < end.x { start } else { end };
+        let anchor = rounded(inner.y);
+        let [a, k0, k1, k2] = self.quadric;
+        let constant = if inner.x <= JOINT && a * k2 < 0.0 {
+            -k2 * APART * APART
+        } else {
+            k0 + anchor * (k1 + anchor * k2)
+        };
+        (anchor, [a, constant, k1 + 2.0 * anchor * k2, k2])
     }
 
     /// True if it is a plane `z = const`.

@@ -31,10 +31,7 @@ pub(super) const MARGIN: f64 = 1e-6;
 pub struct GpuPatch {
     /// `[a, k0, k1, k2]` of `G = a r^2 + k0 + k1 h + k2 h^2`, where `h = z - anchor`.
     pub quadric: [f32; 4],
-    /// `[anchor, cr, low, high]`: a point counts if `low <= |a| h + cr r^2 <= high`. The anchor is the
-    /// `z` of the end that is nearer to the axis. There `G` has its smallest terms, so a flat cone
-    /// keeps its tip: about `z = 0` the terms of its `G` are hundreds of times as large, and their
-    /// rounding joins its two sheets.
+    /// `[anchor, cr, low, high]`: a point counts if `low <= |a| h + cr r^2 <= high`.
     pub guard: [f32; 4],
     /// `[z0, z1, patch, 0]`: the range of `z`, and the patch's number (exact up to 2^24).
     pub range: [f32; 4],
@@ -44,16 +41,12 @@ impl GpuPatch {
     /// The record of patch number `index`.
     #[must_use]
     pub fn new(patch: &QuadricPatch, index: usize) -> Self {
-        let [start, end] = [patch.start, patch.end];
-        let inner = if start.x < end.x { start } else { end };
-        let anchor = f64::from(inner.y as f32);
-        let [a, k0, k1, k2] = patch.quadric;
-        let constant = k0 + anchor * (k1 + anchor * k2);
+        let (anchor, quadric) = patch.about_anchor(|z| f64::from(z as f32));
         let [cz, cr, low, high] = patch.guard;
-        debug_assert!(cz == a.abs());
+        debug_assert!(cz == patch.quadric[0].abs());
         let guard = [anchor, cr, low - cz * anchor, high - cz * anchor];
         Self {
-            quadric: [a, constant, k1 + 2.0 * anchor * k2, k2].map(|v| v as f32),
+            quadric: quadric.map(|v| v as f32),
             guard: guard.map(|v| v as f32),
             range: [patch.z[0] as f32, patch.z[1] as f32, index as f32, 0.0],
         }

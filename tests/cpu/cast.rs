@@ -4,6 +4,7 @@ use crate::common::rays::{Random, count};
 use crate::common::shapes;
 use glam::{DQuat, DVec3};
 use revmap::cast::RayCaster;
+use revmap::profile::Profile;
 use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
 use revmap_reference::{Ray, Reference};
 
@@ -57,6 +58,29 @@ fn objects() -> Vec<Object> {
         },
     ]);
     all
+}
+
+/// A ray along the axis hits the tip of a cone, from both ends. There its two roots are one.
+#[test]
+fn rays_along_the_axis_hit_tips() {
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let [low, high] = [0.05 + 0.3 * random.next(), 0.6 + 0.3 * random.next()];
+        let radius = 0.05 + 0.4 * random.next();
+        let middle = low + (high - low) * random.next();
+        let points = [[0.0, low], [radius, middle], [0.0, high]];
+        let profile = Profile::polygon(&points, 0.5).unwrap();
+        let caster = RayCaster::new(&Object::new("cones", profile.into())).unwrap();
+        for (eye, tip) in [(-1.0, low), (2.0, high)] {
+            let way = DVec3::new(0.0, 0.0, 0.5 - eye);
+            let hit = caster.cast(DVec3::new(0.0, 0.0, eye), way);
+            let z = hit.map(|hit| eye + hit.t * way.z);
+            assert!(
+                z.is_some_and(|z| (z - tip).abs() < 1e-5),
+                "{points:?}: {z:?}"
+            );
+        }
+    }
 }
 
 /// Hits are those of the reference, to within the fit of the patches. Rays that graze a surface may

@@ -37,7 +37,7 @@ pub struct Stability {
     /// smallest scene that still fails
     #[arg(long, value_name = "N", conflicts_with_all = ["cases", "solver", "quick"])]
     random: Option<u64>,
-    /// The first random scene's seed
+    /// The first random scene's seed; from 50000000 on, scenes are views along the axis
     #[arg(long, value_name = "S", default_value_t = 1, requires = "random")]
     seed: u64,
     #[command(flatten)]

@@ -12,6 +12,9 @@
 //!   direction, of their product, and of the reference's own number;
 //! - all of it times `(1 + bevel) n`, `n` the most replicas along an axis: so fast `F` changes.
 //!
+//! A wrong pixel that is missed, or a ghost, is **apart** when the reference hits all of the 3 x 3 pixels
+//! about it, or none. No rounding excuses such a hole: a picture with one fails.
+//!
 //! A colour is a fault, where a pixel is not wrong, when one of its channels is outside of what the
 //! 3 x 3 pixels about it have in the reference by more than [`COLOR`]: a shadow's edge may lie a
 //! pixel off. To those belong the reference's colours for rays moved aside by the tolerance, and
@@ -47,6 +50,8 @@ pub struct Judged {
     pub ghost: usize,
     /// Pixels that are wrong.
     pub wrong: usize,
+    /// Pixels of those that are missed or ghosts, more than a pixel from every contour.
+    pub apart: usize,
     /// 99th percentile of the depth error, texels of 512 rows, object units.
     pub depth_p99: Option<f64>,
     /// Error of normals, rms, degrees.
@@ -103,10 +108,10 @@ impl Judged {
         Some(self.flicker? as f64 / self.hits.max(1) as f64)
     }
 
-    /// Whether the picture passes with at most so many faults.
+    /// Whether the picture passes with at most so many faults, none of them a hole.
     pub fn passes(&self, limit: usize) -> bool {
         let flickers = self.flicker.unwrap_or(0) > limit;
-        self.not_finite == 0 && self.faults() <= limit && !flickers
+        self.not_finite == 0 && self.apart == 0 && self.faults() <= limit && !flickers
     }
 }
 
@@ -114,10 +119,11 @@ impl std::fmt::Display for Judged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "{} wrong ({} missed, {} ghost), {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, {} that flicker, of {} hit",
+            "{} wrong ({} missed, {} ghost, {} apart from contours), {} with a NaN, {} out of steps, {} of another colour, {} unlike the other stage, {} that flicker, of {} hit",
             self.wrong,
             self.missed,
             self.ghost,
+            self.apart,
             self.not_finite,
             self.exhausted,
             self.color,
@@ -229,6 +235,9 @@ impl<'a> Truth<'a> {
             missed: errors.missed,
             ghost: errors.ghost,
             wrong: wrong.iter().filter(|w| **w).count(),
+            apart: (0..wrong.len())
+                .filter(|&k| wrong[k] && self.is_apart(frame, k))
+                .count(),
             depth_p99: errors.depth.map(|d| d.p99),
             normal_rms: errors.normal.map(|n| n.rms),
             not_finite: not_finite(frame),
@@ -273,6 +282,13 @@ impl<'a> Truth<'a> {
             origin: self.eye,
             direction: pixel.normalize(),
         }
+    }
+
+    /// True if the frame alone hits or misses at pixel `k`, where the 3 x 3 pixels about it are alike.
+    fn is_apart(&self, frame: &Frame, k: usize) -> bool {
+        let truth = &self.frame;
+        let alike = |n| truth.hits(n) == truth.hits(k);
+        frame.hits(k) != truth.hits(k) && about(truth, k).all(alike)
     }
 
     fn is_wrong(&self, frame: &Frame, k: usize) -> bool {
@@ -336,15 +352,17 @@ type ColorRange = [[f32; 2]; 3];
 
 /// The colours of the 3 x 3 pixels about pixel `k`.
 fn colors_about(frame: &Frame, k: usize) -> ColorRange {
+    let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+    about(frame, k).for_each(|n| widen(&mut range, frame.color[n]));
+    range
+}
+
+/// Pixel `k` and those beside it.
+fn about(frame: &Frame, k: usize) -> impl Iterator<Item = usize> {
     let (w, h) = (frame.width as usize, frame.height as usize);
     let (x, y) = (k % w, k / w);
-    let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
-    for j in y.saturating_sub(1)..=(y + 1).min(h - 1) {
-        for i in x.saturating_sub(1)..=(x + 1).min(w - 1) {
-            widen(&mut range, frame.color[j * w + i]);
-        }
-    }
-    range
+    let rows = y.saturating_sub(1)..=(y + 1).min(h - 1);
+    rows.flat_map(move |j| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |i| j * w + i))
 }
 
 fn widen(range: &mut ColorRange, color: [f32; 4]) {

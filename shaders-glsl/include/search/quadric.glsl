@@ -81,7 +81,6 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     float most = square_at(m, t);
     float best = 3e38;
     uint hit_record = 0u;
-    float hit_anchor = 0.0;
     for (;;) {
         // Traverse the tree to the next row whose patches the ray may hit.
         uint run = 0u;
@@ -114,20 +113,27 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
+        // Roots count from the middle of the row, which is near the anchors of patches that end on the axis. `span` must
+        // not change it, nor the roots' last bits. `square_at(near, x)` is `square_at(m, middle + x)`.
+        float middle = clamp(((float(row) + 0.5) / n - m.o.z) * per_z, 0.0, m.s_end);
+        Meridian near = m;
+        near.o = m.o + middle * m.v;
+        near.b = dot(near.o.xy, m.v.xy);
+        near.c = dot(near.o.xy, near.o.xy);
         uint first = FIRST_RECORD + 2u * (run >> RUN_BITS);
         for (uint k = 0u; k < (run & ((1u << RUN_BITS) - 1u)); ++k) {
             uint at = first + 2u * k;
             vec4 q = patch_vector(at);
             vec4 guard = patch_vector(at + 1u);
             ++steps;
-            float above = m.o.z - guard.x;
-            float root = entering_root(m, q, above, side);
-            float guarded = abs(q.x) * (above + root * m.v.z) + guard.y * square_at(m, root);
+            float above = near.o.z - guard.x;
+            float from_middle = entering_root(near, q, above, side);
+            float guarded = abs(q.x) * (above + from_middle * m.v.z) + guard.y * square_at(near, from_middle);
+            float root = middle + from_middle;
             bool within = all(lessThanEqual(vec4(guard.z, guarded, -slack, root), vec4(guarded, guard.w, root, m.s_end + slack)));
             bool nearer = within && root < best;
             best = mix(best, root, nearer);
             hit_record = nearer ? at : hit_record;
-            hit_anchor = nearer ? guard.x : hit_anchor;
         }
         row = run == 0u ? row : (up ? border : border - 1);
         if (best <= leave || leave >= last || row < 0 || row >= rows) {
@@ -139,7 +145,7 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     }
     // Fetched again: fewer registers across the loop.
     vec4 hit = patch_vector(hit_record);
-    hit_quadric = vec4(hit.x, hit_anchor, hit.zw);
+    hit_quadric = vec4(hit.x, patch_vector(hit_record + 1u).x, hit.zw);
     s = max(best, 0.0); // a hit at the eye must not be behind it
     return best < 2e38 ? FOUND : LEFT;
 }

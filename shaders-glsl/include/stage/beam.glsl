@@ -114,4 +114,28 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     return outer * outer > beam.least && (meets_before || meets_behind);
 }
 
+// Returns the height at which s = 0 for the middle ray of a beam in a list of patches (search/patch_row.glsl).
+float height_of_start(Beam beam)
+{
+    vec3 weighted = beam.v * vec3(1.0, 1.0, 0.25 * shape.half_side * shape.half_side);
+    return beam.o.z + dot(vec3(0.0, 0.0, 0.5) - beam.o, weighted) / dot(beam.v, weighted) * beam.v.z;
+}
+
+// Returns true if rounding may move the hits of a beam's rays on patch `k` by more than half of the tolerance of
+// patches. `start`: height of s = 0.
+//
+// On a cone r^2 = q h^2 the terms of be^2 - al ga are q^2 h^2 where s = 0, h above the anchor, and eight roundings of them
+// are an error e. Of a hit at radius r the term itself is q r^2. Half of the ratio, times r / sqrt(q), is the error in
+// height: 4 * 2^-24 sqrt(q) h^2 / r.
+bool is_imprecise(Beam beam, uint k, float start)
+{
+    const float RATIO = 4.0 / 16777216.0 / (0.5 * 0.0035 / 512.0);
+    uvec4 words = listed_table(3u + 3u * k);
+    float height = start - uintBitsToFloat(listed_word(2u + 3u * k, 0u));
+    float steepness = -uintBitsToFloat(words.w) * (float(int(words.x >> 30)) - 1.0);
+    float radius = max(float(words.y & 0xffffu) * beam.unit, sqrt(beam.least) - beam.width.x);
+    float error = RATIO * height * height;
+    return error * error * steepness > radius * radius;
+}
+
 #endif

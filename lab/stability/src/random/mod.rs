@@ -1,14 +1,18 @@
 //! Random scenes, held to the reference, and reduced to the smallest that still fail.
 
+mod along_axis;
+mod numbers;
+
 use super::case::Step;
 use super::cases::on_half_turn;
 use super::judge::Truth;
 use super::run::both_stages;
+use numbers::Random;
 use revmap::error::Result;
 use revmap::gpu::Device;
 use revmap::settings::Solver;
 use revmap_bench::folder::write_text;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -19,10 +23,15 @@ const SIZE: (u32, u32) = (96, 72);
 /// earlier seeds stay as results and tests have them.
 const CLOSE_UPS_FROM: u64 = 300_000;
 
+/// From this seed on, scenes are views along the axis.
+pub const ALONG_AXIS_FROM: u64 = 50_000_000;
+
 /// A scene in the making: parts that can be left out one by one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     seed: u64,
+    /// Pixels.
+    size: (u32, u32),
     camera: String,
     /// Lines of the scene and lights.
     lines: Vec<String>,
@@ -45,6 +54,16 @@ struct DraftCamera {
     fov: f64,
 }
 
+impl DraftCamera {
+    fn text(&self, up: [f64; 3]) -> String {
+        let Self { eye, target, fov } = self;
+        format!("[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = {up:?}")
+    }
+}
+
+/// A direction that few views are along.
+const OBLIQUE: [f64; 3] = [0.3, 0.2, 1.0];
+
 /// A random scene that failed.
 #[derive(Clone, Debug)]
 pub struct Failure {
@@ -56,55 +75,7 @@ pub struct Failure {
     pub file: String,
 }
 
-/// Numbers by SplitMix64.
-struct Random(u64);
-
 impl Random {
-    /// From 0 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    /// True once in so many times.
-    fn once_in(&mut self, times: f64) -> bool {
-        self.next() * times < 1.0
-    }
-
-    /// What `other` gives, once in so many times.
-    fn maybe<T>(&mut self, times: f64, usual: T, other: impl FnOnce(&mut Self) -> T) -> T {
-        if self.once_in(times) {
-            other(self)
-        } else {
-            usual
-        }
-    }
-
-    /// Evenly among the logarithms.
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        (self.within(low.ln(), high.ln())).exp()
-    }
-
-    fn direction(&mut self) -> [f64; 3] {
-        let z = self.within(-1.0, 1.0);
-        let angle = self.within(0.0, TAU);
-        let r = (1.0 - z * z).sqrt();
-        [r * angle.cos(), r * angle.sin(), z]
-    }
-
-    fn rotation(&mut self) -> [f64; 4] {
-        let [x, y, z] = self.direction();
-        let (s, c) = self.within(0.0, PI).sin_cos();
-        [x * s, y * s, z * s, c]
-    }
-
     fn polygon(&mut self) -> Vec<[f64; 2]> {
         let count = 3 + (9.0 * self.next()) as usize;
         let last = count as f64;
@@ -297,8 +268,10 @@ impl Random {
 impl Draft {
     /// The scene of a seed.
     pub fn new(seed: u64) -> Self {
-        let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1);
-        let r = &mut random;
+        if seed >= ALONG_AXIS_FROM {
+            return Self::along_axis(seed);
+        }
+        let r = &mut Random::of(seed);
         let scale = r.maybe(3.0, 1.0, |r| r.log(1e-4, 1e4));
         let middle = r.maybe(4.0, [0.0; 3], |r| {
             let far = r.log(1.0, 1e5);
@@ -334,12 +307,10 @@ impl Draft {
         if seed >= CLOSE_UPS_FROM && r.once_in(4.0) {
             r.close_up(&mut objects[0], scale, middle, &mut camera);
         }
-        let DraftCamera { eye, target, fov } = camera;
         Self {
             seed,
-            camera: format!(
-                "[camera]\neye = {eye:?}\ntarget = {target:?}\nfov_y = {fov:?}\nup = [0.3, 0.2, 1.0]"
-            ),
+            size: SIZE,
+            camera: camera.text(OBLIQUE),
             lines,
             lights,
             objects,
@@ -411,7 +382,7 @@ impl Draft {
         for (name, rows) in self.instance_files() {
             write_text(&folder.join(name), &rows)?;
         }
-        let step = Step::new(self.text()).sized(SIZE.0, SIZE.1);
+        let step = Step::new(self.text()).sized(self.size.0, self.size.1);
         // A part less may be a scene that is refused, as a polygon of two points.
         let Ok(scene) = step.read(folder) else {
             return Ok(None);
