@@ -145,7 +145,10 @@ pub fn run(
                     }
                     let judged = one.result.as_ref().map(|r| r.2.clone());
                     let judged = judged.map_err(|error| {
-                        let of_map = error.key.as_deref() == Some("map_rows");
+                        let of_map = error
+                            .key
+                            .as_ref()
+                            .is_some_and(|key| key.ends_with("map_rows"));
                         match of_map || error.kind == ErrorKind::TooLarge {
                             true => format!("{TOO_LARGE} ({error})"),
                             false => error.to_string(),
