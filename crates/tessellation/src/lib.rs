@@ -20,7 +20,9 @@ mod meridian;
 mod parted;
 mod pixels;
 mod triangles;
+mod turned;
 
 pub use meridian::{Ring, Strand, strands_of, strands_within};
 pub use pixels::pixel_tolerance;
 pub use triangles::{Triangles, Vertex};
+pub use turned::{Turned, turned_within};

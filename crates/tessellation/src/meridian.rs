@@ -79,7 +79,7 @@ pub fn strands_within(contour: &Contour, tolerance: f64) -> Vec<Strand> {
     }
 }
 
-fn lines(chains: &[Chain]) -> Vec<Line> {
+pub(super) fn lines(chains: &[Chain]) -> Vec<Line> {
     chains.iter().map(Line::new).collect()
 }
 
@@ -107,12 +107,12 @@ fn cross([a, b]: &[DVec2; 2], [c, d]: &[DVec2; 2]) -> bool {
 }
 
 /// A chain from its first point to its last; a closed one begins at a crease if it has any.
-struct Line {
-    points: Vec<DVec2>,
+pub(super) struct Line {
+    pub(super) points: Vec<DVec2>,
     /// Outward normals of the segments: segment `k` runs from point `k` on.
     normals: Vec<DVec2>,
     /// First and last point, and creases between.
-    fixed: Vec<usize>,
+    pub(super) fixed: Vec<usize>,
     closed: bool,
 }
 
@@ -149,27 +149,37 @@ impl Line {
         for ends in self.fixed.windows(2) {
             let mut at = ends[0];
             while at < ends[1] {
-                at = self.reach(at, ends[1], tolerance);
+                at = self.reach(at, ends[1], false, &|_| tolerance);
                 kept.push(at);
             }
         }
         kept
     }
 
-    /// The farthest point up to `end` such that all between lie within the tolerance of the line to
-    /// it: the directions that meet the discs about all points so far are an interval (Imai and
-    /// Iri).
-    fn reach(&self, from: usize, end: usize, tolerance: f64) -> usize {
+    /// The farthest point up to `end` such that all between lie within their tolerance of the line
+    /// to it: the directions that meet the discs about all points so far are an interval (Imai and
+    /// Iri). The line does not turn back, or with `folds` by no more than the tolerance.
+    pub(super) fn reach(
+        &self,
+        from: usize,
+        end: usize,
+        folds: bool,
+        tolerance: &dyn Fn(usize) -> f64,
+    ) -> usize {
         let start = self.points[from];
         let ahead = self.points[from + 1] - start;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut found = from + 1;
+        let (mut found, mut farthest) = (from + 1, 0.0f64);
         for k in from + 1..=end {
-            // A chord does not turn back.
-            if (self.points[k] - self.points[k - 1]).dot(ahead) < 0.0 {
+            let (chord, tolerance) = (self.points[k] - start, tolerance(k));
+            farthest = farthest.max(chord.length());
+            let turns_back = match folds {
+                true => chord.length() < farthest - tolerance,
+                false => (self.points[k] - self.points[k - 1]).dot(ahead) < 0.0,
+            };
+            if turns_back {
                 break;
             }
-            let chord = self.points[k] - start;
             let angle = ahead.angle_to(chord);
             if (low..=high).contains(&angle) {
                 found = k;
@@ -188,7 +198,11 @@ impl Line {
     }
 
     fn strand(&self, tolerance: f64) -> Strand {
-        let kept = self.thinned(tolerance);
+        self.strand_of(&self.thinned(tolerance))
+    }
+
+    /// The strand with rings at these points.
+    pub(super) fn strand_of(&self, kept: &[usize]) -> Strand {
         let chords: Vec<Chord> = kept.windows(2).map(|k| self.chord(k[0], k[1])).collect();
         let last = chords.len();
         let rings = kept.iter().enumerate().map(|(n, &k)| {
@@ -223,6 +237,26 @@ impl Line {
             rings: rings.collect(),
             closed: self.closed,
         }
+    }
+
+    /// The places of the rings at these points, as [`Line::strand_of`] has them but for the
+    /// direction in which they are moved, which is that between the chords.
+    pub(super) fn laid(&self, kept: &[usize]) -> Vec<DVec2> {
+        let chords = || kept.windows(2);
+        let bulges: Vec<f64> = chords().map(|k| self.bulge(k[0], k[1])).collect();
+        let outward = |k: &[usize]| -(self.points[k[1]] - self.points[k[0]]).perp();
+        let outwards: Vec<DVec2> = chords().map(outward).collect();
+        let place = |(n, &k): (usize, &usize)| {
+            let mut point = self.points[k];
+            if n > 0 && n < bulges.len() && self.fixed.binary_search(&k).is_err() {
+                let outward = [n - 1, n].map(|n| outwards[n].normalize_or_zero());
+                let outward = (outward[0] + outward[1]).normalize_or_zero();
+                point += outward * (0.25 * (bulges[n - 1] + bulges[n]));
+                point.x = point.x.max(0.0);
+            }
+            point
+        };
+        kept.iter().enumerate().map(place).collect()
     }
 
     /// The chord between two points, with the normals that are nearest to the contour's if they

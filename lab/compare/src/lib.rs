@@ -4,17 +4,20 @@ mod flip;
 mod heat;
 pub mod map_accuracy;
 pub mod mosaic;
+mod outline;
 mod pixels;
 mod silhouette;
 
 pub use flip::{flip_map, mean_flip};
 pub use heat::{EMPTY, GHOST, Heat, MISSED, Scale, heat_map, heat_sheet, ramp};
+pub use outline::{TruePicture, ViewErrors};
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
 use rayon::prelude::*;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
+use revmap::scene::Scene;
 
 /// Pixels per degree of FLIP's authors: 3840 pixels on 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
@@ -81,6 +84,8 @@ pub struct Comparison {
     pub silhouette_hausdorff: f64,
     /// Mean of FLIP over the picture, 0 (equal) to 1; `None` where it was not wanted.
     pub flip: Option<f64>,
+    /// Errors in pixels of the view; `None` where the scene was not given.
+    pub view: Option<ViewErrors>,
 }
 
 impl Comparison {
@@ -118,7 +123,16 @@ impl std::fmt::Display for Comparison {
         writeln!(f, "            {}", spread(self.depth_h512(), heights))?;
         writeln!(f, "normal      {}", spread(self.normal, "degrees"))?;
         let apart = self.silhouette_hausdorff;
-        writeln!(f, "silhouette  {apart:.3} pixels (Hausdorff)")?;
+        writeln!(f, "silhouette  {apart:.3} pixels (Hausdorff, whole pixels)")?;
+        if let Some(view) = self.view {
+            let [p999, max] = [view.silhouette_p999, view.silhouette_max];
+            let depth = view.depth_p99;
+            writeln!(
+                f,
+                "            p99.9 {p999:.4}  max {max:.4} pixels from the true outline"
+            )?;
+            writeln!(f, "depth       p99 {depth:.4} pixels of the view")?;
+        }
         match self.flip {
             Some(flip) => write!(f, "flip        {flip:.6}"),
             None => write!(f, "flip        not computed"),
@@ -160,6 +174,7 @@ pub struct Reference<'a> {
     frame: &'a Frame,
     options: CompareOptions,
     eye: Option<flip::Eye>,
+    picture: Option<TruePicture>,
 }
 
 impl<'a> Reference<'a> {
@@ -173,7 +188,19 @@ impl<'a> Reference<'a> {
             frame,
             options: *options,
             eye: (options.pixels_per_degree).map(|resolution| flip::Eye::on(frame, resolution)),
+            picture: None,
         })
+    }
+
+    /// The same, with errors in pixels of the view of `scene`, which the frame shows by one ray per
+    /// pixel.
+    ///
+    /// # Errors
+    /// Those of [`TruePicture::new`].
+    pub fn of_scene(mut self, scene: &Scene) -> Result<Self> {
+        let (width, height) = (self.frame.width, self.frame.height);
+        self.picture = Some(TruePicture::new(scene, width, height)?);
+        Ok(self)
     }
 
     /// Compares a drawn frame, as [`compare`] does.
@@ -200,6 +227,7 @@ impl<'a> Reference<'a> {
             normal: spread(reference, frame, |k| normal_error(reference, frame, k)),
             silhouette_hausdorff: silhouette::silhouette_hausdorff(reference, frame),
             flip: (self.eye.as_ref()).map(|eye| mean_flip(&eye.flip(frame))),
+            view: (self.picture.as_ref()).map(|picture| picture.errors(reference, frame)),
         })
     }
 }

@@ -6,6 +6,7 @@ pub(super) mod pipelines;
 pub use pipelines::MeshPipelines;
 
 use super::blocks::{FrameBlock, InstanceBlock, MAX_LIGHTS, ObjectBlock};
+use super::fineness::Fineness;
 use super::placed::{PlacedMesh, SceneMeshes};
 use super::tessellation::Mesh;
 use ash::vk;
@@ -24,6 +25,8 @@ pub struct MeshLayer {
     meshes: SceneMeshes,
     size: (u32, u32),
     objects: Vec<DrawnObject>,
+    /// Those of the meshes that are kept.
+    on_device: Vec<Arc<DeviceMesh>>,
     /// Meshes that the next frame copies from buffers of vertices, then indices.
     staged: Vec<(Arc<DeviceMesh>, Buffer)>,
     frame: Buffer,
@@ -52,23 +55,24 @@ struct DrawnObject {
 
 impl MeshLayer {
     /// No meshes yet, for the pass of `offscreen`, which draws by `settings` and has so many
-    /// samples. Levels are segments, rings and least height on the screen in pixels.
+    /// samples.
     ///
     /// # Errors
     /// Of Vulkan.
     pub fn new(
         pipelines: &Arc<MeshPipelines>,
         offscreen: &Offscreen,
-        levels: Vec<(u32, u32, f64)>,
+        fineness: Fineness,
         settings: &Settings,
         samples: u32,
     ) -> Result<Self> {
         let size = (settings.width, settings.height);
         let device = pipelines.device();
         let mut layer = Self {
-            meshes: SceneMeshes::new(levels, size),
+            meshes: SceneMeshes::new(fineness, size),
             size,
             objects: Vec::new(),
+            on_device: Vec::new(),
             staged: Vec::new(),
             frame: written::<FrameBlock>(device, 1, vk::BufferUsageFlags::UNIFORM_BUFFER)?,
             instances: instance_buffer(device, 1)?,
@@ -125,15 +129,19 @@ impl MeshLayer {
         let mut staged: Vec<(Arc<DeviceMesh>, Buffer)> = Vec::new();
         let mut objects = Vec::new();
         let mut instances: Vec<InstanceBlock> = Vec::new();
+        // Those of meshes that are no longer kept go.
+        let is_kept = |known: &Arc<DeviceMesh>| Arc::strong_count(&known.mesh) > 1;
+        let mut on_device = self.on_device.clone();
+        on_device.retain(is_kept);
         for one in placed {
-            let before = self.objects.iter().map(|object| &object.mesh);
-            let mut known = before.chain(staged.iter().map(|(mesh, _)| mesh));
+            let mut known = on_device.iter();
             let mesh = match known.find(|known| Arc::ptr_eq(&known.mesh, &one.mesh)) {
                 Some(mesh) => mesh.clone(),
                 None => {
                     let (mesh, staging) = DeviceMesh::new(&device, &one.mesh)?;
                     let mesh = Arc::new(mesh);
                     staged.push((mesh.clone(), staging));
+                    on_device.push(mesh.clone());
                     mesh
                 }
             };
@@ -164,7 +172,7 @@ impl MeshLayer {
             write(&mut self.instances, bytes)?;
         }
         write(&mut self.frame, bytemuck::bytes_of(frame))?;
-        self.objects = objects;
+        (self.objects, self.on_device) = (objects, on_device);
         // Some may have been staged for a frame that was never drawn.
         self.staged.append(&mut staged);
         self.staged.retain(|(mesh, _)| Arc::strong_count(mesh) > 1);

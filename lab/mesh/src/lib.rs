@@ -9,12 +9,14 @@
 //! shadows, replicas, maps of colours and heights, and coordinates along the profile.
 
 mod blocks;
+mod fineness;
 mod layer;
 mod placed;
 mod tessellation;
 #[cfg(test)]
 mod tests;
 
+pub use fineness::Fineness;
 pub use layer::{MeshLayer, MeshPipelines};
 pub use placed::check_scene;
 pub use tessellation::{BAND, Mesh, Vertex};

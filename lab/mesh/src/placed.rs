@@ -1,13 +1,15 @@
 //! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
 
 use super::blocks::{InstanceBlock, ObjectBlock};
-use super::tessellation::Mesh;
+use super::fineness::{Fineness, Sight};
+use super::tessellation::{Mesh, extent_of};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::Projection;
 use revmap::profile::Profile;
 use revmap::scene::{CameraFrame, GrownProfiles, Growth, Object, Offset, Placement, Scene, Shadow};
-use revmap::surface::ContourSource;
+use revmap::surface::{Contour, ContourSource};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// An object's mesh and what is drawn of it.
@@ -25,149 +27,109 @@ pub(super) struct PlacedMesh {
     depth: f64,
 }
 
-/// Makes and keeps the meshes of a scene; objects of one profile and offset share one.
+/// Makes and keeps the meshes of a scene; objects of one profile and offset share them.
 pub(super) struct SceneMeshes {
-    /// Segments, rings, least height on the screen in pixels; from the coarsest to the finest.
-    levels: Vec<(u32, u32, f64)>,
+    fineness: Fineness,
     /// Of the picture, pixels.
     size: (u32, u32),
     sources: Vec<(Arc<Profile>, ContourSource)>,
     /// Profiles in boxes that have grown with offsets.
     grown: GrownProfiles,
-    made: Vec<Made>,
+    solids: Vec<Solid>,
     /// How many meshes were made so far.
     pub made_count: u64,
 }
 
-#[derive(Clone)]
-struct Made {
+/// A profile under an offset, and its meshes.
+struct Solid {
     profile: Arc<Profile>,
     offset: Offset,
-    level: usize,
-    mesh: Arc<Mesh>,
+    contour: Contour,
+    /// Largest radius, least and largest `z` of the contour.
+    extent: [f64; 3],
+    levels: BTreeMap<i32, Arc<Mesh>>,
+    used: bool,
 }
 
 impl SceneMeshes {
-    /// Meshes of so many segments and at most so many rings, by the height of a copy.
-    pub fn new(levels: Vec<(u32, u32, f64)>, size: (u32, u32)) -> Self {
+    /// Meshes of this fineness, for pictures of this size.
+    pub fn new(fineness: Fineness, size: (u32, u32)) -> Self {
         Self {
-            levels,
+            fineness,
             size,
             sources: Vec::new(),
             grown: GrownProfiles::default(),
-            made: Vec::new(),
+            solids: Vec::new(),
             made_count: 0,
         }
     }
 
-    /// The meshes of a checked scene, the nearest first. Only those whose profile or offset is new
-    /// are made.
+    /// The meshes of a checked scene, the nearest first. Only those whose profile, offset or level
+    /// is new are made. Meshes stay as long as an object has their profile and offset.
     ///
     /// # Errors
     /// [`ErrorKind::Content`] for what meshes do not draw, and for a profile without a contour.
     pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Vec<PlacedMesh>> {
         check_scene(scene)?;
-        let mut used = Vec::new();
+        self.solids.iter_mut().for_each(|solid| solid.used = false);
+        let sight = Sight::new(camera, self.size);
         let mut placed = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let under = |key: &str| format!("object.{number}.{key}");
             let grown = self.grown.grown(object);
             let growth = Growth::of(object);
             let object = grown.as_ref().map_or(object, |g| &g.object);
-            for (level, copies) in self.by_level(object, camera).into_iter().enumerate() {
-                let made = self.make(object, level).map_err(|error| {
-                    let error = error.at_key(under("profile"));
-                    match &object.file {
-                        Some(file) => error.in_file(file),
-                        None => error,
-                    }
-                })?;
-                check_box(object, made.mesh.extent[0])
-                    .map_err(|(key, error)| error.at_key(under(key)))?;
-                if !copies.is_empty() {
-                    placed.push(place(object, copies, &growth, made.mesh.clone(), camera));
+            let solid = self.solid(object).map_err(|error| {
+                let error = error.at_key(under("profile"));
+                match &object.file {
+                    Some(file) => error.in_file(file),
+                    None => error,
                 }
-                used.push(made);
+            })?;
+            let (solid, fineness) = (&mut self.solids[solid], self.fineness);
+            check_box(object, solid.extent[0]).map_err(|(key, error)| error.at_key(under(key)))?;
+            let shape = (&solid.contour, &solid.extent);
+            for (level, copies) in fineness.by_level(object, shape, &sight) {
+                let mesh = solid.levels.entry(level).or_insert_with(|| {
+                    self.made_count += 1;
+                    Arc::new(fineness.mesh(&solid.contour, level))
+                });
+                placed.push(place(object, copies, &growth, mesh.clone(), camera));
             }
         }
-        self.sources
-            .retain(|(profile, _)| used.iter().any(|u| Arc::ptr_eq(&u.profile, profile)));
-        self.made = used;
+        self.solids.retain(|solid| solid.used);
+        let (sources, solids) = (&mut self.sources, &self.solids);
+        sources.retain(|(known, _)| solids.iter().any(|s| Arc::ptr_eq(&s.profile, known)));
         placed.sort_by(|a, b| a.depth.total_cmp(&b.depth));
         Ok(placed)
     }
 
-    /// Copies of an object by level. With several levels, those beside the picture are left out.
-    fn by_level(&self, object: &Object, camera: &CameraFrame) -> Vec<Vec<Placement>> {
-        let mut all = vec![Vec::new(); self.levels.len()];
-        if let [one] = all.as_mut_slice() {
-            *one = object.placements().to_vec();
-            return all;
-        }
-        for copy in object.placements() {
-            if let Some(height) = pixels_high(object, copy, camera, self.size) {
-                let fine = |&(_, _, least): &(u32, u32, f64)| height >= least;
-                let level = self.levels.iter().rposition(fine).unwrap_or(0);
-                all[level].push(*copy);
-            }
-        }
-        all
-    }
-
-    fn make(&mut self, object: &Object, level: usize) -> Result<Made> {
-        let same = |made: &&Made| {
-            Arc::ptr_eq(&made.profile, &object.profile)
-                && made.offset == object.offset
-                && made.level == level
+    /// The place of an object's solid among all.
+    fn solid(&mut self, object: &Object) -> Result<usize> {
+        let same = |solid: &Solid| {
+            Arc::ptr_eq(&solid.profile, &object.profile) && solid.offset == object.offset
         };
-        if let Some(made) = self.made.iter().find(same) {
-            return Ok(made.clone());
+        if let Some(place) = self.solids.iter().position(same) {
+            self.solids[place].used = true;
+            return Ok(place);
         }
         let known = |(profile, _): &(Arc<Profile>, _)| Arc::ptr_eq(profile, &object.profile);
         if !self.sources.iter().any(known) {
             let source = ContourSource::new(&object.profile.outline)?;
             self.sources.insert(0, (object.profile.clone(), source));
         }
-        let place = self.sources.iter().position(known).unwrap_or_default();
-        let contour = self.sources[place].1.contour(&object.offset)?;
-        let (segments, rings, _) = self.levels[level];
-        let made = Made {
+        let source = self.sources.iter().position(known).unwrap_or_default();
+        let contour = self.sources[source].1.contour(&object.offset)?;
+        self.solids.push(Solid {
             profile: object.profile.clone(),
             offset: object.offset,
-            level,
-            mesh: Arc::new(Mesh::new(&contour, segments, rings)),
-        };
-        self.made.push(made.clone());
-        self.made_count += 1;
-        Ok(made)
+            extent: extent_of(&contour),
+            contour,
+            levels: BTreeMap::new(),
+            used: true,
+        });
+        Ok(self.solids.len() - 1)
     }
-}
-
-/// The height of a copy's sphere in pixels; none beside the picture or behind the eye.
-fn pixels_high(
-    object: &Object,
-    copy: &Placement,
-    camera: &CameraFrame,
-    size: (u32, u32),
-) -> Option<f64> {
-    let half = DVec3::new(object.profile.radius, object.profile.radius, 0.5) * copy.scale;
-    let (radius, height) = (half.length(), copy.scale.max_element());
-    let middle = copy.position + copy.rotation * DVec3::new(0.0, 0.0, 0.5 * copy.scale.z);
-    let way = middle - camera.eye;
-    let depth = way.dot(camera.forward);
-    if depth < -radius {
-        return None;
-    }
-    let pixel = camera.right.length();
-    if depth <= 2.0 * radius {
-        return Some(f64::INFINITY);
-    }
-    // A sphere off the middle of the picture is seen stretched.
-    let around = 1.5 * radius / ((depth - radius) * pixel);
-    let x = way.dot(camera.right) / (depth * pixel * pixel) + camera.middle[0];
-    let y = camera.middle[1] - way.dot(camera.up) / (depth * pixel * pixel);
-    let within = |at: f64, size: u32| at + around > 0.0 && at - around < f64::from(size);
-    (within(x, size.0) && within(y, size.1)).then(|| height / ((depth - radius) * pixel))
 }
 
 fn place(
@@ -180,7 +142,7 @@ fn place(
     let depth = |p: &Placement| (p.position - camera.eye).dot(camera.forward);
     placements.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     let eyes: Vec<DVec3> = (placements.iter())
-        .map(|p| eye_about_axis(object, p, camera))
+        .map(|p| eye_about_axis(object, p, camera.eye))
         .collect();
     let instances: Vec<InstanceBlock> = placements.iter().map(InstanceBlock::from).collect();
     // Of several instances, all would be drawn in two halves.
@@ -272,10 +234,10 @@ fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> 
 }
 
 /// The eye in object space, about the axis.
-fn eye_about_axis(object: &Object, placement: &Placement, camera: &CameraFrame) -> DVec3 {
+pub(super) fn eye_about_axis(object: &Object, placement: &Placement, eye: DVec3) -> DVec3 {
     let [x, y] = object.axis_offset();
     let back = placement.rotation.normalize().conjugate();
-    back * (camera.eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
+    back * (eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
 }
 
 /// Whether an eye may be inside, or so near that the near plane cuts: then backs are seen.

@@ -1,7 +1,7 @@
 //! A solid of revolution as triangles: the contour under its offset, thinned to rings and turned in
-//! equal steps. The mesh is as good as its number of quads allows:
+//! equal steps. The mesh is as good as its number of quads allows, or as coarse as a tolerance allows:
 //!
-//! * Chords are as long as the least tolerance that keeps within the rings allowed. Errors are even
+//! * Of so many rings, chords are as long as the least tolerance that keeps within the rings allowed. Errors are even
 //!   along the meridian, and straight parts take no ring, because a frustum is exact there.
 //! * Vertices are moved outwards by half of a chord's distance from its arc: around the axis by the
 //!   factor `2 / (1 + cos(pi / n))`, along the meridian where it is smooth. This halves the errors.
@@ -14,11 +14,14 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use revmap::surface::Contour;
-use revmap_tessellation::{Strand, strands_of};
+use revmap_tessellation::{Strand, Turned, strands_of, turned_within};
 use std::f64::consts::{PI, TAU};
 
 /// Segments that are drawn side by side from one end of the meridian to the other.
 pub const BAND: u32 = 8;
+
+/// The largest tolerance, parts of the largest radius: with more a small copy would vanish.
+const LEAST_SHAPE: f64 = 0.25;
 
 /// What the vertex shader is given.
 #[repr(C)]
@@ -49,8 +52,19 @@ pub struct Mesh {
 impl Mesh {
     /// A contour in `segments` steps around and at most `rings` along, more if it has more corners.
     pub fn new(contour: &Contour, segments: u32, rings: u32) -> Self {
-        let strands = strands_of(contour, rings as usize);
-        let points = || contour.chains.iter().flat_map(|c| &c.points);
+        Self::of_strands(contour, segments, &strands_of(contour, rings as usize))
+    }
+
+    /// A contour in as few steps as keep the solid within `tolerance`, object units, which is at
+    /// most a quarter of the largest radius.
+    pub fn within(contour: &Contour, tolerance: f64) -> Self {
+        let widest = extent_of(contour)[0];
+        let Turned { strands, segments } =
+            turned_within(contour, tolerance.min(LEAST_SHAPE * widest));
+        Self::of_strands(contour, segments, &strands)
+    }
+
+    fn of_strands(contour: &Contour, segments: u32, strands: &[Strand]) -> Self {
         let mut builder = Builder::new(segments);
         let sets: Vec<_> = strands.iter().map(|s| builder.vertices(s)).collect();
         for first in (0..segments).step_by(BAND as usize) {
@@ -64,11 +78,7 @@ impl Mesh {
             indices: builder.indices,
             segments,
             rings: sets.iter().map(|s| s.len() as u32).sum(),
-            extent: [
-                points().fold(0.0, |most, p| p.x.max(most)),
-                points().fold(f64::INFINITY, |least, p| p.y.min(least)),
-                points().fold(f64::NEG_INFINITY, |most, p| p.y.max(most)),
-            ],
+            extent: extent_of(contour),
         };
         mesh.in_order_of_use();
         mesh
@@ -96,6 +106,16 @@ impl Mesh {
         let per_segment = self.indices.len() as u32 / self.segments.max(1);
         segment.min(self.segments.saturating_sub(1)) / BAND * BAND * per_segment
     }
+}
+
+/// Largest radius, least and largest `z` of a contour.
+pub(super) fn extent_of(contour: &Contour) -> [f64; 3] {
+    let points = || contour.chains.iter().flat_map(|c| &c.points);
+    [
+        points().fold(0.0, |most, p| p.x.max(most)),
+        points().fold(f64::INFINITY, |least, p| p.y.min(least)),
+        points().fold(f64::NEG_INFINITY, |most, p| p.y.max(most)),
+    ]
 }
 
 /// The vertices of one ring on one side of it: all around, or one on the axis.

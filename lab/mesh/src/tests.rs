@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::layer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
-use super::{MeshLayer, MeshPipelines};
+use super::{Fineness, MeshLayer, MeshPipelines};
 use glam::{DVec3, Vec3};
 use revmap::gpu::Device;
 use revmap::profile::Profile;
@@ -197,10 +197,13 @@ fn meshes_and_searches_hide_each_other() {
         height: 180,
         ..Settings::exact()
     };
-    let levels = vec![(256, 512, 0.0)];
+    let fineness = Fineness::Quads {
+        segments: 256,
+        rings: 512,
+    };
     let mut offscreen = Offscreen::new(&device, &ours, &own).unwrap();
     let pipelines = MeshPipelines::new(&device).unwrap();
-    let mut meshes = MeshLayer::new(&pipelines, &offscreen, levels, &own, 1).unwrap();
+    let mut meshes = MeshLayer::new(&pipelines, &offscreen, fineness, &own, 1).unwrap();
     meshes.update(&theirs, || Ok(*offscreen.view())).unwrap();
 
     let truth = revmap_reference::draw(&all, &own, &|_, _| {}).unwrap();

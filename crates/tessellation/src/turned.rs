@@ -1,0 +1,132 @@
+//! Rings and segments for a solid that is turned in steps, by what both err together.
+
+use super::meridian::{Line, Strand, lines};
+use glam::DVec2;
+use revmap::surface::Contour;
+use std::f64::consts::PI;
+
+/// Strands, and the number of equal steps in which they are turned about the axis.
+#[derive(Clone, Debug, Default)]
+pub struct Turned {
+    /// The chains of the contour, thinned.
+    pub strands: Vec<Strand>,
+    /// Steps around the axis, at least 3.
+    pub segments: u32,
+}
+
+/// Above this tolerance, object units, details of an outline may be left out.
+const DETAILS: f64 = 1e-3;
+/// The first factor on the tolerance of a section's chords. They are laid to both sides, so that an
+/// even curve errs by half of it.
+const FIRST: f64 = 2.0;
+/// From one factor to the next, until the section keeps the tolerance.
+const NEXT: f64 = 0.8;
+/// The share of the tolerance that chords keep: rings are moved along normals, which differ a little
+/// from those between chords that they are measured with.
+const MARGIN: f64 = 0.98;
+
+/// A contour as few rings and segments whose solid is nowhere farther than `tolerance` from the
+/// contour's own, object units.
+///
+/// A polygon of `n` sides that is laid to both sides of its circle of radius `r` errs by `e r`, with
+/// `e = (1 - cos(pi / n)) / (1 + cos(pi / n))`. Where its corner meets a ring, the error `c` of the
+/// chord is added. Quads are fewest if `c` and `e r` are equal at the largest radius, because rings
+/// follow `1 / sqrt(c)` and segments `1 / sqrt(e)`. So chords may err by half of the tolerance
+/// there, and by more nearer the axis. They leave `e` as the least of `(tolerance - c) / r`.
+#[must_use]
+pub fn turned_within(contour: &Contour, tolerance: f64) -> Turned {
+    let lines = lines(contour);
+    let points = || lines.iter().flat_map(|line| &line.points);
+    let widest = points().fold(f64::MIN_POSITIVE, |most, p| p.x.max(most));
+    let share = |p: &DVec2| tolerance * (1.0 - 0.5 * p.x / widest);
+    let turned = |corners: bool| {
+        let mut all = Turned::default();
+        let mut spread = f64::INFINITY;
+        for line in &lines {
+            let kept = kept(line, corners, &share);
+            let strand = line.strand_of(&kept);
+            for (chord, ends) in strand.rings.windows(2).zip(kept.windows(2)) {
+                let [a, b] = [chord[0].point, chord[1].point];
+                let left = tolerance - error(line, ends, [a, b]);
+                spread = spread.min(left / a.x.max(b.x).max(f64::MIN_POSITIVE));
+            }
+            all.strands.push(strand);
+        }
+        all.segments = segments(spread);
+        all
+    };
+    let all = turned(true);
+    if tolerance < DETAILS {
+        return all;
+    }
+    let fewer = turned(false);
+    if quads(&fewer) < quads(&all) {
+        fewer
+    } else {
+        all
+    }
+}
+
+/// The least number of segments whose polygon errs by at most `spread` of its radius.
+fn segments(spread: f64) -> u32 {
+    let spread = spread.clamp(1e-9, 1.0);
+    let half_step = ((1.0 - spread) / (1.0 + spread)).acos();
+    ((PI / half_step).ceil() as u32).max(3)
+}
+
+fn quads(turned: &Turned) -> usize {
+    let rings = turned.strands.iter().map(|s| s.rings.len() - 1);
+    rings.sum::<usize>() * turned.segments as usize
+}
+
+/// The points of a line that become rings: between fixed points the longest chords of a few choices
+/// that, laid to both sides, keep `share`. Without `corners` only the line's ends are fixed.
+fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> Vec<usize> {
+    let last = line.points.len() - 1;
+    let ends = if corners {
+        line.fixed.clone()
+    } else {
+        vec![0, last]
+    };
+    let mut all = vec![0];
+    for section in ends.windows(2) {
+        let mut factor = FIRST;
+        loop {
+            let own = |k: usize| factor * share(&line.points[k]);
+            let mut kept = vec![section[0]];
+            while let Some(&at) = kept.last().filter(|at| **at < section[1]) {
+                kept.push(line.reach(at, section[1], !corners, &own));
+            }
+            // As factors fall the chords become the line itself.
+            if keeps(line, &kept, share) || kept.len() == section[1] - section[0] + 1 {
+                all.extend(&kept[1..]);
+                break;
+            }
+            factor *= NEXT;
+        }
+    }
+    all
+}
+
+/// Returns true if the chords between these points, laid to both sides, err by at most `share`.
+fn keeps(line: &Line, kept: &[usize], share: &dyn Fn(&DVec2) -> f64) -> bool {
+    let laid = line.laid(kept);
+    let most = |k: usize| MARGIN * share(&line.points[k]);
+    kept.windows(2).zip(laid.windows(2)).all(|(ends, chord)| {
+        let tightest = (ends[0]..=ends[1]).map(most);
+        error(line, ends, [chord[0], chord[1]]) <= tightest.fold(f64::INFINITY, f64::min)
+    })
+}
+
+/// The largest distance between a chord and the points of the line that it stands for.
+fn error(line: &Line, ends: &[usize], [a, b]: [DVec2; 2]) -> f64 {
+    let (way, points) = (b - a, &line.points[ends[0]..=ends[1]]);
+    let from_chord = |p: &DVec2| {
+        let along = (*p - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
+        p.distance(a + along.clamp(0.0, 1.0) * way)
+    };
+    let moved = a
+        .distance(line.points[ends[0]])
+        .max(b.distance(line.points[ends[1]]));
+    points.iter().map(from_chord).fold(moved, f64::max)
+}
