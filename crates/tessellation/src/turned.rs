@@ -1,6 +1,7 @@
 //! Rings and segments for a solid that is turned in steps, by what both err together.
 
 use super::meridian::{Line, Strand, lines};
+use super::parted::cleaned;
 use glam::DVec2;
 use revmap::surface::Contour;
 use std::f64::consts::PI;
@@ -16,11 +17,11 @@ pub struct Turned {
 
 /// Above this tolerance, object units, details of an outline may be left out.
 const DETAILS: f64 = 1e-3;
-/// The first factor on the tolerance of a section's chords. They are laid to both sides, so that an
-/// even curve errs by half of it.
-const FIRST: f64 = 2.0;
-/// From one factor to the next, until the section keeps the tolerance.
-const NEXT: f64 = 0.8;
+/// The first factor on the tolerance of chords. They are laid to both sides, so that an even curve
+/// errs by half of it.
+const FIRST: f64 = 1.9;
+/// From one factor to the next where chords do not keep the tolerance.
+const NEXT: f64 = 0.85;
 /// The share of the tolerance that chords keep: rings are moved along normals, which differ a little
 /// from those between chords that they are measured with.
 const MARGIN: f64 = 0.98;
@@ -35,7 +36,7 @@ const MARGIN: f64 = 0.98;
 /// there, and by more nearer the axis. They leave `e` as the least of `(tolerance - c) / r`.
 #[must_use]
 pub fn turned_within(contour: &Contour, tolerance: f64) -> Turned {
-    let lines = lines(contour);
+    let lines = lines(&cleaned(&contour.chains));
     let points = || lines.iter().flat_map(|line| &line.points);
     let widest = points().fold(f64::MIN_POSITIVE, |most, p| p.x.max(most));
     let share = |p: &DVec2| tolerance * (1.0 - 0.5 * p.x / widest);
@@ -79,43 +80,36 @@ fn quads(turned: &Turned) -> usize {
     rings.sum::<usize>() * turned.segments as usize
 }
 
-/// The points of a line that become rings: between fixed points the longest chords of a few choices
-/// that, laid to both sides, keep `share`. Without `corners` only the line's ends are fixed.
+/// The points of a line that become rings: between fixed points the longest chords that, laid to
+/// both sides, keep `share`. Without `corners` only the line's ends are fixed.
 fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> Vec<usize> {
     let last = line.points.len() - 1;
-    let ends = if corners {
-        line.fixed.clone()
-    } else {
-        vec![0, last]
-    };
-    let mut all = vec![0];
-    for section in ends.windows(2) {
-        let mut factor = FIRST;
-        loop {
-            let own = |k: usize| factor * share(&line.points[k]);
-            let mut kept = vec![section[0]];
+    let ends = [0, last];
+    let fixed = if corners { &line.fixed[..] } else { &ends };
+    let mut tolerances: Vec<f64> = line.points.iter().map(|p| FIRST * share(p)).collect();
+    loop {
+        let mut kept = vec![0];
+        for section in fixed.windows(2) {
             while let Some(&at) = kept.last().filter(|at| **at < section[1]) {
-                kept.push(line.reach(at, section[1], !corners, &own));
+                kept.push(line.reach(at, section[1], !corners, &|k| tolerances[k]));
             }
-            // As factors fall the chords become the line itself.
-            if keeps(line, &kept, share) || kept.len() == section[1] - section[0] + 1 {
-                all.extend(&kept[1..]);
-                break;
+        }
+        let laid = line.laid(&kept);
+        let mut done = true;
+        for (ends, chord) in kept.windows(2).zip(laid.windows(2)) {
+            let points = ends[0]..=ends[1];
+            let allowed = line.points[points.clone()].iter().map(share);
+            let allowed = MARGIN * allowed.fold(f64::INFINITY, f64::min);
+            // As tolerances fall chords become the line itself.
+            if ends[1] > ends[0] + 1 && error(line, ends, [chord[0], chord[1]]) > allowed {
+                tolerances[points].iter_mut().for_each(|t| *t *= NEXT);
+                done = false;
             }
-            factor *= NEXT;
+        }
+        if done {
+            return kept;
         }
     }
-    all
-}
-
-/// Returns true if the chords between these points, laid to both sides, err by at most `share`.
-fn keeps(line: &Line, kept: &[usize], share: &dyn Fn(&DVec2) -> f64) -> bool {
-    let laid = line.laid(kept);
-    let most = |k: usize| MARGIN * share(&line.points[k]);
-    kept.windows(2).zip(laid.windows(2)).all(|(ends, chord)| {
-        let tightest = (ends[0]..=ends[1]).map(most);
-        error(line, ends, [chord[0], chord[1]]) <= tightest.fold(f64::INFINITY, f64::min)
-    })
 }
 
 /// The largest distance between a chord and the points of the line that it stands for.

@@ -12,7 +12,7 @@ use crate::method::{Edges, Method};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::{Offset, Shadow};
 use revmap::settings::{Tolerance, name_of};
-use revmap_compare::PixelErrors;
+use revmap_compare::{PixelErrors, ViewErrors};
 
 /// The sources of cells beside their row.
 pub struct Context<'a> {
@@ -58,7 +58,7 @@ macro_rules! columns {
 }
 
 /// How many columns `results.csv` has: the first of all.
-pub const RESULTS: usize = 41;
+pub const RESULTS: usize = 45;
 
 /// How many of them every version writes, before all others.
 pub const CONTRACT: usize = 31;
@@ -100,6 +100,20 @@ fn stages_end(context: &Context, row: &Row, of: fn((f64, f64)) -> f64) -> Cell {
     Cell::number(ends.map(of))
 }
 
+/// A cell of the errors in pixels of the view; the floor has none.
+fn view(row: &Row, of: fn(&ViewErrors) -> f64) -> Cell {
+    let errors = row.surface().and_then(|errors| errors.view.as_ref());
+    Cell::number(errors.map(of))
+}
+
+/// The tolerance that a row was drawn to, pixels.
+pub(super) fn tolerance(row: &Row) -> Option<f64> {
+    let settings = &row.settings;
+    let own = settings.method.follows_tolerance();
+    let own = own.then(|| settings.tolerance.pixels());
+    own.or(settings.method.pixels())
+}
+
 fn yes(yes: bool) -> &'static str {
     if yes { "yes" } else { "no" }
 }
@@ -131,7 +145,7 @@ pub static COLUMNS: &[Column] = columns! {
     "bevel", "b", "slope of the offset" => |_, r| offset(r, |o| o.bevel);
     "chamfer", "c", "depth from 0 to 1 to which the slope reaches" => |_, r| offset(r, |o| o.chamfer);
     "stage", "stage", "shader stage in which rays are traced" => |_, r| Cell::text(r.settings.stage.name());
-    "solver", "solver", "how the first hit along a ray is found; mesh:SxR is a mesh of S segments around the axis and R rings along the outline" => |_, r| Cell::text(r.settings.method.to_string());
+    "solver", "solver", "how the first hit along a ray is found; mesh:PIXELSpx is a mesh whose silhouettes keep so many pixels, mesh:SxR one of S segments around the axis and R rings along the outline" => |_, r| Cell::text(r.settings.method.to_string());
     "max_steps", "bound on steps", "bound on the steps of the search" => |_, r| searched(r, Cell::Count(r.max_steps().into()));
     "width", "width", "pixels across" => |_, r| Cell::Count(r.settings.width.into());
     "height", "height", "pixels down" => |_, r| Cell::Count(r.settings.height.into());
@@ -158,7 +172,7 @@ pub static COLUMNS: &[Column] = columns! {
     "driver", "driver", "Vulkan driver" => |c, _| Cell::text(c.driver);
     "gpu_ms_low", "device's time, low (ms)", "lower end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.0));
     "gpu_ms_high", "device's time, high (ms)", "upper end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.1));
-    "tolerance_px", "tolerance (pixels)", "allowed error of silhouettes and depths in pixels, of searches on patches; 0 is exact" => |_, r| Cell::number(r.settings.method.follows_tolerance().then(|| r.settings.tolerance.pixels()));
+    "tolerance_px", "tolerance (pixels)", "allowed error in pixels: of silhouettes and depths, of searches on patches (0 is exact); of silhouettes, of meshes that follow the view" => |_, r| Cell::number(tolerance(r));
     "above_floor_ms", "above the floor (ms)", "time less that of the floor in the same picture and stage: what the search itself takes" => |c, r| Cell::number(above_floor(c.rows.iter().copied(), r));
     "resolved", "resolved", "whether the interval of the time is as narrow as the plan demands; figures that are not are left out of Pareto fronts" => |c, r| Cell::text(yes(r.resolved(c.resolved)));
     "time_over_fragment", "time / fragment stage", "time of the compute stage over that of the same method in the fragment stage, same picture" => |c, r| over(c, r, Over::Fragment);
@@ -166,6 +180,10 @@ pub static COLUMNS: &[Column] = columns! {
     "time_over_fragment_high", "time / fragment stage, high", "upper end of its 95 % interval" => |c, r| stages_end(c, r, |e| e.1);
     "shadow", "shadows", "shadows in the scene: off, hard or soft" => |_, r| Cell::text(name_of(&Shadow::NAMES, &r.shadow));
     "way", "edges", "how edges are treated: rays per pixel, smoothed silhouettes, or a pass of four samples (MSAA 4)" => |_, r| Cell::text(edges(r));
+    "silhouette_p999_px", "silhouette p99.9 (px)", "distance of the silhouette from the true outline in pixels, 99.9th percentile over the pixels at the true outline and the wrong pixels: of a wrong pixel the distance of its centre from the outline, found by rays of the reference between the pixels' own; of a right pixel 0" => |_, r| view(r, |v| v.silhouette_p999);
+    "silhouette_max_px", "silhouette max (px)", "the same: maximum" => |_, r| view(r, |v| v.silhouette_max);
+    "depth_p99_px", "depth p99 (px)", "error of the distance along the ray over the size of a pixel there, 99th percentile over the pixels that both hit", from 1e-4 => |_, r| view(r, |v| v.depth_p99);
+    "change_ms", "change (ms)", "in views whose offset moves: the host's time to take over a new offset and to record the frame, ms; not part of the other times" => |_, r| Cell::number(r.typical(|s| s.change_ms));
     "framing", "framing", "whole: the solid from head to foot; close: the field of view narrowed until the solid's box is a quarter larger than a picture of 4:3" => |_, r| Cell::text(r.framing.name());
     "value", "value", "parameter of the form, in plans that vary one" => |_, r| Cell::number(r.value);
     "method", "method", "the solver, and what else differs between the ways of drawing that are measured" => |c, r| Cell::text(c.styles.way(&r.settings));
@@ -182,6 +200,12 @@ pub static COLUMNS: &[Column] = columns! {
         Cell::number(above_floor(c.rows.iter().copied(), r).zip(baseline).map(|(above, t)| above / t.value))
     };
     "time_over_rbm_baseline", "time / RBM baseline", "time over that of the RBM baseline in the same picture: one for both stages, drawn in the fragment stage, or in the compute stage where only that was measured" => |c, r| over(c, r, Over::Baseline);
+    "time_over_opponent", "time / mesh:0.25px", "time over that of the mesh whose silhouettes keep 0.25 pixels, in the same picture" => |c, r| over(c, r, Over::Opponent);
+    "time_over_equal", "time / mesh of equal silhouettes", "time over that of the mesh whose silhouettes keep the same tolerance, in the same picture" => |c, r| over(c, r, Over::Equal);
+    "frame_with_change_ms", "change and frame (ms)", "in views whose offset moves: the host's time of the change and the time of the frame" => |_, r| {
+        let change = r.typical(|s| s.change_ms);
+        Cell::number(change.zip(r.time()).map(|(change, time)| change + time.value))
+    };
     "time_over_exact", "time / exact", "time over that of the exact picture in the same stage" => |c, r| over(c, r, Over::Exact);
     "time_over_1_ray", "time / 1 ray", "time over that of one ray per pixel in the same picture and stage" => |c, r| over(c, r, Over::Exact);
     "time_over_rival", "exact / fastest other", "time of the default search, exact, over that of the fastest other search in the same picture and stage whose depth errors are below a texel (99th percentile)" => |c, r| over(c, r, Over::Rival);
@@ -355,6 +379,7 @@ impl<'a> Context<'a> {
         match settings.method {
             _ if is_rbm_baseline(settings) => RBM_BASELINE.to_owned(),
             Method::Mesh { .. } => "mesh, segments x rings".to_owned(),
+            Method::MeshWithin { .. } => "mesh, silhouettes within pixels".to_owned(),
             method => method.to_string(),
         }
     }

@@ -8,6 +8,7 @@ use crate::renderer::{MethodDevice, MethodRenderer};
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
+use revmap::scene::Scene;
 use revmap_offscreen::samples::averaged;
 use revmap_reference as reference;
 use revmap_searches::folder::check_frame;
@@ -37,8 +38,18 @@ enum Drawer {
 }
 
 impl Drawer {
-    /// Draws a frame and waits for it.
-    fn draw(&mut self) -> Result<Sample> {
+    /// Applies a scene; returns the milliseconds that it takes.
+    fn change(&mut self, scene: &Scene) -> Result<f64> {
+        let start = Instant::now();
+        match self {
+            Self::Rays(renderer, _) => renderer.update(scene)?,
+            Self::Smoothed(both) => both.iter_mut().try_for_each(|r| r.update(scene))?,
+        }
+        Ok(start.elapsed().as_secs_f64() * 1e3)
+    }
+
+    /// Draws a frame and waits for it. `change_ms`: of the change before it.
+    fn draw(&mut self, mut change_ms: Option<f64>) -> Result<Sample> {
         let (mut gpu_ms, mut frame_ms) = (Some(0.0), 0.0);
         match self {
             Self::Rays(renderer, count) => {
@@ -48,6 +59,7 @@ impl Drawer {
                     let times = renderer.draw()?;
                     gpu_ms = gpu_ms.zip(times.gpu_ms).map(|(sum, ms)| sum + ms);
                     frame_ms += times.frame_ms;
+                    change_ms = change_ms.map(|ms| ms + times.prepare_ms);
                 }
             }
             Self::Smoothed([smoothed, plain]) => {
@@ -59,7 +71,11 @@ impl Drawer {
                 gpu_ms = None;
             }
         }
-        Ok(Sample { gpu_ms, frame_ms })
+        Ok(Sample {
+            gpu_ms,
+            frame_ms,
+            change_ms,
+        })
     }
 }
 
@@ -86,8 +102,16 @@ impl Bench for DeviceBench {
             }
         };
         let own_clock = self.own_clock;
+        let moving = view.offset_moves.then(|| view.clone());
+        let (mut changed, mut frame) = (scene.clone(), 0);
         Ok(Box::new(move || {
-            let mut sample = drawer.draw()?;
+            let change = |view: &View| {
+                frame += 1;
+                view.move_offset(&mut changed, frame);
+                drawer.change(&changed)
+            };
+            let change_ms = moving.as_ref().map(change).transpose()?;
+            let mut sample = drawer.draw(change_ms)?;
             sample.gpu_ms = sample.gpu_ms.filter(|_| own_clock);
             Ok(sample)
         }))

@@ -160,7 +160,15 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>> {
 /// `raw.csv`: every sample. Rows of `results.csv`, passes and rounds count from 1.
 pub fn raw(rows: &[Row]) -> Table {
     let header = [
-        "row", "scene", "stage", "solver", "pass", "round", "gpu_ms", "frame_ms",
+        "row",
+        "scene",
+        "stage",
+        "solver",
+        "pass",
+        "round",
+        "gpu_ms",
+        "frame_ms",
+        "change_ms",
     ];
     let mut table = Table::new(header, Vec::new());
     for (number, row) in rows.iter().enumerate() {
@@ -171,6 +179,7 @@ pub fn raw(rows: &[Row]) -> Table {
                 let text = |ms| names::number(ms, 7);
                 record.push(sample.gpu_ms.map_or(String::new(), text));
                 record.push(text(sample.frame_ms));
+                record.push(sample.change_ms.map_or(String::new(), text));
                 table.records.push(record);
             }
         }

@@ -21,14 +21,14 @@ pub fn meaning(method: Method) -> &'static str {
         Method::Search(Solver::Exact) => {
             "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
         }
-        Method::MeshLevels => {
-            "the mesh baseline with levels of detail: 16 x 32, 32 x 64 or 64 x 128 by the height of each copy on the screen (to 40, to 160 pixels, above); copies beside the picture are left out"
+        Method::MeshWithin { .. } => {
+            "the mesh that follows the view: triangles whose silhouettes keep so many pixels, segments and rings for each copy by its size on the screen, in levels of a factor of 1.4; copies beside the picture are left out, the nearest are drawn first. Only silhouettes keep the tolerance: depths and normals err by more. Beyond 65,536 pixels for a solid's height meshes grow no finer"
         }
         Method::Floor => {
             "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. It is an estimate of the least time of a search, not a proven bound: it shades some pixels beside the solid, and reads only the nearest copies"
         }
         Method::Mesh { .. } => {
-            "the mesh baseline: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
+            "a mesh of one fineness: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
         }
     }
 }
@@ -61,8 +61,11 @@ pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
             all.push((method.name(), about));
         }
     }
-    let mesh = rows.iter().map(|r| r.settings.method).find(|s| s.is_mesh());
-    all.extend(mesh.map(|mesh| ("mesh", meaning(mesh).to_owned())));
+    let meshes = || rows.iter().map(|r| r.settings.method);
+    let within = meshes().find(|m| m.pixels().is_some());
+    all.extend(within.map(|mesh| ("mesh:PIXELSpx", meaning(mesh).to_owned())));
+    let fixed = meshes().find(|m| m.quads() > 0);
+    all.extend(fixed.map(|mesh| ("mesh:SEGMENTSxRINGS", meaning(mesh).to_owned())));
     if occurs(&|r| r.settings.method == Method::Floor) {
         all.push((Method::Floor.name(), meaning(Method::Floor).to_owned()));
     }
@@ -96,19 +99,20 @@ mod tests {
 
     #[test]
     fn every_name_that_occurs_is_explained_once() {
-        let meshes = [16, 32].map(|n| Method::mesh(n, 2 * n).unwrap());
+        let fixed = [16, 32].map(|n| Method::mesh(n, 2 * n).unwrap());
+        let within = [0.1, 2.0].map(|pixels| Method::mesh_within(pixels).unwrap());
         let row = |method| {
             let mut row = timed(&[1.0]);
             row.settings.method = method;
             row
         };
-        let methods = Method::ALL.into_iter().chain(meshes);
+        let methods = Method::ALL.into_iter().chain(fixed).chain(within);
         let mut rows: Vec<Row> = methods.map(row).collect();
         let mut papers = rows[0].clone();
         papers.settings = rbm_baseline(&spindle(), &papers.settings);
         rows.push(papers);
         let named = names(&rows);
-        assert_eq!(named.len(), Method::ALL.len() + 2);
+        assert_eq!(named.len(), Method::ALL.len() + 3);
         for (i, (name, meaning)) in named.iter().enumerate() {
             assert!(meaning.len() > 20 && named[..i].iter().all(|t| t.0 != *name));
         }

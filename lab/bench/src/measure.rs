@@ -93,10 +93,7 @@ pub fn measure(
 pub fn refused_meshes(plan: &Plan) -> Vec<String> {
     let mut found: Vec<(String, String, usize)> = Vec::new();
     for case in &plan.cases {
-        let is_mesh = matches!(
-            case.settings.method,
-            Method::Mesh { .. } | Method::MeshLevels
-        );
+        let is_mesh = case.settings.method.is_mesh();
         let view = plan.views.get(case.view).filter(|_| is_mesh);
         let Some(Err(error)) = view.map(|view| revmap_mesh::check_scene(&view.scene)) else {
             continue;
@@ -222,7 +219,10 @@ impl Run<'_> {
         let truth = self.truth(first, None)?;
         let rays = plan.truth_rays > 1;
         let options = CompareOptions::of(view.texel());
-        let reference = revmap_compare::Reference::new(&truth, &options)?;
+        let mut reference = revmap_compare::Reference::new(&truth, &options)?;
+        if !rays {
+            reference = reference.of_scene(&view.scene)?;
+        }
         let mut own: Option<(Method, Frame)> = None;
         // While a frame is compared the next is made ready: drivers compile on one thread.
         std::thread::scope(|scope| {

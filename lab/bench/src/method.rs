@@ -3,6 +3,7 @@
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
+use revmap_mesh::Fineness;
 use revmap_searches::folder;
 use std::fmt;
 use std::str::FromStr;
@@ -19,15 +20,19 @@ pub enum Method {
         /// Most steps along the meridian; fewer where fewer follow it exactly.
         rings: u32,
     },
-    /// Triangles, each copy by one of [`Method::MESH_LEVELS`], without copies beside the picture.
-    MeshLevels,
+    /// Triangles that keep silhouettes within so many thousandths of a pixel: each copy by its size
+    /// on the screen. Copies beside the picture are left out.
+    MeshWithin {
+        /// Thousandths of a pixel.
+        milli: u32,
+    },
     /// The default search's frame without the search: each pixel returns its first possible point.
     Floor,
 }
 
 impl Method {
-    /// The meshes of [`Method::MeshLevels`]: segments, rings, least height on the screen in pixels.
-    pub const MESH_LEVELS: [(u32, u32, f64); 3] = [(16, 32, 0.0), (32, 64, 40.0), (64, 128, 160.0)];
+    /// The mesh that the default is put against: silhouettes within the default's tolerance.
+    pub const OPPONENT: Self = Self::MeshWithin { milli: 250 };
 
     /// Every search, in the order in which reports list them. Meshes are not among them.
     pub const ALL: [Self; revmap_searches::ALL.len()] = {
@@ -62,25 +67,57 @@ impl Method {
         Ok(Self::Mesh { segments, rings })
     }
 
+    /// A mesh that keeps silhouettes within so many pixels.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for what is no number of thousandths from 0.001 to 64.
+    pub fn mesh_within(pixels: f64) -> Result<Self> {
+        let milli = (1e3 * pixels).round();
+        if !((1.0..=64e3).contains(&milli) && (milli - 1e3 * pixels).abs() < 1e-6) {
+            let message = format!(
+                "mesh:{pixels}px: give 0.001 to 64 pixels, with at most three digits behind the point"
+            );
+            return Err(Error::new(ErrorKind::Usage, message));
+        }
+        Ok(Self::MeshWithin {
+            milli: milli as u32,
+        })
+    }
+
+    /// The pixels that a mesh keeps silhouettes within, if it does.
+    pub fn pixels(self) -> Option<f64> {
+        match self {
+            Self::MeshWithin { milli } => Some(f64::from(milli) / 1e3),
+            Self::Search(_) | Self::Mesh { .. } | Self::Floor => None,
+        }
+    }
+
     /// The search; `None` of a mesh and of the floor.
     pub const fn solver(self) -> Option<Solver> {
         match self {
             Self::Search(solver) => Some(solver),
-            Self::Mesh { .. } | Self::MeshLevels | Self::Floor => None,
+            Self::Mesh { .. } | Self::MeshWithin { .. } | Self::Floor => None,
         }
     }
 
     /// Whether it is a mesh.
     pub const fn is_mesh(self) -> bool {
-        matches!(self, Self::Mesh { .. } | Self::MeshLevels)
+        matches!(self, Self::Mesh { .. } | Self::MeshWithin { .. })
     }
 
-    /// Most quads of one copy of a solid; of levels those of the coarsest, of a search none.
+    /// Most quads of one copy of a solid; 0 of a search, and of a mesh whose quads follow the view.
     pub const fn quads(self) -> u64 {
         match self {
             Self::Mesh { segments, rings } => segments as u64 * rings as u64,
-            Self::MeshLevels => Self::MESH_LEVELS[0].0 as u64 * Self::MESH_LEVELS[0].1 as u64,
-            Self::Search(_) | Self::Floor => 0,
+            Self::Search(_) | Self::MeshWithin { .. } | Self::Floor => 0,
+        }
+    }
+
+    /// Coarse meshes before fine ones of their kind.
+    pub const fn order(self) -> u64 {
+        match self {
+            Self::MeshWithin { milli } => (u32::MAX - milli) as u64,
+            other => other.quads(),
         }
     }
 
@@ -88,7 +125,7 @@ impl Method {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Search(solver) => solver.name(),
-            Self::Mesh { .. } | Self::MeshLevels => "mesh",
+            Self::Mesh { .. } | Self::MeshWithin { .. } => "mesh",
             Self::Floor => "floor",
         }
     }
@@ -108,7 +145,7 @@ impl Method {
         match self {
             Self::Search(solver) => solver.follows_tolerance(),
             Self::Floor => Solver::DEFAULT.follows_tolerance(),
-            Self::Mesh { .. } | Self::MeshLevels => false,
+            Self::Mesh { .. } | Self::MeshWithin { .. } => false,
         }
     }
 
@@ -146,7 +183,7 @@ impl fmt::Display for Method {
         match self {
             Self::Search(solver) => solver.fmt(f),
             Self::Mesh { segments, rings } => write!(f, "mesh:{segments}x{rings}"),
-            Self::MeshLevels => f.write_str("mesh:levels"),
+            Self::MeshWithin { milli } => write!(f, "mesh:{}px", f64::from(*milli) / 1e3),
             Self::Floor => f.write_str("floor"),
         }
     }
@@ -168,13 +205,15 @@ impl FromStr for Method {
             Err(error) if folder::is_named(text) => return Err(error),
             Err(_) => {}
         }
-        match text {
-            "mesh:levels" => return Ok(Self::MeshLevels),
-            "floor" => return Ok(Self::Floor),
-            _ => {}
+        if text == "floor" {
+            return Ok(Self::Floor);
         }
-        let numbers = text
-            .strip_prefix("mesh:")
+        let fineness = text.strip_prefix("mesh:");
+        let pixels = fineness.and_then(|rest| rest.strip_suffix("px")?.parse().ok());
+        if let Some(pixels) = pixels {
+            return Self::mesh_within(pixels);
+        }
+        let numbers = fineness
             .and_then(|rest| rest.split_once('x'))
             .and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
         if let Some((segments, rings)) = numbers {
@@ -182,7 +221,7 @@ impl FromStr for Method {
         }
         let known = revmap_searches::ALL.map(Solver::name).join(", ");
         let message = format!(
-            "{text:?} is no search; give one of {known}, the folder of another, a mesh as mesh:64x128, or floor"
+            "{text:?} is no search; give one of {known}, the folder of another, a mesh as mesh:0.25px or mesh:64x128, or floor"
         );
         Err(Error::new(ErrorKind::Usage, message))
     }
@@ -282,23 +321,23 @@ impl MethodSettings {
         self
     }
 
-    /// Segments, rings and least height on the screen in pixels of each of the method's meshes.
+    /// How fine the method's mesh is.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for a search, for a mesh that [`Method::mesh`] refuses, and for the
     /// compute stage.
-    pub fn mesh_levels(&self) -> Result<Vec<(u32, u32, f64)>> {
+    pub fn mesh_fineness(&self) -> Result<Fineness> {
         let method = self.method;
         let refused = |why| Err(Error::new(ErrorKind::Usage, why).at_key("solver"));
-        let levels = match method {
+        let fineness = match method {
             Method::Mesh { segments, rings } => {
                 // Settings are plain values: the numbers may not have come through the check.
                 Method::mesh(segments, rings)?;
-                vec![(segments, rings, 0.0)]
+                Fineness::Quads { segments, rings }
             }
-            Method::MeshLevels => Method::MESH_LEVELS.to_vec(),
+            Method::MeshWithin { milli } => Fineness::Pixels(f64::from(milli) / 1e3),
             Method::Search(_) | Method::Floor => {
-                return refused(format!("{method} is no mesh; give a mesh as mesh:64x128"));
+                return refused(format!("{method} is no mesh; give a mesh as mesh:0.25px"));
             }
         };
         if self.stage == DrawStage::Compute {
@@ -306,7 +345,7 @@ impl MethodSettings {
                 "{method} is rasterised, which a compute shader does not; give the stage fragment"
             ));
         }
-        Ok(levels)
+        Ok(fineness)
     }
 
     /// The same with other planes.
@@ -363,11 +402,16 @@ mod tests {
 
     #[test]
     fn names_are_read_and_bounded() {
-        for text in "mesh:3x2 mesh:levels floor mesh:64x128 mesh:2048x2048 quadric".split(' ') {
+        for text in
+            "mesh:3x2 mesh:0.25px mesh:64px mesh:0.001px floor mesh:64x128 mesh:2048x2048 quadric"
+                .split(' ')
+        {
             assert_eq!(text.parse::<Method>().unwrap().to_string(), text);
         }
         let bad = "mesh mesh: mesh:2x1 mesh:0x0 mesh:3x1 mesh:99999999x9 mesh:axb mesh:64 mesh:64x \
-                   mesh:-3x9 mesh:64x128x2 mesh:2049x2048 MESH:64x128 magic";
+                   mesh:-3x9 mesh:64x128x2 mesh:2049x2048 MESH:64x128 magic \
+                   mesh:levels mesh:px mesh:0px mesh:-1px mesh:0.0005px mesh:65px mesh:1e9px \
+                   mesh:NaNpx mesh:infpx mesh:0.25";
         for bad in bad.split(' ').chain([""]) {
             let error = bad.parse::<Method>().unwrap_err();
             assert_eq!(error.kind, ErrorKind::Usage, "{bad}");

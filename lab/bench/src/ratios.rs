@@ -1,5 +1,6 @@
 //! Times in proportion to those of other rows: which way is faster, and how sure that is.
 
+use super::columns::tolerance;
 use super::plan::{grouped, is_rbm_baseline, variant};
 use super::row::{Row, Sample};
 use super::stats::{self, Interval};
@@ -20,6 +21,10 @@ pub enum Over {
     First,
     /// A mesh of the same picture in the fragment stage.
     Mesh,
+    /// [`Method::OPPONENT`] of the same picture: the mesh that keeps silhouettes within 0.25 pixels.
+    Opponent,
+    /// The mesh of the same picture that keeps silhouettes within the row's own tolerance.
+    Equal,
     /// The same way in the fragment stage. Only rows in the compute stage have one.
     Fragment,
     /// The fastest other search in the same picture and stage whose depth errors are below a texel
@@ -52,6 +57,13 @@ impl Over {
                 valued.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(r, _)| r)
             }
             Self::Mesh => mesh_row(rows(), row, None),
+            Self::Opponent => find(&|r| same(r) && is_plain(r, Method::OPPONENT)),
+            Self::Equal => {
+                let search = !row.settings.method.is_mesh();
+                let tolerance = tolerance(row).filter(|t| search && *t > 0.0)?;
+                let mesh = Method::mesh_within(tolerance).ok()?;
+                find(&|r| same(r) && is_plain(r, mesh))
+            }
             Self::Fragment => {
                 let compute = row.settings.stage == DrawStage::Compute;
                 let mut like = row.settings;
@@ -82,6 +94,11 @@ pub fn baseline_stage<'a>(rows: impl IntoIterator<Item = &'a Row>) -> DrawStage 
     }
 }
 
+/// True for a method with one ray per pixel.
+fn is_plain(row: &Row, method: Method) -> bool {
+    (row.settings.method, row.settings.edges) == (method, Edges::OneRay)
+}
+
 /// True for the default search without tolerance, one ray per pixel.
 fn is_exact_default(row: &Row) -> bool {
     let s = &row.settings;
@@ -101,7 +118,7 @@ fn mesh_row<'a>(
         None => errs_no_more(r, row),
     });
     let timed = own.filter(|r| r.time().is_some());
-    timed.min_by_key(|r| r.settings.method.quads())
+    timed.min_by_key(|r| (r.map_bytes, r.settings.method.quads()))
 }
 
 /// A way of drawing over other rows: all pictures of which both have a usable row.

@@ -51,8 +51,8 @@ impl MethodDevice {
         let mut meshes = None;
         if options.guests_only {
             let (pipelines, samples) = (&self.pipelines, options.samples);
-            let levels = settings.mesh_levels()?;
-            let mut new = MeshLayer::new(pipelines, &offscreen, levels, &own, samples)?;
+            let fineness = settings.mesh_fineness()?;
+            let mut new = MeshLayer::new(pipelines, &offscreen, fineness, &own, samples)?;
             new.update(scene, || Ok(*offscreen.view()))?;
             meshes = Some(Box::new(new));
         }

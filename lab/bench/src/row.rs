@@ -23,6 +23,9 @@ pub struct Sample {
     pub gpu_ms: Option<f64>,
     /// Milliseconds by the wall clock, without reading back.
     pub frame_ms: f64,
+    /// Milliseconds that the host took before, to apply a change and to record; `None` where nothing
+    /// changes.
+    pub change_ms: Option<f64>,
 }
 
 impl Sample {

@@ -27,7 +27,7 @@ fn search(method: Method) -> Style {
         Method::Search(Solver::Live) => (color::SKY, Marker::UP, Dash::DASH_DOT),
         Method::Search(Solver::Quadric) => (color::GREEN, Marker::DOWN, Dash::LONG),
         Method::Search(Solver::Exact) => (color::VERMILION, Marker::DISK, Dash::SOLID),
-        Method::MeshLevels => (color::BLUE, Marker::CROSS, Dash::LONG),
+        Method::MeshWithin { .. } => (color::BLUE, Marker::HEXAGRAM, Dash::LONG),
         Method::Mesh { .. } => (color::BLUE, Marker::SQUARE, Dash::SOLID),
         Method::Floor => (color::BLACK, Marker::PLUS, Dash::SOLID),
     };

@@ -20,6 +20,8 @@ pub struct View {
     pub value: Option<f64>,
     /// The scene file, with what the command line changes in it.
     pub file: Option<Arc<toml::Table>>,
+    /// True if the offset is another one in each frame that is timed.
+    pub offset_moves: bool,
 }
 
 /// How much of the picture is solid.
@@ -63,6 +65,16 @@ impl View {
             group: String::new(),
             value: None,
             file: None,
+            offset_moves: false,
+        }
+    }
+
+    /// Applies the offset of a frame of a view whose offset moves: each object grows by up to a
+    /// fiftieth of its height, never twice by the same.
+    pub(super) fn move_offset(&self, scene: &mut Scene, frame: u32) {
+        for (object, still) in scene.objects.iter_mut().zip(&self.scene.objects) {
+            let growth = 0.01 * (1.0 + (0.37 * f64::from(frame)).sin());
+            object.offset.extend = still.offset.extend + growth;
         }
     }
 

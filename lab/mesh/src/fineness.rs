@@ -160,3 +160,6 @@ fn distance(contour: &Contour, point: DVec2) -> f64 {
         .map(of_chain)
         .fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,13 +15,13 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
+pub(super) fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
     let source = ContourSource::new(&profile.outline).unwrap();
     source.contour(offset).unwrap()
 }
 
-fn ring(n: u32) -> Vec<[f64; 2]> {
+pub(super) fn ring(n: u32) -> Vec<[f64; 2]> {
     (0..n)
         .map(|k| {
             let angle = TAU * f64::from(k) / f64::from(n);
@@ -30,7 +30,7 @@ fn ring(n: u32) -> Vec<[f64; 2]> {
         .collect()
 }
 
-const CUP: [[f64; 2]; 6] = [
+pub(super) const CUP: [[f64; 2]; 6] = [
     [0.0, 0.1],
     [0.2, 0.1],
     [0.3, 0.9],
@@ -39,7 +39,7 @@ const CUP: [[f64; 2]; 6] = [
     [0.0, 0.14],
 ];
 
-fn triangles(mesh: &Mesh) -> Vec<[Vec3; 3]> {
+pub(super) fn triangles(mesh: &Mesh) -> Vec<[Vec3; 3]> {
     mesh.indices
         .chunks_exact(3)
         .map(|t| [0, 1, 2].map(|k| Vec3::from(mesh.vertices[t[k] as usize].position)))
@@ -57,7 +57,7 @@ fn volume(mesh: &Mesh) -> f64 {
         .sum()
 }
 
-fn is_closed(mesh: &Mesh) -> bool {
+pub(super) fn is_closed(mesh: &Mesh) -> bool {
     let key = |p: Vec3| p.to_array().map(|v| (v + 0.0).to_bits());
     let mut edges: HashMap<_, i32> = HashMap::new();
     for t in triangles(mesh) {

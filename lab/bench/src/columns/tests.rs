@@ -40,7 +40,7 @@ fn every_column_is_defined_once_and_explained() {
     }
     assert_eq!(
         (COLUMNS[CONTRACT - 1].name, COLUMNS[RESULTS - 1].name),
-        ("driver", "way")
+        ("driver", "change_ms")
     );
     assert!(named("nothing").is_err());
 }
@@ -57,7 +57,8 @@ fn a_record_has_the_columns_of_the_contract() {
         solver=circle max_steps=20 width=800 map_rows=512 map_source=exact map_format=r16 \
         objects=1 gpu_ms_median=20 gpu_ms_p95=30 frame_ms_median=21 fps=47.619 missed=0 \
         depth_rms_texels= flip=0 device=dev driver=drv gpu_ms_low= gpu_ms_high= tolerance_px= \
-        above_floor_ms= resolved=no time_over_fragment= shadow=off";
+        above_floor_ms= resolved=no time_over_fragment= shadow=off \
+        silhouette_p999_px= change_ms=";
     for word in wanted.split_whitespace() {
         let (column, wanted) = word.split_once('=').unwrap();
         assert_eq!(at(&fine, column), wanted, "{column}");

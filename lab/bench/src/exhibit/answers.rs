@@ -20,6 +20,8 @@ pub enum Question {
     Stages,
     /// Where is another search faster than the default?
     Rivals,
+    /// From which tolerance on is the mesh of equal silhouettes faster than the default?
+    Tolerances,
 }
 
 impl Question {
@@ -28,6 +30,7 @@ impl Question {
         match self {
             Self::Stages => stages(context, rows),
             Self::Rivals => rivals(context, rows).into_iter().collect(),
+            Self::Tolerances => super::crossing::answers(context, rows),
         }
     }
 }
@@ -35,10 +38,12 @@ impl Question {
 /// The sentences at the top of a report: a reader wants them first.
 pub(crate) fn findings(context: &Context) -> Vec<String> {
     let mut all = Question::Stages.answers(context, context.rows);
-    let mesh = "the coarsest mesh that is at least as accurate";
+    let opponent = format!("{}, the mesh of that silhouette", Method::OPPONENT);
+    let mesh = "the coarsest mesh that errs no more in depth";
     for (reference, name) in [
-        (Over::Baseline, context.baseline()),
+        (Over::Opponent, opponent),
         (Over::Mesh, mesh.to_owned()),
+        (Over::Baseline, context.baseline()),
     ] {
         let mut ratios = over(context.rows.iter().copied(), reference);
         ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
@@ -71,29 +76,32 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
 
 /// The worst errors of the default, of the RBM baseline and of each mesh.
 fn exactness(context: &Context) -> Option<String> {
-    let mut all: Vec<(String, [f64; 2])> = Vec::new();
+    let mut all: Vec<(String, [f64; 4])> = Vec::new();
     for row in context.rows {
         let settings = &row.settings;
-        let is_mesh = matches!(settings.method, Method::Mesh { .. } | Method::MeshLevels);
+        let is_mesh = settings.method.is_mesh();
         let way = match settings.method {
             _ if is_rbm_baseline(settings) => context.baseline(),
-            method if is_mesh || method == Method::DEFAULT => method.to_string(),
+            method if is_mesh || method == Method::DEFAULT => context.styles.way(settings),
             _ => continue,
         };
-        let depth = row.errors.depth.map_or(0.0, |depth| depth.p99);
-        let own = [depth, 100.0 * row.errors.wrong()];
+        let errors = &row.errors;
+        let view = errors.view.unwrap_or_default();
+        let depth = errors.depth.map_or(0.0, |depth| depth.p99);
+        let wrong = 100.0 * errors.wrong();
+        let own = [view.silhouette_max, view.depth_p99, depth, wrong];
         match all.iter_mut().find(|known| known.0 == way) {
-            Some((_, known)) => *known = [0, 1].map(|k| known[k].max(own[k])),
+            Some((_, known)) => *known = [0, 1, 2, 3].map(|k| known[k].max(own[k])),
             None => all.push((way, own)),
         }
     }
     let told = all.iter().map(|(way, worst)| {
-        let [depth, wrong] = worst.map(|v| number(v, 2));
-        format!("{way} {depth} h/512, {wrong} % of the pixels hit")
+        let [silhouette, pixels, depth, wrong] = worst.map(|v| number(v, 2));
+        format!("{way} {silhouette} pixels, {pixels} pixels ({depth} h/512), {wrong} %")
     });
     let told = told.collect::<Vec<_>>().join("; ");
     (!told.is_empty()).then(|| {
-        format!("Exactness, in the worst picture: 99 % of depths are within, and wrong pixels are: {told}.")
+        format!("Exactness, in the worst picture: silhouettes are within, 99 % of depths are within, and wrong pixels of the pixels hit are: {told}.")
     })
 }
 
@@ -303,7 +311,7 @@ mod tests {
             let rows = context.rows;
             let table = match question {
                 Question::Stages => stages_table(context, rows),
-                Question::Rivals => rivals_table(context, rows),
+                _ => rivals_table(context, rows),
             };
             (question.answers(context, rows), table.records)
         })

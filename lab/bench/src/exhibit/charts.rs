@@ -101,11 +101,16 @@ impl Chart {
     pub(super) fn check(&self) -> Result<()> {
         if self.kind == Kind::Points {
             check_column(&self.y, self.over)?;
-            if self.over.is_none() {
+            if self.over.is_none() || self.over_column() {
                 check_column(&self.x, None)?;
             }
         }
         Ok(())
+    }
+
+    /// True if points are ways of drawing over their tolerance or another column, not over time.
+    pub(super) fn over_column(&self) -> bool {
+        self.over.is_some() && !self.x.is_empty()
     }
 
     /// Draws the chart over these rows: none where there is nothing to show, several where one
@@ -120,7 +125,7 @@ impl Chart {
             rows.retain(|r| Some(r.settings.method) == best && !is_rbm_baseline(&r.settings));
         }
         // Meshes from coarse to fine.
-        rows.sort_by_key(|r| r.settings.method.quads());
+        rows.sort_by_key(|r| r.settings.method.order());
         let rows = rows.as_slice();
         let (items, floors) = match self.over {
             Some(reference) => self.of_ways(context, rows, reference)?,
@@ -269,16 +274,24 @@ impl Chart {
             }
             let up = tables::cell(context, rows, (reference, &ratio), &self.y)?;
             let Some(y) = up.value() else { continue };
+            let (mut x, mut spread, mut rise) = (ratio.time.value, ratio.time.ends(), None);
+            if self.over_column() {
+                let across = tables::cell(context, rows, (reference, &ratio), &self.x)?;
+                let Some(place) = across.value() else {
+                    continue;
+                };
+                (x, spread, rise) = (place, None, up.interval().and_then(|i| i.ends()));
+            }
             items.push(Item {
                 name: context.line(s),
                 style: series_style::style(s),
                 joined: true,
                 stage: s.stage,
                 point: Point {
-                    x: ratio.time.value,
+                    x,
                     y,
-                    spread: ratio.time.ends(),
-                    rise: None,
+                    spread,
+                    rise,
                     unresolved: ratio.time.relative() > context.resolved,
                     label: label(context, s),
                 },
@@ -375,7 +388,7 @@ fn label(context: &Context, s: &MethodSettings) -> Option<String> {
     }
     let name = context.styles.way(s);
     let rest = match s.method {
-        Method::Mesh { .. } => name.strip_prefix("mesh:"),
+        mesh if mesh.is_mesh() => name.strip_prefix("mesh:"),
         method => name.strip_prefix(method.name()),
     }?;
     let rest = rest.trim_start_matches([' ', ',']);

@@ -16,7 +16,7 @@ impl Chart {
         series: &[Series],
         floors: &[Guide],
     ) -> Result<(Axis, Axis)> {
-        let mut x = match self.over {
+        let mut x = match self.over.filter(|_| !self.over_column()) {
             Some(_) => Axis::log(format!("time / {}", context.baseline())).with(1.0),
             None => Axis::log(columns::named(&self.x)?.heading),
         };

@@ -3,6 +3,7 @@
 
 mod answers;
 mod charts;
+mod crossing;
 mod guides;
 mod tables;
 

@@ -65,9 +65,11 @@ fn reference(name: &str) -> Result<Over> {
         "exact" | "1-ray" => Over::Exact,
         "one" => Over::One,
         "mesh" => Over::Mesh,
+        "opponent" => Over::Opponent,
+        "equal" => Over::Equal,
         _ => {
             let message = format!(
-                "{name:?} is nothing to put times over; give baseline, exact, 1-ray, one or mesh"
+                "{name:?} is nothing to put times over; give baseline, exact, 1-ray, one, mesh, opponent or equal"
             );
             return Err(Error::new(ErrorKind::Content, message));
         }
@@ -131,6 +133,8 @@ pub(super) fn heading(name: &str, over: Over) -> Result<String> {
                 ("interval", _) => "95 % interval".to_owned(),
                 ("range", _) => "range over pictures".to_owned(),
                 (_, Over::Baseline) => "time / RBM baseline".to_owned(),
+                (_, Over::Opponent) => format!("time / {}", Method::OPPONENT),
+                (_, Over::Equal) => "time / mesh of equal silhouettes".to_owned(),
                 _ => format!("time / {}", other.replace('-', " ")),
             }
         }

@@ -33,6 +33,8 @@ pub struct Views {
     /// Shadows that the scene has; none: as the scene says.
     #[serde(deserialize_with = "list")]
     pub shadows: Vec<Shadow>,
+    /// True if the offset is another one in each frame that is timed.
+    pub offset_moves: bool,
     /// The view's name in results, in place of the solid's.
     pub call: Option<String>,
 }
@@ -48,6 +50,7 @@ impl Default for Views {
             copies: Vec::new(),
             forms: Vec::new(),
             shadows: Vec::new(),
+            offset_moves: false,
             call: None,
         }
     }
@@ -129,6 +132,7 @@ impl Views {
         }
         for view in &mut all {
             view.group.clone_from(&self.name);
+            view.offset_moves = self.offset_moves;
             if let Some(name) = &self.call {
                 view.name.clone_from(name);
             }

@@ -22,7 +22,11 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
     let mut row = Row::new(&spindle(), &case, errors, Steps::of(&frame), 1000);
     let samples = |pass: &&[(Option<f64>, f64)]| {
         pass.iter()
-            .map(|&(gpu_ms, frame_ms)| Sample { gpu_ms, frame_ms })
+            .map(|&(gpu_ms, frame_ms)| Sample {
+                gpu_ms,
+                frame_ms,
+                change_ms: None,
+            })
             .collect()
     };
     row.passes = passes.iter().map(samples).collect();

@@ -11,7 +11,7 @@ use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_bench::method::{Method, MethodSettings};
 use revmap_bench::renderer::{MethodDevice, MethodRenderer};
-use revmap_compare::Comparison;
+use revmap_compare::{CompareOptions, Comparison, Reference};
 use std::sync::{Arc, OnceLock};
 
 /// Depths are said in texels of a map of so many.
@@ -107,6 +107,8 @@ fn eyes_may_be_inside() {
         scene.camera.fov_y = 70.0;
         let found = held(&scene, &settings(256, 512), 2e-3, 0.1);
         assert!(found.hits > 10_000 && found.normal.unwrap().rms < 5.0);
+        // Of a mesh that follows the view silhouettes are within, if not depths.
+        held(&scene, &within(0.25), 5e-3, 8.0);
     }
 }
 
@@ -264,9 +266,9 @@ fn what_a_mesh_cannot_draw_is_refused() {
     }
 }
 
-/// By levels of detail.
-fn levels() -> MethodSettings {
-    settings(3, 2).by(Method::MeshLevels)
+/// A mesh that keeps silhouettes within so many pixels.
+fn within(pixels: f64) -> MethodSettings {
+    settings(3, 2).by(Method::mesh_within(pixels).unwrap())
 }
 
 /// Pixels in which colours differ.
@@ -274,22 +276,73 @@ fn apart(a: &Frame, b: &Frame) -> usize {
     a.color.iter().zip(&b.color).filter(|(a, b)| a != b).count()
 }
 
+/// The silhouette of each is within its tolerance and the device's grid of 1/256 pixels, near and
+/// far, and the meshes are not finer than they must be.
 #[test]
-fn a_copy_is_drawn_by_the_mesh_of_its_height() {
-    let mut found = Vec::new();
-    // Some 25, 85 and 190 of 180 pixels high.
-    for distance in [10.0, 3.2, 1.8] {
-        let mut scene = scene_of(shapes::vase(), eye(10.0, distance));
-        scene.objects[0].instances = vec![placement([0.0; 3], [0.0; 3], [1.0; 3])].into();
-        let frame = draw(&scene, &levels());
-        assert!(frame.pixels() > 0 && (0..frame.pixels()).any(|k| frame.hits(k)));
-        let same = Method::MESH_LEVELS.map(|(segments, rings, _)| {
-            apart(&frame, &draw(&scene, &settings(segments, rings))) == 0
-        });
-        found.push(same);
+fn silhouettes_are_within_the_tolerance() {
+    const GRID: f64 = 0.5 * std::f64::consts::SQRT_2 / 256.0;
+    let mut largest = 0.0f64;
+    for (n, profile) in [
+        shapes::vase(),
+        shapes::torus(),
+        shapes::glass(),
+        shapes::sphere(),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        for (k, distance) in [0.8, 2.0, 9.0].into_iter().enumerate() {
+            let mut scene = scene_of(profile.clone(), eye(10.0 + 25.0 * n as f64, distance));
+            scene.objects[0].offset = [Offset::default(), BEVELED][(n + k) % 2];
+            let truth = reference(&scene, &settings(3, 2));
+            let options = CompareOptions::default();
+            let truth = Reference::new(&truth, &options).unwrap();
+            let truth = truth.of_scene(&scene).unwrap();
+            for pixels in [0.1, 0.25, 1.0] {
+                let found = truth.compare(&draw(&scene, &within(pixels))).unwrap();
+                let off = found.view.unwrap().silhouette_max;
+                assert!(
+                    off <= pixels + GRID,
+                    "{n} from {distance}, {pixels}: {found}"
+                );
+                largest = largest.max(off / pixels);
+            }
+            let fine = truth.compare(&draw(&scene, &settings(3, 2).by(Method::DEFAULT)));
+            assert!(fine.unwrap().view.unwrap().silhouette_max < 0.02, "{n}");
+        }
     }
-    let wanted = [0, 1, 2].map(|n| [0, 1, 2].map(|k| n == k));
-    assert_eq!(found, wanted);
+    assert!(largest > 0.7, "{largest}");
+}
+
+/// Copies of one size share a mesh; a nearer one has a finer one. A mesh that was left comes back
+/// without being made anew.
+#[test]
+fn copies_share_the_meshes_of_their_sizes() {
+    let mut scene = scene_of(shapes::vase(), eye(10.0, 3.0));
+    let mut mesh = renderer(&scene, &within(0.25)).unwrap();
+    let one = mesh.map_bytes()[0];
+    let copies = |n: u32| -> Arc<[Placement]> {
+        let place = |k| placement([0.0, 0.01 * f64::from(k), 0.0], [0.0; 3], [1.0; 3]);
+        (0..n).map(place).collect()
+    };
+    scene.objects[0].instances = copies(20);
+    mesh.update(&scene).unwrap();
+    assert_eq!((mesh.map_bytes()[0], mesh.rebuild_count()), (one, 1));
+    scene.camera.eye = eye(10.0, 0.7);
+    mesh.update(&scene).unwrap();
+    let near = mesh.map_bytes()[0];
+    assert!(near > 2 * one, "{near} {one}");
+    let made = mesh.rebuild_count();
+    for distance in [3.0, 0.7, 3.0] {
+        scene.camera.eye = eye(10.0, distance);
+        mesh.update(&scene).unwrap();
+        mesh.draw().unwrap();
+    }
+    assert_eq!((mesh.map_bytes()[0], mesh.rebuild_count()), (one, made));
+    let fresh = draw(&scene, &within(0.25));
+    assert_eq!(apart(&mesh.read().unwrap(), &fresh), 0);
+    drop(mesh);
+    device().0.check().unwrap();
 }
 
 #[test]
@@ -305,7 +358,7 @@ fn copies_beside_the_picture_leave_no_trace() {
         ];
         let copies = places[..count].iter();
         scene.objects[0].instances = copies.map(|&p| placement(p, [0.0; 3], [1.0; 3])).collect();
-        draw(&scene, &levels())
+        draw(&scene, &within(0.25))
     };
     let (one, all) = (of(1), of(4));
     assert_eq!(apart(&one, &all), 0);

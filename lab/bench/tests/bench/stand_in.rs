@@ -116,6 +116,7 @@ impl Bench for StandIn {
             Ok(Sample {
                 gpu_ms: Some(gpu_ms * drift),
                 frame_ms: frame_ms * drift * if other { 3.0 } else { 1.0 },
+                change_ms: None,
             })
         }))
     }
