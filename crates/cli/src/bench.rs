@@ -31,7 +31,7 @@ const TECHNIQUES: [(&str, &str); 2] = [("usual", "techniques"), ("tables", "tech
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap bench --quick --out out/bench\n  \
-    revmap bench assets/scenes/vase.toml --solver exact,live,mesh:64x128 --size 800x600,1920x1080\n  \
+    revmap bench assets/scenes/vase.toml --solver exact,live,mesh:0.25px --size 800x600,1920x1080\n  \
     revmap bench --list scaling > mine.toml && revmap bench --plan mine.toml\n  \
     revmap bench --compare results/old results/new\n  \
     revmap bench --gather mine.toml yours.toml --out out/devices")]
@@ -101,13 +101,21 @@ struct What {
     /// The cost of a tolerance: errors and times of ten scenes at five tolerances
     #[arg(long)]
     budget: bool,
+    /// The default against the mesh of equal silhouettes over tolerances from 0 to 2 pixels, and
+    /// where the two take the same time
+    #[arg(long)]
+    tolerances: bool,
     /// The default search against quadric and live from 64x48 to 800x600, with and without
     /// shadows: where it is the wrong choice
     #[arg(long)]
     sizes: bool,
-    /// Crowds: a hundred to a million copies of ten solids beside one, and a flight through them
+    /// Crowds: a hundred to a million copies of ten solids against the mesh that follows the view,
+    /// and flights through them
     #[arg(long)]
     crowds: bool,
+    /// Solids whose offset moves, against the mesh made anew: the host's time beside the device's
+    #[arg(long)]
+    offsets: bool,
     /// Anti-aliasing: eight solids by one ray per pixel, with smoothed silhouettes and by several
     /// rays, against 64 rays
     #[arg(long)]
@@ -183,8 +191,10 @@ impl Bench {
             (what.tables, "tables"),
             (what.scaling, "scaling"),
             (what.budget, "budget"),
+            (what.tolerances, "tolerances"),
             (what.sizes, "sizes"),
             (what.crowds, "crowds"),
+            (what.offsets, "offsets"),
             (what.antialiasing, "antialiasing"),
             (self.scale.full, "full"),
         ];

@@ -5,8 +5,8 @@ mod pictures;
 use super::output;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap_compare::{CompareOptions, Comparison, compare, heat_sheet};
-use revmap_files::read_exr;
+use revmap_compare::{CompareOptions, Comparison, Reference, ViewErrors, heat_sheet};
+use revmap_files::{SceneFile, read_exr};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:\n  \
     revmap render assets/scenes/pawn.toml -o truth.exr --stage reference\n  \
     revmap render assets/scenes/pawn.toml -o frame.exr --solver circle\n  \
-    revmap compare truth.exr frame.exr --heat errors.png\n  \
+    revmap compare truth.exr frame.exr --heat errors.png --scene assets/scenes/pawn.toml\n  \
     revmap compare docs/pictures/chess.png chess.png --alike")]
 pub struct Compare {
     /// The frame taken for the truth, an EXR file that `render` wrote (as with --stage reference), or a
@@ -31,11 +31,18 @@ pub struct Compare {
     /// Length of a texel of the shape map in world units, the unit of depth errors [default: 1/512]
     #[arg(long, value_name = "LENGTH", value_parser = positive)]
     texel: Option<f64>,
+    /// The scene or profile that the frames show: adds distances of silhouettes from the true outline
+    /// below a pixel, and depth errors in pixels of the view
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Any key of the scene, as it was given to `render`; may be given more than once
+    #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
+    set: Vec<String>,
     /// Fail unless the frames agree in every bit of every channel
     #[arg(long)]
     exact: bool,
     /// Fail if PNG pictures differ visibly: more than 0.2 % of their channels by more than 3 of 255
-    #[arg(long, conflicts_with_all = ["exact", "heat", "texel"])]
+    #[arg(long, conflicts_with_all = ["exact", "heat", "texel", "scene"])]
     alike: bool,
     /// Print one JSON object on standard output in place of text
     #[arg(long)]
@@ -45,7 +52,7 @@ pub struct Compare {
 impl Compare {
     pub fn run(self) -> Result<()> {
         let png = |file: &&PathBuf| output::has_ending(file, "png");
-        let of_depth = self.heat.is_some() || self.texel.is_some();
+        let of_depth = self.heat.is_some() || self.texel.is_some() || self.scene.is_some();
         if [&self.a, &self.b].iter().all(png) && !of_depth {
             return pictures::run([&self.a, &self.b], (self.exact, self.alike), self.json);
         }
@@ -64,7 +71,11 @@ impl Compare {
         let (a, b) = (read_exr(&self.a)?, read_exr(&self.b)?);
         let mut options = CompareOptions::default();
         options.texel = self.texel.unwrap_or(options.texel);
-        let outcome = compare(&a, &b, &options).map_err(|e| e.in_file(&self.b))?;
+        let mut truth = Reference::new(&a, &options)?;
+        if let Some(scene) = &self.scene {
+            truth = truth.of_scene(&SceneFile::open(scene)?.scene(&self.set)?)?;
+        }
+        let outcome = truth.compare(&b).map_err(|e| e.in_file(&self.b))?;
         if let Some(heat) = &self.heat {
             heat_sheet(&a, &b, &options)?.write_png(heat)?;
         }
@@ -90,8 +101,10 @@ impl Compare {
 }
 
 /// The names of the columns of `results.csv`, and depth errors in h/512 beside them; values that do
-/// not apply are null.
+/// not apply are null. Without a scene only silhouettes without a wrong pixel are known below a pixel.
 fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
+    let right = (found.missed + found.ghost == 0).then_some(0.0);
+    let silhouette = |of: fn(&ViewErrors) -> f64| found.view.as_ref().map(of).or(right);
     json!({
         "pixels": found.pixels,
         "hits": found.hits,
@@ -107,6 +120,9 @@ fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
         "normal_p99_degrees": found.normal.map(|n| n.p99),
         "normal_max_degrees": found.normal.map(|n| n.max),
         "silhouette_hausdorff_px": found.silhouette_hausdorff,
+        "silhouette_p999_px": silhouette(|v| v.silhouette_p999),
+        "silhouette_max_px": silhouette(|v| v.silhouette_max),
+        "depth_p99_px": found.view.map(|v| v.depth_p99),
         "flip": found.flip,
         "first_difference": difference,
     })

@@ -273,7 +273,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
         _ if method.reads_own_table() && method.default_steps(false) > 1 => &OF_MAPS[..4],
         _ if method.reads_own_table() => &OF_MAPS[..3],
         Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance"],
-        Method::Mesh { .. } | Method::MeshLevels => &OF_MAPS[..2],
+        Method::Mesh { .. } | Method::MeshWithin { .. } => &OF_MAPS[..2],
     }
 }
 
@@ -319,7 +319,12 @@ impl TypedValueParser for MethodParser {
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let names = SOLVERS.iter().map(|(name, _)| *name);
         let names = names.filter(|name| *name != ALIAS);
-        let all = names.chain(["mesh:SEGMENTSxRINGS", Method::Floor.name(), "FOLDER"]);
+        let all = names.chain([
+            "mesh:PIXELSpx",
+            "mesh:SEGMENTSxRINGS",
+            Method::Floor.name(),
+            "FOLDER",
+        ]);
         Some(Box::new(all.map(PossibleValue::new)))
     }
 }

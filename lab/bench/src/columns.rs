@@ -114,6 +114,11 @@ pub(super) fn tolerance(row: &Row) -> Option<f64> {
     own.or(settings.method.pixels())
 }
 
+/// The host's time of a change and the time of the frame, ms.
+fn whole(row: &Row) -> Option<f64> {
+    Some(row.typical(|s| s.change_ms)? + row.time()?.value)
+}
+
 fn yes(yes: bool) -> &'static str {
     if yes { "yes" } else { "no" }
 }
@@ -202,9 +207,10 @@ pub static COLUMNS: &[Column] = columns! {
     "time_over_rbm_baseline", "time / RBM baseline", "time over that of the RBM baseline in the same picture: one for both stages, drawn in the fragment stage, or in the compute stage where only that was measured" => |c, r| over(c, r, Over::Baseline);
     "time_over_opponent", "time / mesh:0.25px", "time over that of the mesh whose silhouettes keep 0.25 pixels, in the same picture" => |c, r| over(c, r, Over::Opponent);
     "time_over_equal", "time / mesh of equal silhouettes", "time over that of the mesh whose silhouettes keep the same tolerance, in the same picture" => |c, r| over(c, r, Over::Equal);
-    "frame_with_change_ms", "change and frame (ms)", "in views whose offset moves: the host's time of the change and the time of the frame" => |_, r| {
-        let change = r.typical(|s| s.change_ms);
-        Cell::number(change.zip(r.time()).map(|(change, time)| change + time.value))
+    "frame_with_change_ms", "change and frame (ms)", "in views whose offset moves: the host's time of the change and the time of the frame" => |_, r| Cell::number(whole(r));
+    "whole_over_opponent", "change and frame / mesh:0.25px", "change and frame over those of the mesh whose silhouettes keep 0.25 pixels" => |c, r| {
+        let other = Over::Opponent.of(c.rows, r);
+        Cell::number(other.and_then(|other| Some(whole(r)? / whole(other)?)))
     };
     "time_over_exact", "time / exact", "time over that of the exact picture in the same stage" => |c, r| over(c, r, Over::Exact);
     "time_over_1_ray", "time / 1 ray", "time over that of one ray per pixel in the same picture and stage" => |c, r| over(c, r, Over::Exact);

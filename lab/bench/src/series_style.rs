@@ -7,7 +7,7 @@ use super::row::Row;
 use crate::method::{Edges, Method, MethodSettings};
 use revmap::maps::MapSource;
 use revmap::search::Search;
-use revmap::settings::{DrawStage, Solver};
+use revmap::settings::{DrawStage, Solver, Tolerance};
 use revmap_files::{BINARY, COVERAGE};
 use revmap_searches::folder::{self, Folder};
 
@@ -168,7 +168,8 @@ impl SeriesStyles {
         if format && maps {
             name += &format!(" {}", s.map_format.name());
         }
-        if tolerance && s.method.follows_tolerance() {
+        let exact = s.tolerance == Tolerance::EXACT;
+        if tolerance && s.method.follows_tolerance() && !exact {
             name += &format!(" {} px", s.tolerance);
         }
         name

@@ -123,7 +123,7 @@ impl std::fmt::Display for Comparison {
         writeln!(f, "            {}", spread(self.depth_h512(), heights))?;
         writeln!(f, "normal      {}", spread(self.normal, "degrees"))?;
         let apart = self.silhouette_hausdorff;
-        writeln!(f, "silhouette  {apart:.3} pixels (Hausdorff, whole pixels)")?;
+        writeln!(f, "silhouette  {apart:.3} pixels (Hausdorff)")?;
         if let Some(view) = self.view {
             let [p999, max] = [view.silhouette_p999, view.silhouette_max];
             let depth = view.depth_p99;

@@ -2,7 +2,7 @@
 
 use super::placed::eye_about_axis;
 use super::tessellation::Mesh;
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use revmap::scene::{CameraFrame, Object, Placement};
 use revmap::surface::{Chain, Contour};
 use std::collections::BTreeMap;
@@ -101,40 +101,57 @@ impl Sight {
     /// The most pixels that an object unit of a copy's surface takes; `None` of a copy beside the
     /// picture or behind the eye.
     ///
-    /// What lies across a ray at distance `D` is seen `1 / (D cos^2)` large, with the ray's angle to
-    /// the view: the picture is stretched towards its corners.
+    /// What lies across a ray at depth `z` is seen up to `sqrt(1 + t^2) / z` large, with the tangent
+    /// `t` of the ray's angle to the view: pictures are stretched towards their corners. The
+    /// distance along the ray is `z sqrt(1 + t^2)`.
     fn pixels_per_unit(
         &self,
         object: &Object,
         (contour, &[widest, low, high]): Shape,
         copy: &Placement,
     ) -> Option<f64> {
-        let scale = copy.scale;
+        let Placement {
+            position, scale, ..
+        } = *copy;
+        let turn = copy.rotation.normalize();
         let [x, y] = object.axis_offset();
-        let middle = copy.rotation.normalize() * (scale * DVec3::new(x, y, 0.5 * (low + high)));
-        let way = copy.position + middle - self.eye;
-        let half = DVec3::new(widest, widest, 0.5 * (high - low));
-        let radius = (half * scale).length();
+        let way = position + turn * (scale * DVec3::new(x, y, 0.5 * (low + high))) - self.eye;
+        let half = DVec3::new(widest, widest, 0.5 * (high - low)) * scale;
         let depth = way.dot(self.forward);
-        let outside = |side: &DVec3| side.dot(way) < -radius;
-        if depth < -radius || self.sides.iter().any(outside) {
+        let outside = |side: &DVec3| side.dot(way) < -half.length();
+        if depth < -half.length() || self.sides.iter().any(outside) {
             return None;
         }
-        let mut steep = self.steepest;
-        if depth > radius {
-            let aside = (way - depth * self.forward).length();
-            steep = steep.min((aside + radius) / (depth - radius));
-        }
-        let eye = eye_about_axis(object, copy, self.eye);
-        let seen = eye * scale;
-        let beside = seen.truncate().length() - widest * scale.x.max(scale.y);
-        let above = (low * scale.z - seen.z).max(seen.z - high * scale.z);
-        let mut away = beside.max(0.0).hypot(above.max(0.0));
-        if away == 0.0 {
+        let forward = turn.conjugate() * self.forward;
+        let round = (forward * half).truncate().length();
+        let nearest = depth - round - (forward.z * half.z).abs();
+        let largest = if nearest > 0.0 {
+            let stretch = 1.0 + self.steepest(way, turn, half).powi(2);
+            stretch.sqrt() / nearest
+        } else {
+            let eye = eye_about_axis(object, copy, self.eye);
             let place = DVec2::new(eye.truncate().length(), eye.z);
-            away = distance(contour, place) * scale.min_element();
-        }
-        Some(scale.max_element() * (1.0 + steep * steep) / (away * self.pixel))
+            let away = distance(contour, place) * scale.min_element();
+            (1.0 + self.steepest.powi(2)) / away
+        };
+        Some(scale.max_element() * largest / self.pixel)
+    }
+
+    /// The largest tangent of an angle between the view and a ray of the picture to a box. It is
+    /// largest at a corner, because the points of less than an angle are a cone.
+    fn steepest(&self, way: DVec3, turn: DQuat, half: DVec3) -> f64 {
+        let tangent = |k: u32| {
+            let sign = |bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            let corner = way + turn * (half * DVec3::new(sign(0), sign(1), sign(2)));
+            let depth = corner.dot(self.forward);
+            let aside = (corner - depth * self.forward).length();
+            if depth > 0.0 {
+                aside / depth
+            } else {
+                f64::INFINITY
+            }
+        };
+        (0..8).map(tangent).fold(0.0, f64::max).min(self.steepest)
     }
 }
 

@@ -78,6 +78,8 @@ pub enum Pick {
 pub enum Kind {
     /// Every search.
     All,
+    /// The default; where others are named, if it is among them.
+    OnlyDefault,
     /// Those with a bound on their steps, without a table of their own.
     Bounded,
     /// Those without a bound and without a table.
@@ -89,8 +91,9 @@ pub enum Kind {
 }
 
 impl Kind {
-    const NAMES: [(&'static str, Self); 5] = [
+    const NAMES: [(&'static str, Self); 6] = [
         ("all", Self::All),
+        ("only-default", Self::OnlyDefault),
         ("bounded", Self::Bounded),
         ("unbounded", Self::Unbounded),
         ("tables", Self::Tables),
@@ -105,6 +108,7 @@ impl Kind {
             let bounded = m.default_steps(false) > 1;
             match self {
                 Self::All => true,
+                Self::OnlyDefault => *m == Method::DEFAULT,
                 Self::Bounded => bounded && !m.reads_own_table(),
                 Self::Unbounded => !bounded && !m.reads_own_table(),
                 Self::Tables => m.reads_own_table(),
@@ -125,7 +129,8 @@ impl Spelled for Pick {
             ("default", _) => Ok(Self::Method(Method::DEFAULT)),
             (_, Some((_, kind))) => Ok(Self::Kind(*kind)),
             _ => word.parse().map(Self::Method).map_err(|e: Error| {
-                let others = "baseline, default, all, bounded, unbounded, tables or maps";
+                let others =
+                    "baseline, default, only-default, all, bounded, unbounded, tables or maps";
                 format!("{}; or {others}", e.message)
             }),
         }

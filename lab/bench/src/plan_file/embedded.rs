@@ -10,9 +10,9 @@ macro_rules! plans {
 }
 
 /// Names and files of the plans, in the order in which they are listed.
-pub const ALL: [(&str, &str); 14] = plans! {
+pub const ALL: [(&str, &str); 16] = plans! {
     "usual" "quick" "full" "techniques" "techniques-tables" "tables" "scaling" "budget" "sizes"
-    "crowds" "antialiasing" "chart" "chart-full" "submit"
+    "tolerances" "crowds" "offsets" "antialiasing" "chart" "chart-full" "submit"
 };
 
 /// The file of a plan.

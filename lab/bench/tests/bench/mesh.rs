@@ -321,11 +321,8 @@ fn copies_share_the_meshes_of_their_sizes() {
     let mut scene = scene_of(shapes::vase(), eye(10.0, 3.0));
     let mut mesh = renderer(&scene, &within(0.25)).unwrap();
     let one = mesh.map_bytes()[0];
-    let copies = |n: u32| -> Arc<[Placement]> {
-        let place = |k| placement([0.0, 0.01 * f64::from(k), 0.0], [0.0; 3], [1.0; 3]);
-        (0..n).map(place).collect()
-    };
-    scene.objects[0].instances = copies(20);
+    let place = |k: u32| placement([0.0, 0.01 * f64::from(k), 0.0], [0.0; 3], [1.0; 3]);
+    scene.objects[0].instances = (0..20).map(place).collect();
     mesh.update(&scene).unwrap();
     assert_eq!((mesh.map_bytes()[0], mesh.rebuild_count()), (one, 1));
     scene.camera.eye = eye(10.0, 0.7);
