@@ -17,6 +17,12 @@ const MOST: f64 = 4.0;
 /// How often a distance is halved, and to which part the step from direction to direction.
 const HALVINGS: u32 = 12;
 const FINEST: f64 = 1.0 / 64.0;
+/// Halvings towards a line that is only looked for to know its direction.
+const ROUGH: u32 = 6;
+/// Columns and rows in which pixels of the other kind are looked for.
+const BESIDE: usize = 2;
+/// Wrong pixels that are looked at together.
+const TOGETHER: usize = 64;
 /// A direction is taken if the way becomes this much shorter.
 const NEARER: f64 = 0.999;
 
@@ -70,7 +76,9 @@ impl TruePicture {
     #[must_use]
     pub fn outline_distance(&self, x: f64, y: f64) -> Option<f64> {
         let hits = self.at(x, y).is_some();
-        nearest(|aside| self.at(x + aside.x, y + aside.y).is_some() != hits)
+        nearest(MOST, |aside| {
+            self.at(x + aside.x, y + aside.y).is_some() != hits
+        })
     }
 
     /// The world size of a pixel at a distance along a ray.
@@ -80,47 +88,88 @@ impl TruePicture {
 
     /// The errors of a frame, whose true one is `truth`.
     pub(crate) fn errors(&self, truth: &Frame, frame: &Frame) -> ViewErrors {
-        let mut ways = self.ways(truth, frame);
+        let [silhouette_p999, silhouette_max] = self.ways(truth, frame);
         let mut depths = self.depths(truth, frame);
-        ways.par_sort_unstable_by(f64::total_cmp);
         depths.par_sort_unstable_by(f64::total_cmp);
-        let rank = |errors: &[f64], part: usize, whole: usize| {
-            let rank = (errors.len() * part).div_ceil(whole).checked_sub(1);
-            rank.map_or(0.0, |rank| errors[rank])
-        };
+        let rank = (depths.len() * 99).div_ceil(100).checked_sub(1);
         ViewErrors {
-            silhouette_p999: rank(&ways, 999, 1000),
-            silhouette_max: rank(&ways, 1, 1),
-            depth_p99: rank(&depths, 99, 100),
+            silhouette_p999,
+            silhouette_max,
+            depth_p99: rank.map_or(0.0, |rank| depths[rank]),
         }
     }
 
-    /// The distance of each wrong pixel from the outline, and 0 for each right pixel at it.
-    fn ways(&self, truth: &Frame, frame: &Frame) -> Vec<f64> {
-        let width = truth.width as usize;
-        let place = |k: usize| DVec2::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
-        let is_at_outline = |k: usize| {
-            let beside = |n: usize| k.abs_diff(n) == 1 || k % width == n % width;
-            let other = |n: usize| truth.hits(n) != truth.hits(k);
-            around(truth, k, 1).any(|n| beside(n) && other(n))
-        };
-        let pixels = (0..truth.pixels()).into_par_iter();
-        let edge: Vec<usize> = pixels.clone().filter(|k| is_at_outline(*k)).collect();
-        let whole = |k: usize| {
-            let apart = |n: &usize| place(*n).distance(place(k));
-            edge.iter().map(apart).fold(f64::INFINITY, f64::min)
-        };
-        let way = |k: usize| {
-            let mut near = around(truth, k, MOST as usize + 1);
-            let near = (near.any(|n| truth.hits(n) != truth.hits(k)))
-                .then(|| self.outline_distance(place(k).x, place(k).y));
-            // Beyond some pixels whole ones are counted.
-            near.flatten().unwrap_or_else(|| whole(k))
+    /// The 99.9th percentile and the largest of the distances of wrong pixels from the outline; right
+    /// pixels at it count as 0. Only the largest are looked for, because rays that graze are slow.
+    fn ways(&self, truth: &Frame, frame: &Frame) -> [f64; 2] {
+        let is_at_outline = |k: &usize| {
+            let beside = |n: &usize| k.abs_diff(*n) == 1 || k % w(truth) == n % w(truth);
+            around(truth, *k, 1).any(|n| beside(&n) && truth.hits(n) != truth.hits(*k))
         };
         let wrong = |k: &usize| truth.hits(*k) != frame.hits(*k);
-        let mut all: Vec<f64> = pixels.filter(wrong).map(way).collect();
-        all.extend(edge.iter().filter(|k| !wrong(k)).map(|_| 0.0));
-        all
+        let pixels = (0..truth.pixels()).into_par_iter();
+        let edge: Vec<usize> = pixels.clone().filter(is_at_outline).collect();
+        let at_most = |k: usize| {
+            let other = |n: &&usize| truth.hits(**n) != truth.hits(k);
+            let apart = |n: &usize| middle(truth, *n).distance(middle(truth, k));
+            let far = edge
+                .iter()
+                .filter(other)
+                .map(apart)
+                .fold(f64::INFINITY, f64::min);
+            Way { k, far, looks: 0 }
+        };
+        let mut ways: Vec<Way> = pixels.filter(wrong).map(at_most).collect();
+        let right = edge.iter().filter(|k| !wrong(k)).count();
+        let all = right + ways.len();
+        let place = all - (all * 999).div_ceil(1000);
+        let largest = (place + 1).min(ways.len());
+        loop {
+            ways.par_sort_unstable_by(|a, b| b.far.total_cmp(&a.far).then(a.k.cmp(&b.k)));
+            let known = |way: &Way| way.looks == Way::LOOKS;
+            if ways[..largest].iter().all(known) {
+                break;
+            }
+            let open = ways.par_iter_mut().take(largest.max(TOGETHER)).enumerate();
+            open.filter(|(n, way)| way.looks == 0 || (*n < largest && !known(way)))
+                .for_each(|(_, way)| self.look(truth, way));
+        }
+        let far = |n: usize| ways.get(n).map_or(0.0, |way| way.far);
+        [far(place), far(0)]
+    }
+
+    /// Looks closer at the distance of a pixel: first towards the nearest pixels of the other kind,
+    /// then around.
+    fn look(&self, truth: &Frame, way: &mut Way) {
+        let (from, hits) = (middle(truth, way.k), truth.hits(way.k));
+        way.looks += 1;
+        let other = |place: DVec2| self.at(place.x, place.y).is_some() != hits;
+        if way.looks == Way::LOOKS {
+            if let Some(found) = nearest(way.far, |aside| other(from + aside)) {
+                way.far = way.far.min(found);
+            }
+            return;
+        }
+        let mut others: Vec<DVec2> = (around(truth, way.k, BESIDE))
+            .filter(|n| truth.hits(*n) != hits)
+            .map(|n| middle(truth, n) - from)
+            .collect();
+        others.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        let Some(&first) = others.first() else { return };
+        let crossing = |to: DVec2, halvings| first_on(to, halvings, |aside| other(from + aside));
+        let one = crossing(first, ROUGH);
+        way.far = way.far.min(one.length());
+        let beside = |to: &&DVec2| first.normalize().perp_dot(to.normalize()).abs() > 0.3;
+        let Some(second) = others.iter().find(beside) else {
+            return;
+        };
+        let along = crossing(*second, ROUGH) - one;
+        // The foot of the perpendicular on the line through both.
+        let foot = one - along * (one.dot(along) / along.length_squared());
+        let to = foot * (1.1 + 0.02 / foot.length().max(1e-6));
+        if other(from + to) {
+            way.far = way.far.min(crossing(to, HALVINGS).length());
+        }
     }
 
     /// The errors of the distances along rays, over the size of a pixel there.
@@ -136,18 +185,54 @@ impl TruePicture {
     }
 }
 
+/// A wrong pixel.
+struct Way {
+    k: usize,
+    /// Its distance from the outline, at most; pixels.
+    far: f64,
+    /// How closely it was looked at.
+    looks: u32,
+}
+
+impl Way {
+    const LOOKS: u32 = 2;
+}
+
+fn w(frame: &Frame) -> usize {
+    frame.width as usize
+}
+
+/// The centre of a pixel.
+fn middle(frame: &Frame, k: usize) -> DVec2 {
+    DVec2::new((k % w(frame)) as f64 + 0.5, (k / w(frame)) as f64 + 0.5)
+}
+
 /// The pixels at most so many columns and rows away.
 fn around(frame: &Frame, k: usize, far: usize) -> impl Iterator<Item = usize> + use<> {
-    let (width, height) = (frame.width as usize, frame.height as usize);
+    let (width, height) = (w(frame), frame.height as usize);
     let (x, y) = (k % width, k / width);
     let rows = y.saturating_sub(far)..(y + far + 1).min(height);
     let columns = x.saturating_sub(far)..(x + far + 1).min(width);
     rows.flat_map(move |j| columns.clone().map(move |i| j * width + i))
 }
 
-/// The distance from the origin to the nearest point at which something is so, pixels; `None` beyond
-/// [`MOST`]. It is not so at the origin.
-pub(crate) fn nearest(is_so: impl Fn(DVec2) -> bool) -> Option<f64> {
+/// The first point on the way from the origin to a point at which something is so.
+fn first_on(to: DVec2, halvings: u32, is_so: impl Fn(DVec2) -> bool) -> DVec2 {
+    let (mut near, mut far) = (0.0, 1.0);
+    for _ in 0..halvings {
+        let middle = 0.5 * (near + far);
+        *(if is_so(middle * to) {
+            &mut far
+        } else {
+            &mut near
+        }) = middle;
+    }
+    far * to
+}
+
+/// The distance from the origin to the nearest point at which something is so, pixels; `None` if that
+/// is not below `most`, or beyond [`MOST`]. It is not so at the origin.
+pub(crate) fn nearest(most: f64, is_so: impl Fn(DVec2) -> bool) -> Option<f64> {
     let step = TAU / f64::from(DIRECTIONS);
     let found = |far: f64| -> Vec<f64> {
         let angles = (0..DIRECTIONS).map(|n| step * f64::from(n));
@@ -157,26 +242,18 @@ pub(crate) fn nearest(is_so: impl Fn(DVec2) -> bool) -> Option<f64> {
     };
     let mut far = LEAST;
     let mut angles = found(far);
-    while angles.is_empty() && far < MOST {
+    while angles.is_empty() && far < most.min(MOST) {
         far *= 2.0;
         angles = found(far);
     }
     let mut best = (*angles.first()?, far);
     // The nearer of the best so far and of another direction.
     let better = |best: (f64, f64), angle: f64| {
-        let (way, mut near, mut far) = (DVec2::from_angle(angle), 0.0, NEARER * best.1);
-        if !is_so(far * way) {
-            return best;
+        let to = NEARER * best.1 * DVec2::from_angle(angle);
+        match is_so(to) {
+            true => (angle, first_on(to, HALVINGS, &is_so).length()),
+            false => best,
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (near + far);
-            *(if is_so(middle * way) {
-                &mut far
-            } else {
-                &mut near
-            }) = middle;
-        }
-        (angle, far)
     };
     best = angles.into_iter().fold(best, better);
     let mut turn = step;
@@ -204,17 +281,17 @@ mod tests {
         for k in 0..40 {
             let (far, angle) = (0.003 * 1.2f64.powi(k), 0.61 * f64::from(k));
             let way = DVec2::from_angle(angle);
-            let found = nearest(|p| p.dot(way) > far);
+            let found = nearest(MOST, |p| p.dot(way) > far);
             match found {
                 Some(found) => assert!((found / far - 1.0).abs() < 2e-3, "{far}: {found}"),
                 None => assert!(far > 3.9, "{far}"),
             }
         }
-        let sliver = nearest(|p| p.x > 0.3 && p.x < 0.45).unwrap();
+        let sliver = nearest(MOST, |p| p.x > 0.3 && p.x < 0.45).unwrap();
         assert!((sliver / 0.3 - 1.0).abs() < 2e-3, "{sliver}");
-        let disc = nearest(|p| p.distance(DVec2::new(1.0, 1.3)) < 0.9).unwrap();
+        let disc = nearest(MOST, |p| p.distance(DVec2::new(1.0, 1.3)) < 0.9).unwrap();
         assert!((disc - (1.0f64.hypot(1.3) - 0.9)).abs() < 2e-3, "{disc}");
-        assert_eq!(nearest(|_| false), None);
+        assert_eq!(nearest(MOST, |_| false), None);
     }
 
     /// A cylinder that is thicker by a part of a pixel, and one that lacks a corner.

@@ -43,7 +43,7 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
                 return (off, false);
             }
             // What the reference shows nearby, on the other side of the contour.
-            let way = nearest(|aside| match picture.at(x + aside.x, y + aside.y) {
+            let way = nearest(FAR, |aside| match picture.at(x + aside.x, y + aside.y) {
                 None => !frame.hits(k),
                 Some(_) if !frame.hits(k) => false,
                 Some(_) if !truth.hits(k) => true,
