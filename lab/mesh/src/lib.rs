@@ -12,6 +12,7 @@ mod blocks;
 mod fineness;
 mod layer;
 mod placed;
+mod sight;
 mod tessellation;
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,8 @@
 //! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
 
 use super::blocks::{InstanceBlock, ObjectBlock};
-use super::fineness::{Fineness, Sight};
+use super::fineness::Fineness;
+use super::sight::Sight;
 use super::tessellation::{Mesh, extent_of};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};
