@@ -106,14 +106,6 @@ fn view(row: &Row, of: fn(&ViewErrors) -> f64) -> Cell {
     Cell::number(errors.map(of))
 }
 
-/// The tolerance that a row was drawn to, pixels.
-pub(super) fn tolerance(row: &Row) -> Option<f64> {
-    let settings = &row.settings;
-    let own = settings.method.follows_tolerance();
-    let own = own.then(|| settings.tolerance.pixels());
-    own.or(settings.method.pixels())
-}
-
 /// The host's time of a change and the time of the frame, ms.
 fn whole(row: &Row) -> Option<f64> {
     Some(row.typical(|s| s.change_ms)? + row.time()?.value)
@@ -177,7 +169,7 @@ pub static COLUMNS: &[Column] = columns! {
     "driver", "driver", "Vulkan driver" => |c, _| Cell::text(c.driver);
     "gpu_ms_low", "device's time, low (ms)", "lower end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.0));
     "gpu_ms_high", "device's time, high (ms)", "upper end of its 95 % interval" => |_, r| Cell::number(gpu(r).and_then(|t| t.ends()).map(|e| e.1));
-    "tolerance_px", "tolerance (pixels)", "allowed error in pixels: of silhouettes and depths, of searches on patches (0 is exact); of silhouettes, of meshes that follow the view" => |_, r| Cell::number(tolerance(r));
+    "tolerance_px", "tolerance (pixels)", "allowed error in pixels: of silhouettes and depths, of searches on patches (0 is exact); of silhouettes, of meshes that follow the view" => |_, r| Cell::number(r.tolerance_px());
     "above_floor_ms", "above the floor (ms)", "time less that of the floor in the same picture and stage: what the search itself takes" => |c, r| Cell::number(above_floor(c.rows.iter().copied(), r));
     "resolved", "resolved", "whether the interval of the time is as narrow as the plan demands; figures that are not are left out of Pareto fronts" => |c, r| Cell::text(yes(r.resolved(c.resolved)));
     "time_over_fragment", "time / fragment stage", "time of the compute stage over that of the same method in the fragment stage, same picture" => |c, r| over(c, r, Over::Fragment);

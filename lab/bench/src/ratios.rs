@@ -1,6 +1,5 @@
 //! Times in proportion to those of other rows: which way is faster, and how sure that is.
 
-use super::columns::tolerance;
 use super::plan::{grouped, is_rbm_baseline, variant};
 use super::row::{Row, Sample};
 use super::stats::{self, Interval};
@@ -60,7 +59,7 @@ impl Over {
             Self::Opponent => find(&|r| same(r) && is_plain(r, Method::OPPONENT)),
             Self::Equal => {
                 let search = !row.settings.method.is_mesh();
-                let tolerance = tolerance(row).filter(|t| search && *t > 0.0)?;
+                let tolerance = row.tolerance_px().filter(|t| search && *t > 0.0)?;
                 let mesh = Method::mesh_within(tolerance).ok()?;
                 find(&|r| same(r) && is_plain(r, mesh))
             }

@@ -144,6 +144,15 @@ pub struct Row {
 }
 
 impl Row {
+    /// The tolerance that the row was drawn to, pixels.
+    #[must_use]
+    pub fn tolerance_px(&self) -> Option<f64> {
+        let settings = &self.settings;
+        let own = settings.method.follows_tolerance();
+        let own = own.then(|| settings.tolerance.pixels());
+        own.or(settings.method.pixels())
+    }
+
     /// A row of which the accuracy is known, and no time yet.
     pub fn new(view: &View, case: &Case, errors: Comparison, steps: Steps, map_bytes: u64) -> Self {
         let objects = &view.scene.objects;

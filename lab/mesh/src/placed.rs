@@ -2,7 +2,7 @@
 
 use super::blocks::{InstanceBlock, ObjectBlock};
 use super::fineness::Fineness;
-use super::sight::Sight;
+use super::sight::{Sight, eye_about_axis};
 use super::tessellation::{Mesh, extent_of};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};
@@ -232,13 +232,6 @@ fn check_box(object: &Object, widest: f64) -> std::result::Result<(), KeyError> 
     };
     let what = format!("is not cut by its box, past which {what}");
     Err((key, refused(&what)))
-}
-
-/// The eye in object space, about the axis.
-pub(super) fn eye_about_axis(object: &Object, placement: &Placement, eye: DVec3) -> DVec3 {
-    let [x, y] = object.axis_offset();
-    let back = placement.rotation.normalize().conjugate();
-    back * (eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
 }
 
 /// Whether an eye may be inside, or so near that the near plane cuts: then backs are seen.

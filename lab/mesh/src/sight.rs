@@ -1,6 +1,5 @@
 //! How large a copy's silhouettes are seen.
 
-use super::placed::eye_about_axis;
 use glam::{DQuat, DVec2, DVec3};
 use revmap::scene::{CameraFrame, Object, Placement};
 use revmap::surface::{Chain, Contour};
@@ -174,4 +173,11 @@ fn distance(contour: &Contour, seen: &Seen) -> f64 {
     (contour.chains.iter())
         .map(of_chain)
         .fold(f64::INFINITY, f64::min)
+}
+
+/// The eye in object space, about the axis.
+pub(super) fn eye_about_axis(object: &Object, placement: &Placement, eye: DVec3) -> DVec3 {
+    let [x, y] = object.axis_offset();
+    let back = placement.rotation.normalize().conjugate();
+    back * (eye - placement.position) / placement.scale - DVec3::new(x, y, 0.0)
 }

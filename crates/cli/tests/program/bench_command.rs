@@ -159,13 +159,13 @@ fn a_plan_of_ones_own_is_measured() {
         "methods = [\"baseline\"]\nsizes = [\"64x48\"]",
     );
     let own = own.replace(
-        "methods = [\"mesh:128x256\"]",
+        "methods = [\"mesh:0.25px\"]",
         "methods = [\"mesh:8x16\"]\nsizes = [\"64x48\"]",
     );
     bench.file("mine.toml", &own);
     bench.done("bench --plan mine.toml --passes 2 --rounds 1 --out p");
-    // Two stages by the search and the RBM baseline, one mesh.
-    assert_eq!(load(&bench, "p/results.csv").records.len(), 5);
+    // Two stages by the search, exact and within a tolerance, and the RBM baseline; one mesh.
+    assert_eq!(load(&bench, "p/results.csv").records.len(), 7);
     bench.file("bad.toml", own.replace("methods", "method"));
     bench.refuses(
         1,

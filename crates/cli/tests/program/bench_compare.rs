@@ -228,7 +228,7 @@ fn runs_of_different_scenes_are_not_compared() {
     );
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(
-        said.contains("3 in common") || said.contains("2 in common"),
+        (2..=4).any(|n| said.contains(&format!("{n} in common"))),
         "{said}"
     );
     let output = bench

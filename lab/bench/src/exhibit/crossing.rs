@@ -1,6 +1,6 @@
 //! The default against meshes of equal silhouettes: at which tolerance the two take the same time.
 
-use crate::columns::{Context, tolerance};
+use crate::columns::Context;
 use crate::method::Method;
 use crate::names::{count, number};
 use crate::plan::grouped;
@@ -14,7 +14,7 @@ pub(super) fn answers(context: &Context, rows: &[&Row]) -> Vec<String> {
     ratios.retain(|r| r.settings.method == Method::DEFAULT);
     let stages = grouped(ratios, |r| r.settings.stage).into_iter();
     let sentence = |(stage, all): (revmap::settings::DrawStage, Vec<Ratio>)| {
-        let at = |r: &Ratio| Some((tolerance(r.pairs.first()?.0)?, r.time));
+        let at = |r: &Ratio| Some((r.pairs.first()?.0.tolerance_px()?, r.time));
         let mut points: Vec<_> = all.iter().filter_map(at).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let told = points.iter().map(|(pixels, time)| {

@@ -321,7 +321,7 @@ fn copies_share_the_meshes_of_their_sizes() {
     let mut scene = scene_of(shapes::vase(), eye(10.0, 3.0));
     let mut mesh = renderer(&scene, &within(0.25)).unwrap();
     let one = mesh.map_bytes()[0];
-    let place = |k: u32| placement([0.0, 0.01 * f64::from(k), 0.0], [0.0; 3], [1.0; 3]);
+    let place = |k: u32| placement([0.0, 1e-4 * f64::from(k), 0.0], [0.0; 3], [1.0; 3]);
     scene.objects[0].instances = (0..20).map(place).collect();
     mesh.update(&scene).unwrap();
     assert_eq!((mesh.map_bytes()[0], mesh.rebuild_count()), (one, 1));
