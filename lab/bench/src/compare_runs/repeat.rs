@@ -88,7 +88,7 @@ pub struct Claim {
 type Pair = (usize, Option<usize>);
 
 /// The claims of these methods (as `exact`, `mesh:64x128`; `baseline` is the RBM baseline) in each
-/// stage that the kept run has of them: the ratio of times, and each of [`QUANTITIES`]. Each is
+/// stage that the kept run has of them: the ratio of times, and each of the errors. Each is
 /// judged by the pictures that both runs have. Behind them warnings about what the runs drew.
 ///
 /// # Errors
