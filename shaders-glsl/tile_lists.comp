@@ -25,7 +25,7 @@ void main()
     load(instance);
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
-    uvec2 header = listed_table(0u).xy;
+    uvec4 header = listed_table(0u);
     float unit = uintBitsToFloat(header.y);
 
     if (self == 0u) {
@@ -60,7 +60,7 @@ void main()
 
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
     // If the box cuts the solid, a ray may be inside the solid before it enters the box, and then hits the cut face.
-    // The tile of such a ray uses the tree, and so does that of a ray near the tip of a cone far from its s = 0.
+    // The tile of such a ray uses the tree.
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);
@@ -71,7 +71,6 @@ void main()
         // Without a ray that is sure to be between the sides, any ray may be cut.
         inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
     }
-    float start = height_of_start(beam);
     PatchRuns runs = NO_PATCHES;
     vec2 all = vec2(3e38, -3e38);
     for (uint w = 0u; w << 5 < header.x; ++w) {
@@ -81,13 +80,27 @@ void main()
             rest &= rest - 1u;
             vec2 span;
             bool meets = k < header.x && may_meet(beam, min(k, header.x), span) && span.x <= outer.y;
-            cut = cut || meets && (span.x < inner.x || is_imprecise(beam, k, start));
+            cut = cut || meets && span.x < inner.x;
             all = meets ? vec2(min(all.x, span.x), max(all.y, span.y)) : all;
             take_patch(runs, k, meets);
         }
     }
+    // Rays begin at the height of a tip that they would not hit precisely from elsewhere. If there are two, the tile uses
+    // the tree.
+    float start = height_of_start(beam);
+    bool by_tip = false;
+    uint last = min(runs.last, header.w >> 16);
+    for (uint round = 0u; round < 1u + uint(by_tip); ++round) {
+        for (uint k = max(runs.first, header.w & 0xffffu); k <= last; ++k) {
+            bool listed = runs.any && (k <= runs.gap.x || k >= runs.gap.y);
+            bool imprecise = listed && is_imprecise(beam, k, start, uintBitsToFloat(header.z));
+            cut = cut || imprecise && (by_tip || !is_steeper(beam, k));
+            by_tip = by_tip || imprecise;
+            start = imprecise ? anchor_of(k) : start;
+        }
+    }
     bool shows = present && runs.any && outer.x <= outer.y;
-    if (shows && (cut || !append_runs(tile, runs))) {
+    if (shows && (cut || !append_runs(tile, runs, by_tip, start))) {
         append(TREE_BIN, BinTile(tile.square, tile.instance, floatBitsToUint(all)));
     }
 }

@@ -43,6 +43,10 @@ impl SearchTable {
     }
 }
 
+/// `e` in `e sqrt(q) h^2 / r`, by which roundings of 32 bits may move hits of lists along the axis, in halves of the
+/// tolerance of the exact level (`is_imprecise` of `beam.glsl` derives it).
+const ROUNDING: f64 = 4.0 / 16_777_216.0 / (0.5 * 0.0035 / 512.0);
+
 /// Patches for lists, in the layout of `patch_runs.glsl`; empty if there are none, or too many.
 pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     if patches.is_empty() || patches.len() > LISTED_PATCHES as usize {
@@ -67,10 +71,27 @@ pub(crate) fn listed(patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     };
     // A guard that no point passes.
     let none = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]].map(|v| v.map(f32::to_bits));
-    std::iter::once([index(patches.len()), (unit as f32).to_bits(), 0, 0])
-        .chain(patches.iter().enumerate().flat_map(record))
-        .chain(none)
-        .collect()
+    // On a cone r^2 = q h^2 that begins at radius r, seen from within a height of 1.
+    let may_err = |p: &QuadricPatch| {
+        let steepness = -p.quadric[0] * p.quadric[3];
+        ROUNDING * ROUNDING * steepness > p.r[0] * p.r[0]
+    };
+    let first = patches
+        .iter()
+        .position(may_err)
+        .unwrap_or(LISTED_PATCHES as usize);
+    let last = patches.iter().rposition(may_err).unwrap_or(0);
+    let range = index(first) | index(last) << 16;
+    let rounding = (ROUNDING as f32).to_bits();
+    std::iter::once([
+        index(patches.len()),
+        (unit as f32).to_bits(),
+        rounding,
+        range,
+    ])
+    .chain(patches.iter().enumerate().flat_map(record))
+    .chain(none)
+    .collect()
 }
 
 /// The largest distance of a level from its contour, object units; an upper bound.

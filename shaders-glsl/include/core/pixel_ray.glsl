@@ -45,6 +45,19 @@ vec3 ray_direction(PixelRays rays, vec2 pixel)
     return rays.dir_00 + pixel.x * rays.dir_x + pixel.y * rays.dir_y;
 }
 
+// Returns the `t` at which the ray `o + t v` is nearest to a point of the axis. `weights`: of squared distances.
+float nearest_to(vec3 o, vec3 v, float height, vec3 weights)
+{
+    vec3 weighted = v * weights;
+    return dot(vec3(0.0, 0.0, height) - o, weighted) / dot(v, weighted);
+}
+
+// Returns weights by which a ray is nearest to the axis, or in a flat or wide box to its middle.
+vec3 weights_of_middle()
+{
+    return vec3(1.0, 1.0, 0.25 * shape.half_side * shape.half_side);
+}
+
 // Returns the width of a pixel at depth `t`, in units of depth.
 float pixel_width(float t)
 {

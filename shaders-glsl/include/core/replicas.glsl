@@ -85,8 +85,8 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout 
     return false;
 }
 
-// Traces the ray `eye + t v`. The eye is at t = -base, or the point that is shaded. The ray begins there, or at the near
-// plane, before which nothing is where rays begin outside of all solids. It has no hit outside the range `span` of t.
+// Traces the ray `eye + t v`. The eye, or the point that is shaded, is at t = -base. Rays from the eye begin at the
+// host's near plane if that may cut solids. The ray has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit = NO_HIT;

@@ -181,8 +181,8 @@ struct GatheredPixel {
 struct BinTile {
     uint square; // as in CopyTile
     uint instance;
-    uvec2 found; // lists: two runs of patches (first | number << 9 | first << 15 | number << 24), unused; tree: range of t of
-                 // possible hits (bits of floats)
+    uvec2 found; // lists: two runs of patches (first | number << 9 | first << 15 | number << 24), 1 << 31 if rays
+                 // begin at a height; that height, else 0.5; tree: range of t of possible hits (bits of floats)
 };
 
 // Push constants of a dispatch.

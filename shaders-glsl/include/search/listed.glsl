@@ -22,7 +22,7 @@ void share_patches()
             uint number = at >> 3;
             uint lower = runs >> 9 & 63u;
             uint k = number < lower ? (runs & 511u) + number : (runs >> 15 & 511u) + number - lower;
-            k = number < lower + (runs >> 24) ? k : none;
+            k = number < lower + (runs >> 24 & 63u) ? k : none;
             listed[at] = uintBitsToFloat(listed_word(1u + 3u * k + (at >> 2 & 1u), at & 3u));
         }
     }
@@ -35,7 +35,12 @@ vec4 listed_vector(uint n)
 
 bool search_listed(uvec2 pixel, out Hit hit)
 {
-    PatchRow row = begin_row(tile_rays, pixel, middle_of(tile_rays, vec2(pixel)));
+    vec2 at = vec2(pixel);
+    // The ray's s = 0 is near the middle, or at the height of a tip.
+    vec3 weights = mix(weights_of_middle(), vec3(0.0, 0.0, 1.0), bvec3((tile.found.x >> 31) != 0u));
+    float height = uintBitsToFloat(tile.found.y);
+    float shift = nearest_to(ray_origin(tile_rays, at), ray_direction(tile_rays, at), height, weights);
+    PatchRow row = begin_row(tile_rays, at, shift);
     // The lists contain no tile with a ray that is in the solid before it enters the box: see tile_lists.comp.
     if (!is_outside()) {
         clip_to_sides(row);

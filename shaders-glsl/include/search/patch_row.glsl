@@ -18,9 +18,7 @@ struct PatchRow {
 // Returns the `t` at which a ray is nearest to the axis, in a flat or wide box nearest to its middle.
 float middle_of(PixelRays rays, vec2 pixel)
 {
-    vec3 v = ray_direction(rays, pixel);
-    vec3 weighted = v * vec3(1.0, 1.0, 0.25 * shape.half_side * shape.half_side);
-    return dot(vec3(0.0, 0.0, 0.5) - ray_origin(rays, pixel), weighted) / dot(v, weighted);
+    return nearest_to(ray_origin(rays, pixel), ray_direction(rays, pixel), 0.5, weights_of_middle());
 }
 
 // `shift`: the `t` of s = 0.

@@ -113,8 +113,9 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        // Roots count from the middle of the row, which is near the anchors of patches that end on the axis. `span` must
-        // not change it, nor the roots' last bits. `square_at(near, x)` is `square_at(m, middle + x)`.
+        // Roots count from the middle of the row, which is near the anchors of patches that end on the axis. The middle
+        // does not depend on `span`, which must not change the roots' last bits. `square_at(near, x)` is
+        // `square_at(m, middle + x)`.
         float middle = clamp(((float(row) + 0.5) / n - m.o.z) * per_z, 0.0, m.s_end);
         Meridian near = m;
         near.o = m.o + middle * m.v;

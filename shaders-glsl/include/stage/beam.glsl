@@ -114,28 +114,50 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     return outer * outer > beam.least && (meets_before || meets_behind);
 }
 
-// Returns the height at which s = 0 for the middle ray of a beam in a list of patches (search/patch_row.glsl).
+// Returns the height at which s = 0 for the middle ray of a beam in a list of patches (search/listed.glsl).
 float height_of_start(Beam beam)
 {
-    vec3 weighted = beam.v * vec3(1.0, 1.0, 0.25 * shape.half_side * shape.half_side);
-    return beam.o.z + dot(vec3(0.0, 0.0, 0.5) - beam.o, weighted) / dot(beam.v, weighted) * beam.v.z;
+    return beam.o.z + nearest_to(beam.o, beam.v, 0.5, weights_of_middle()) * beam.v.z;
+}
+
+// Returns the height of the anchor of patch `k`: of a cone, its tip.
+float anchor_of(uint k)
+{
+    return uintBitsToFloat(listed_word(2u + 3u * k, 0u));
+}
+
+// Returns q of a cone r^2 = q h^2, h the height above its tip; of other patches at most that of their asymptotes.
+float steepness_of(uint k)
+{
+    uvec4 words = listed_table(3u + 3u * k);
+    return -uintBitsToFloat(words.w) * (float(int(words.x >> 30)) - 1.0);
 }
 
 // Returns true if rounding may move the hits of a beam's rays on patch `k` by more than half of the tolerance of
-// patches. `start`: height of s = 0.
+// patches. `start`: height of s = 0; `rounding`: the last factors below over half of the tolerance.
 //
-// On a cone r^2 = q h^2 the terms of be^2 - al ga are q^2 h^2 where s = 0, h above the anchor, and eight roundings of them
-// are an error e. Of a hit at radius r the term itself is q r^2. Half of the ratio, times r / sqrt(q), is the error in
-// height: 4 * 2^-24 sqrt(q) h^2 / r.
-bool is_imprecise(Beam beam, uint k, float start)
+// Derivation for a cone r^2 = q h^2. The start s = 0 is at height h above the anchor, where the terms of be^2 - al ga
+// have the size q^2 h^2. Eight roundings of them are the error. A hit at radius r has the term q r^2. Half of the ratio,
+// times r / sqrt(q), is the error in height: sqrt(q) h^2 / r * 4 * 2^-24.
+bool is_imprecise(Beam beam, uint k, float start, float rounding)
 {
-    const float RATIO = 4.0 / 16777216.0 / (0.5 * 0.0035 / 512.0);
-    uvec4 words = listed_table(3u + 3u * k);
-    float height = start - uintBitsToFloat(listed_word(2u + 3u * k, 0u));
-    float steepness = -uintBitsToFloat(words.w) * (float(int(words.x >> 30)) - 1.0);
-    float radius = max(float(words.y & 0xffffu) * beam.unit, sqrt(beam.least) - beam.width.x);
-    float error = RATIO * height * height;
-    return error * error * steepness > radius * radius;
+    float height = start - anchor_of(k);
+    float least = float(listed_table(3u + 3u * k).y & 0xffffu) * beam.unit;
+    float radius = max(least, sqrt(beam.least) - beam.width.x);
+    float error = rounding * height * height;
+    return error * error * steepness_of(k) > radius * radius;
+}
+
+// Returns true if all rays of a beam are at least half as steep as cone `k`.
+//
+// Such rays may begin at the height of the tip. All terms of be^2 - al ga are then multiples of c, the square of the
+// ray's distance from the tip there, and at most 5 times q v.z^2 c. Eight roundings move a hit by at most
+// 20 * 2^-24 of its height above the tip, less than half of the tolerance of patches.
+bool is_steeper(Beam beam, uint k)
+{
+    float along = max(abs(beam.v.z) - beam.spread.y, 0.0);
+    float across = sqrt(beam.a) + beam.spread.x;
+    return 4.0 * steepness_of(k) * along * along >= across * across;
 }
 
 #endif

@@ -1,6 +1,7 @@
 // Runs of patches that a tile's rays may hit, and the tile of a bin made from them.
 //
-// Layout of the table, in vectors: first a header with the number of patches and the unit of radii (float bits). Then
+// Layout of the table, in vectors: first a header with the number of patches, the unit of radii and the unit of roundings
+// (float bits), and the range of patches that is_imprecise() of beam.glsl is true for at most (first | last << 16). Then
 // three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
@@ -45,8 +46,9 @@ void append(uint n, BinTile tile)
     bin_tiles[bin_start(n) + index] = tile;
 }
 
-// Adds a tile if its runs are short enough for a list. Returns false if not; then the tile must use the tree.
-bool append_runs(CopyTile tile, PatchRuns runs)
+// Adds a tile if its runs are short enough for a list. Returns false if not; then the tile must use the tree. `by_tip`:
+// rays begin at the height `tip`.
+bool append_runs(CopyTile tile, PatchRuns runs, bool by_tip, float tip)
 {
     uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;
@@ -54,8 +56,8 @@ bool append_runs(CopyTile tile, PatchRuns runs)
         return false;
     }
     uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
-    uint found = runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24;
-    append(n, BinTile(tile.square, tile.instance, uvec2(found, 0u)));
+    uint found = runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24 | uint(by_tip) << 31;
+    append(n, BinTile(tile.square, tile.instance, uvec2(found, floatBitsToUint(by_tip ? tip : 0.5))));
     return true;
 }
 

@@ -2,6 +2,7 @@
 
 mod along_axis;
 mod numbers;
+mod reduced;
 
 use super::case::Step;
 use super::cases::on_half_turn;
@@ -351,32 +352,6 @@ impl Draft {
         with_copies.map(move |(k, object)| (self.file(k), object.copies.iter().map(row).collect()))
     }
 
-    /// The same with one part less, in every way there is.
-    fn smaller(&self) -> Vec<Self> {
-        let mut all = Vec::new();
-        let mut without = |count: usize, remove: &dyn Fn(&mut Self, usize)| {
-            for k in 0..count {
-                let mut one = self.clone();
-                remove(&mut one, k);
-                all.push(one);
-            }
-        };
-        if self.objects.len() > 1 {
-            without(self.objects.len(), &|d, k| drop(d.objects.remove(k)));
-        }
-        without(self.lines.len(), &|d, k| drop(d.lines.remove(k)));
-        without(self.lights.len(), &|d, k| _ = d.lights.remove(k));
-        for (n, object) in self.objects.iter().enumerate() {
-            let keys = |d: &mut Self, k| drop(d.objects[n].keys.remove(k));
-            without(object.keys.len(), &keys);
-            let copies = |d: &mut Self, k| _ = d.objects[n].copies.remove(k);
-            without(object.copies.len(), &copies);
-            let corners = |d: &mut Self, k| _ = d.objects[n].polygon.remove(k);
-            without(object.polygon.len(), &corners);
-        }
-        all
-    }
-
     /// What the default fails in this scene; `None` where it passes, or the scene is refused.
     pub fn fails(&self, device: &Device, folder: &Path) -> Result<Option<String>> {
         for (name, rows) in self.instance_files() {
@@ -402,20 +377,6 @@ impl Draft {
             return Ok(Some(format!("{:?}: {what}", one.stage)));
         }
         Ok(None)
-    }
-
-    /// The smallest scene that still fails, taking away one part at a time.
-    pub fn reduced(&self, device: &Device, folder: &Path) -> Result<Self> {
-        let mut now = self.clone();
-        'again: loop {
-            for smaller in now.smaller() {
-                if smaller.fails(device, folder)?.is_some() {
-                    now = smaller;
-                    continue 'again;
-                }
-            }
-            return Ok(now);
-        }
     }
 }
 
