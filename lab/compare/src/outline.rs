@@ -21,6 +21,8 @@ const FINEST: f64 = 1.0 / 64.0;
 const ROUGH: u32 = 6;
 /// Columns and rows in which pixels of the other kind are looked for.
 const BESIDE: usize = 2;
+/// Of more wrong pixels than this an even part stands for all, with the same part of the right ones.
+const MOST_WRONG: usize = 1000;
 /// Wrong pixels that are looked at together.
 const TOGETHER: usize = 64;
 /// A direction is taken if the way becomes this much shorter.
@@ -101,6 +103,7 @@ impl TruePicture {
 
     /// The 99.9th percentile and the largest of the distances of wrong pixels from the outline; right
     /// pixels at it count as 0. Only the largest are looked for, because rays that graze are slow.
+    /// Of more than [`MOST_WRONG`] an even part is taken.
     fn ways(&self, truth: &Frame, frame: &Frame) -> [f64; 2] {
         let is_at_outline = |k: &usize| {
             let beside = |n: &usize| k.abs_diff(*n) == 1 || k % w(truth) == n % w(truth);
@@ -119,9 +122,12 @@ impl TruePicture {
                 .fold(f64::INFINITY, f64::min);
             Way { k, far, looks: 0 }
         };
-        let mut ways: Vec<Way> = pixels.filter(wrong).map(at_most).collect();
+        let wrongs: Vec<usize> = pixels.filter(wrong).collect();
+        let step = wrongs.len().div_ceil(MOST_WRONG).max(1);
+        let some = wrongs.par_iter().step_by(step);
+        let mut ways: Vec<Way> = some.map(|k| at_most(*k)).collect();
         let right = edge.iter().filter(|k| !wrong(k)).count();
-        let all = right + ways.len();
+        let all = right / step + ways.len();
         let place = all - (all * 999).div_ceil(1000);
         let largest = (place + 1).min(ways.len());
         loop {

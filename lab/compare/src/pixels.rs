@@ -1,17 +1,21 @@
 //! Errors of silhouettes and depths in pixels of a view: what a tolerance bounds.
 
-use crate::outline::{TruePicture, nearest};
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::scene::Scene;
+use revmap::scene::{CameraFrame, Scene};
+use revmap_reference::{Ray, Reference};
 
 /// Depths that differ by more pixels than this, where a neighbour of the reference has a nearer
 /// one, are a contour that has moved.
 const JUMP: f64 = 4.0;
 
-/// What stands for a contour that is nowhere near, pixels.
-const FAR: f64 = 4.0;
+/// Directions in which the contour is looked for, and how often the distance is halved.
+const DIRECTIONS: u32 = 16;
+const HALVINGS: u32 = 4;
+/// The distances looked at, pixels, each twice the one before; the last stands for all beyond.
+const LEAST: f64 = 1.0 / 256.0;
+const MOST: f64 = 4.0;
 
 /// What moved by how much, pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,27 +33,40 @@ pub struct PixelErrors {
 
 /// Errors of a drawn frame of `scene`.
 pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<PixelErrors> {
-    let picture = TruePicture::new(scene, truth.width, truth.height)?;
+    let camera = CameraFrame::new(&scene.camera, truth.width, truth.height)?;
+    let reference = Reference::new(scene)?;
+    // Of a unit at unit depth, which rays' directions are scaled to.
+    let pixel = camera.right.length();
     let errors: Vec<(f64, bool)> = (0..truth.pixels())
         .into_par_iter()
         .filter(|&k| truth.hits(k) || frame.hits(k))
         .map(|k| {
-            let [x, y] = [k as u32 % truth.width, k as u32 / truth.width];
-            let [x, y] = [x, y].map(|v| f64::from(v) + 0.5);
-            let direction = picture.camera.direction(x, y);
+            let (x, y) = (k as u32 % truth.width, k as u32 / truth.width);
+            let direction = camera.pixel(x, y);
             let [there, drawn] = [truth, frame].map(|f| f64::from(f.distance[k]));
-            let off = (there - drawn).abs() / picture.pixel(direction, there);
+            let size = |distance: f64| pixel * distance / direction.length();
+            let off = (there - drawn).abs() / size(there);
             if truth.hits(k) && frame.hits(k) && !(off > JUMP && is_near(truth, k, drawn)) {
                 return (off, false);
             }
             // What the reference shows nearby, on the other side of the contour.
-            let way = nearest(FAR, |aside| match picture.at(x + aside.x, y + aside.y) {
-                None => !frame.hits(k),
-                Some(_) if !frame.hits(k) => false,
-                Some(_) if !truth.hits(k) => true,
-                Some(beside) => (beside - drawn).abs() <= 0.5 * (there - drawn).abs(),
-            });
-            (way.unwrap_or(FAR), true)
+            let shows = |x: f64, y: f64| {
+                let direction = direction + camera.right * x - camera.up * y;
+                let ray = Ray {
+                    origin: camera.eye,
+                    direction,
+                };
+                match reference.trace(ray).hit {
+                    None => !frame.hits(k),
+                    Some(_) if !frame.hits(k) => false,
+                    Some(_) if !truth.hits(k) => true,
+                    Some(hit) => {
+                        let beside = hit.t * direction.length();
+                        (beside - drawn).abs() <= 0.5 * (there - drawn).abs()
+                    }
+                }
+            };
+            (way_to(shows), true)
         })
         .collect();
     let mut all: Vec<f64> = errors.iter().map(|e| e.0).collect();
@@ -62,6 +79,27 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
         p999: rank.map_or(0.0, |rank| all[rank]),
         contour_max: moved().map(|e| e.0).fold(0.0, f64::max),
     })
+}
+
+/// How far from a pixel's middle something is shown, pixels. Flights ask it of thousands of pixels of
+/// crowds, so it takes a tenth of the rays of [`nearest`](crate::outline::nearest).
+fn way_to(shows: impl Fn(f64, f64) -> bool) -> f64 {
+    let around = |far: f64| {
+        (0..DIRECTIONS).any(|n| {
+            let (y, x) = (std::f64::consts::TAU * f64::from(n) / f64::from(DIRECTIONS)).sin_cos();
+            shows(far * x, far * y)
+        })
+    };
+    let mut far = LEAST;
+    while far < MOST && !around(far) {
+        far *= 2.0;
+    }
+    let mut near = 0.5 * far;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (near + far);
+        *(if around(middle) { &mut far } else { &mut near }) = middle;
+    }
+    far
 }
 
 /// Whether what is drawn in pixel `k` is nearer to what the reference has beside it.
