@@ -274,7 +274,7 @@ fn run(mut file: PlanFile, lists: &Lists, quick: bool) -> Result<()> {
         flights: &flights,
     };
     print(report.write(out, output::width())?.trim_end());
-    let summary = out.join("charts/summary-depth-error.png");
+    let summary = out.join("charts/summary-depth-error.svg");
     if summary.exists() {
         output::result(&summary.display().to_string());
     }

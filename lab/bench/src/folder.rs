@@ -1,8 +1,6 @@
 //! The folder of a run: its tables, the note on the machine, pictures and pages.
 
 use super::chart::Figure;
-use super::chart::pdf::pdf;
-use super::chart::raster::raster;
 use super::chart::svg::svg;
 use super::columns::results_table;
 use super::drawn::{self, Drawn};
@@ -140,14 +138,11 @@ pub fn write_text(file: &Path, text: &str) -> Result<()> {
     write_bytes(file, text.as_bytes())
 }
 
-/// Writes a figure into `folder/charts`: as SVG, as PNG of twice its size, as PDF without title.
+/// Writes a figure into `folder/charts`: as SVG.
 pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
     let charts = folder.join("charts");
     make(&charts)?;
-    write_text(&charts.join(format!("{name}.svg")), &svg(figure))?;
-    write_bytes(&charts.join(format!("{name}.pdf")), &pdf(figure))?;
-    let picture = png(&raster(figure, 2.0)?)?;
-    write_bytes(&charts.join(format!("{name}.png")), &picture)
+    write_text(&charts.join(format!("{name}.svg")), &svg(figure))
 }
 
 /// A picture as a PNG file.

@@ -1,7 +1,6 @@
 //! A page that needs nothing beside itself, without scripts, for any screen and for print.
 
 use super::chart::Figure;
-use super::chart::letters::{FAMILY, FONT};
 use super::chart::svg::svg;
 use super::folder::png;
 use super::table::Table;
@@ -131,9 +130,6 @@ impl Page {
 
     /// The whole file.
     pub fn html(&self) -> String {
-        let font = BASE64_STANDARD.encode(FONT);
-        let face =
-            format!("@font-face{{font-family:'{FAMILY}';src:url(data:font/ttf;base64,{font})}}");
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -141,7 +137,7 @@ impl Page {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width,initial-scale=1";
                     title { (self.title) }
-                    style { (PreEscaped(face)) (PreEscaped(STYLE)) }
+                    style { (PreEscaped(STYLE)) }
                 }
                 body {
                     h1 { (self.title) }

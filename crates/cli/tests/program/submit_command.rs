@@ -80,7 +80,7 @@ fn submissions_are_gathered() {
     assert_eq!(table.records.len(), a.lines.len() + b.lines.len());
     bench.has(&["c/report.html"]);
     // A chart needs clocks that agree, and frames this small are easily timed wrongly.
-    let drawn = bench.path("c/charts/devices.png").exists();
+    let drawn = bench.path("c/charts/devices.svg").exists();
     assert_eq!(drawn, a.lines.len() + b.lines.len() > 2, "{said}");
     refusals(&bench);
 }

@@ -111,7 +111,6 @@ impl DotChart {
         Figure {
             width: WIDTH,
             height: end + EDGE,
-            top: top - 6.0,
             title: self.title.clone(),
             marks: sheet.0,
         }

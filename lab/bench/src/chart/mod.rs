@@ -1,14 +1,11 @@
-//! Charts as plain figures of polygons, lines and words, written as SVG, PDF and PNG. Colours serve
-//! every kind of colour vision, and each series has a marker of its own: a print in grey still
-//! reads.
+//! Charts as plain figures of polygons, lines and words, written as SVG. Colours serve every kind of
+//! colour vision, and each series has a marker of its own: a print in grey still reads.
 
 pub mod axis;
 pub(crate) mod dots;
 pub mod front;
 mod legend;
-pub(crate) mod letters;
-pub(crate) mod pdf;
-pub(crate) mod raster;
+mod letters;
 pub(crate) mod style;
 pub(crate) mod svg;
 pub mod xy;
@@ -73,8 +70,6 @@ pub struct Figure {
     pub(crate) width: f64,
     /// Pixels down.
     pub(crate) height: f64,
-    /// Pixels of the title, above all else.
-    pub(crate) top: f64,
     /// Its title, also for those who cannot see it.
     pub(crate) title: String,
     /// Its parts, those in front last.

@@ -153,7 +153,6 @@ impl XyChart {
         Figure {
             width: WIDTH,
             height: bottom + EDGE,
-            top: top - 8.0,
             title: self.title.clone(),
             marks: sheet.0,
         }

@@ -198,7 +198,7 @@ fn devices_stand_side_by_side() {
     for wanted in ["2 of 2", "1 of 2", "VGPRs", "On other 1.2", "a.toml"] {
         assert!(page.contains(wanted), "{wanted}");
     }
-    assert!(out.join("charts/devices.svg").exists() && out.join("charts/devices.png").exists());
+    assert!(out.join("charts/devices.svg").exists());
 
     let error = gather::load(&[files[0].clone(), files[0].clone()])
         .err()
