@@ -17,7 +17,7 @@ mod surface;
 fn documents_show_what_is_there() {
     let shown = |page: &str, text: &str| assert!(page.contains(text.trim()), "{text}");
     let scene = include_str!("../../assets/scenes/smallest.toml");
-    shown(include_str!("../../README.md"), scene);
+    shown(include_str!("../../docs/scene-files.md"), scene);
     let (_, program) = include_str!("../../examples/smallest.rs")
         .split_once('\n')
         .unwrap();
