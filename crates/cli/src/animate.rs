@@ -13,7 +13,7 @@ use revmap::gpu::Device;
 use revmap::scene::{Camera, Scene};
 use revmap::settings::Planes;
 use revmap_bench::method::Edges;
-use revmap_bench::renderer::{MethodDevice, MethodRenderer};
+use revmap_bench::method::renderer::{MethodDevice, MethodRenderer};
 use revmap_files::scene::blank;
 use revmap_files::{Picture, SceneFile};
 use std::path::{Path, PathBuf};

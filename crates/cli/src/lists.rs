@@ -9,8 +9,8 @@ use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{Tolerance, name_of};
 use revmap_bench::method::Method;
 use revmap_bench::plan::suite::Extent;
+use revmap_bench::plan::view::{Framing, View};
 use revmap_bench::plan::{self, Overrides};
-use revmap_bench::view::{Framing, View};
 use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::DeviceReport;
-use revmap_bench::machine::Machine;
+use revmap_bench::measure::machine::Machine;
 use revmap_files::{check_writable, destination};
 use std::io::ErrorKind::BrokenPipe;
 use std::io::Write;

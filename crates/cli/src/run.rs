@@ -5,8 +5,8 @@ use super::{output, overrun, progress};
 use clap::Args;
 use revmap::error::Result;
 use revmap::gpu::Device;
-use revmap_bench::folder;
-use revmap_bench::machine::Machine;
+use revmap_bench::measure::machine::Machine;
+use revmap_bench::report::folder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 

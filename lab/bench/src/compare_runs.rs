@@ -5,10 +5,10 @@ pub mod repeat;
 mod run;
 mod scenes;
 
-use super::names::{number, range};
-use super::stats::{self, Interval, Verdict};
-use super::surroundings::differences;
-use super::table::Table;
+use crate::measure::surroundings::differences;
+use crate::names::{number, range};
+use crate::stats::{self, Interval, Verdict};
+use crate::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
 use run::Run;
 use scenes::Scenes;

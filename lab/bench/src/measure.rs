@@ -6,14 +6,20 @@
 //! `stats`). A pass in which another program disturbs a clock is taken again.
 
 mod bench;
+pub mod device;
 mod drawer;
+pub(crate) mod drawn;
+pub(crate) mod growth;
+pub mod machine;
+pub mod ratios;
+pub mod row;
+pub(crate) mod surroundings;
 
 pub use bench::{Bench, Observer, RenderedCase, TimedDraw};
 pub use drawer::TRIES;
 
-use super::plan::{Case, Plan, TimeBudget};
-use super::row::{Row, Steps};
 use crate::method::{Edges, Method, MethodSettings};
+use crate::plan::{Case, Plan, TimeBudget};
 use drawer::Drawer;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
@@ -21,6 +27,7 @@ use revmap::settings::Planes;
 use revmap_compare::{
     CompareOptions, Comparison, PIXELS_PER_DEGREE, PixelErrors, flip_map, mean_flip, pixel_errors,
 };
+use row::{Row, Steps};
 use std::sync::atomic::Ordering;
 use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};

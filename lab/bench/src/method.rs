@@ -1,5 +1,8 @@
 //! What is measured: a search of [`revmap`], the mesh baseline, or the floor.
 
+pub mod floor;
+pub mod renderer;
+
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};

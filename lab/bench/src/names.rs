@@ -22,18 +22,18 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// A name that may be part of a file's name.
-pub(super) fn safe(name: &str) -> String {
+pub(crate) fn safe(name: &str) -> String {
     let safe = |c: char| c.is_alphanumeric() || "-_@.".contains(c);
     name.replace(|c| !safe(c), "-")
 }
 
 /// Names of the files of a folder. No two are the same, also where upper and lower case are.
 #[derive(Debug, Default)]
-pub(super) struct FileNames(HashSet<String>);
+pub(crate) struct FileNames(HashSet<String>);
 
 impl FileNames {
     /// The name of one more file: `name` where that is free, else with a number behind it.
-    pub(super) fn add(&mut self, name: &str) -> String {
+    pub(crate) fn add(&mut self, name: &str) -> String {
         let name = safe(name);
         let numbered = (2..).map(|n| format!("{name}-{n}"));
         let mut names = std::iter::once(name.clone()).chain(numbered);
@@ -43,12 +43,12 @@ impl FileNames {
 }
 
 /// `0.97 to 1.07`.
-pub(super) fn range((low, high): (f64, f64)) -> String {
+pub(crate) fn range((low, high): (f64, f64)) -> String {
     format!("{} to {}", number(low, 3), number(high, 3))
 }
 
 /// `1 picture`, `4 pictures`.
-pub(super) fn count(number: usize, what: &str) -> String {
+pub(crate) fn count(number: usize, what: &str) -> String {
     match number {
         1 => format!("1 {what}"),
         number => format!("{number} {what}s"),

@@ -1,21 +1,27 @@
 //! The report of a run: its tables and charts as a page, as files beside it, and as text.
 
-use super::columns::{COLUMNS, Column, Context};
-use super::exhibit::{self, Exhibit};
-use super::flight::{self, FlightTimes};
-use super::folder::{excluded, keep_figure, write_text};
-use super::glossary;
-use super::machine::Machine;
-use super::measure::Measured;
-use super::names::number;
-use super::page::Page;
-use super::pictures::{Album, heat_key};
-use super::places::{Place, places};
-use super::plan::Plan;
-use super::plan_file::PlanFile;
-use super::ratios::Over;
-use super::row::{CLOCKS_APART, Row, SUBMISSION_MS};
-use super::series_style::SeriesStyles;
+pub mod flight;
+pub mod folder;
+pub mod glossary;
+pub mod page;
+pub mod pictures;
+pub mod plan_file;
+
+use crate::chart::series_style::SeriesStyles;
+use crate::exhibit::places::{Place, places};
+use crate::exhibit::{self, Exhibit};
+use crate::measure::Measured;
+use crate::measure::machine::Machine;
+use crate::measure::ratios::Over;
+use crate::measure::row::{CLOCKS_APART, Row, SUBMISSION_MS};
+use crate::names::number;
+use crate::plan::Plan;
+use crate::table::columns::{COLUMNS, Column, Context};
+use flight::FlightTimes;
+use folder::{excluded, keep_figure, write_text};
+use page::Page;
+use pictures::{Album, heat_key};
+use plan_file::PlanFile;
 use revmap::error::Result;
 use std::path::Path;
 

@@ -1,5 +1,8 @@
 //! The table of all outputs: of files, of standard output and of pages.
 
+pub mod columns;
+pub(crate) mod published;
+
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;
 

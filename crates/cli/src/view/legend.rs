@@ -1,6 +1,6 @@
 //! The scale beside a picture in false colours: the colours that the picture has, with numbers.
 
-use revmap_bench::pictures::STEPS;
+use revmap_bench::report::pictures::STEPS;
 use revmap_compare::{EMPTY, GHOST, MISSED, Scale, ramp};
 
 /// Colours with their values.

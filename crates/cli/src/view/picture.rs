@@ -10,7 +10,7 @@ use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath};
 use revmap::settings::Settings;
-use revmap_bench::pictures::steps;
+use revmap_bench::report::pictures::steps;
 use revmap_compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_files::Picture;
 use revmap_offscreen::{Offscreen, Times};

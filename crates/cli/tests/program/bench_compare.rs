@@ -1,9 +1,9 @@
 //! `revmap bench --compare` with planted runs.
 
 use crate::run::{Bench, CAMERA, CONE, lines};
-use revmap_bench::columns;
 use revmap_bench::plan::suite::{self, Extent};
 use revmap_bench::table::Table;
+use revmap_bench::table::columns;
 
 /// A folder with a run of one row.
 fn run(bench: &Bench, folder: &str, driver: &str, processor: &str) {

@@ -7,7 +7,7 @@ use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Solver};
 use revmap_bench::method::MethodSettings;
-use revmap_bench::renderer::MethodDevice;
+use revmap_bench::method::renderer::MethodDevice;
 use revmap_compare::{CompareOptions, compare};
 use revmap_files::SceneFile;
 use revmap_searches::{CIRCLE, LINEAR, SECANT, folder};

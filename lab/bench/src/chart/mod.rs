@@ -6,6 +6,7 @@ pub(crate) mod dots;
 pub mod front;
 mod legend;
 mod letters;
+pub mod series_style;
 pub(crate) mod style;
 pub(crate) mod svg;
 pub mod xy;

@@ -136,11 +136,11 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::tests::folder_of;
     use super::*;
-    use crate::drawn::{self, Drawn};
+    use crate::measure::drawn::{self, Drawn};
+    use crate::measure::row::Row;
+    use crate::measure::row::tests::timed;
+    use crate::plan::view::tests::spindle;
     use crate::plan::{Plan, rbm_baseline};
-    use crate::row::Row;
-    use crate::row::tests::timed;
-    use crate::view::tests::spindle;
     use revmap::settings::DrawStage;
 
     /// A run of one driver: the default takes `ms`, the RBM baseline 20.

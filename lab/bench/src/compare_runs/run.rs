@@ -1,9 +1,9 @@
 //! A run read back from its folder.
 
-use crate::columns::{CONTRACT, results as columns};
-use crate::drawn::Drawn;
+use crate::measure::drawn::Drawn;
+use crate::measure::surroundings;
 use crate::stats;
-use crate::surroundings;
+use crate::table::columns::{CONTRACT, results as columns};
 use crate::table::{Table, text_of};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;

@@ -1,7 +1,7 @@
 //! Whether two runs drew the same scenes.
 
 use super::run::Run;
-use crate::drawn;
+use crate::measure::drawn;
 
 /// How the scenes and settings of two runs differ.
 #[derive(Default)]

@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used)]
-use super::super::columns::tests::csv_of;
-use super::super::folder::{raw, write_text};
-use super::super::row::Row;
-use super::super::row::tests::row;
 use super::*;
-use crate::columns::results;
+use crate::measure::row::Row;
+use crate::measure::row::tests::row;
 use crate::method::{Edges, Method};
 use crate::plan::rbm_baseline;
-use crate::view::tests::spindle;
+use crate::plan::view::tests::spindle;
+use crate::report::folder::{raw, write_text};
+use crate::table::columns::results;
+use crate::table::columns::tests::csv_of;
 use revmap::settings::{DrawStage, Solver};
 
 /// The folder of a run of these rows.

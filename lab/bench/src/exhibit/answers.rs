@@ -1,14 +1,14 @@
 //! Questions that a report answers in one sentence, and the tables behind the answers: fragment or
 //! compute, and whether another search than the default is faster.
 
-use crate::columns::{Cell, Context};
+use crate::measure::ratios::{Over, Ratio, between, mean_ms, over};
+use crate::measure::row::Row;
 use crate::method::Method;
 use crate::names::{count, number, range};
 use crate::plan::{grouped, is_rbm_baseline};
-use crate::ratios::{Over, Ratio, between, mean_ms, over};
-use crate::row::Row;
 use crate::stats::{Interval, Verdict};
 use crate::table::Table;
+use crate::table::columns::{Cell, Context};
 use revmap::scene::Shadow;
 use revmap::settings::{DrawStage, name_of};
 
@@ -284,9 +284,9 @@ pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::columns::tests::with_context;
+    use crate::measure::row::tests;
     use crate::method::MethodSettings;
-    use crate::row::tests;
+    use crate::table::columns::tests::with_context;
     use revmap::settings::Solver;
     use revmap_compare::Spread;
 

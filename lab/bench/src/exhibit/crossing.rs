@@ -1,11 +1,11 @@
 //! The default against meshes of equal silhouettes: at which tolerance the two take the same time.
 
-use crate::columns::Context;
+use crate::measure::ratios::{Over, Ratio, over};
+use crate::measure::row::Row;
 use crate::method::Method;
 use crate::names::{count, number};
 use crate::plan::grouped;
-use crate::ratios::{Over, Ratio, over};
-use crate::row::Row;
+use crate::table::columns::Context;
 
 /// A sentence for each stage of the default: its time over the mesh's at each tolerance, and where
 /// the two cross.
@@ -57,9 +57,9 @@ fn verdict(points: &[(f64, f64)]) -> String {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::columns::tests::with_context;
+    use crate::measure::row::tests::timed;
     use crate::method::MethodSettings;
-    use crate::row::tests::timed;
+    use crate::table::columns::tests::with_context;
     use revmap::settings::Tolerance;
 
     /// The default takes 2 ms at any tolerance, meshes take less the more they may err: 4 ms at 0.1

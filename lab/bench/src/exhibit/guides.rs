@@ -3,10 +3,10 @@
 use super::{Chart, tables};
 use crate::chart::axis::Axis;
 use crate::chart::xy::{Guide, Series};
-use crate::columns::{self, Context};
-use crate::growth::growth;
-use crate::published;
-use crate::row::Row;
+use crate::measure::growth::growth;
+use crate::measure::row::Row;
+use crate::table::columns::{self, Context};
+use crate::table::published;
 use revmap::error::Result;
 
 impl Chart {

@@ -5,6 +5,7 @@ mod answers;
 mod charts;
 mod crossing;
 mod guides;
+pub(crate) mod places;
 mod tables;
 
 pub use answers::Question;
@@ -13,9 +14,9 @@ pub use charts::Chart;
 pub(crate) use tables::cell;
 pub use tables::{Records, Table, ways_table};
 
-use super::columns::{self, Context};
-use super::ratios::Over;
-use super::row::Row;
+use crate::measure::ratios::Over;
+use crate::measure::row::Row;
+use crate::table::columns::{self, Context};
 use revmap::error::{Error, ErrorKind, Result};
 
 /// Tables and charts on one question.

@@ -1,16 +1,16 @@
 //! Tables of a report.
 
 use super::{answers, check_column};
-use crate::columns::{self, Cell, Context};
-use crate::growth::growth;
+use crate::measure::growth::growth;
+use crate::measure::ratios::{Over, Ratio, mean_ms, over};
+use crate::measure::row::Row;
 use crate::method::Method;
 use crate::names::{number, range};
 use crate::plan::grouped;
-use crate::published::published;
-use crate::ratios::{Over, Ratio, mean_ms, over};
-use crate::row::Row;
 use crate::stats::{self, Interval};
 use crate::table::Table as Text;
+use crate::table::columns::{self, Cell, Context};
+use crate::table::published::published;
 use revmap::error::{Error, ErrorKind, Result};
 
 /// A table.

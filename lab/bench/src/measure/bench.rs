@@ -1,9 +1,9 @@
 //! What a measurement draws with, and who waits for it.
 
+use crate::measure::row::{Row, Sample};
 use crate::method::MethodSettings;
+use crate::plan::view::View;
 use crate::plan::{Case, Plan};
-use crate::row::{Row, Sample};
-use crate::view::View;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap_compare::CompareOptions;

@@ -1,7 +1,7 @@
 //! One way of drawing a picture that is made ready, and its times in a pass.
 
 use super::TimedDraw;
-use crate::row::{Clocks, Sample};
+use crate::measure::row::{Clocks, Sample};
 use crate::stats;
 use revmap::error::Result;
 

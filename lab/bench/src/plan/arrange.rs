@@ -2,7 +2,7 @@
 //! distance, as an army. And a thousand different solids.
 
 use super::suite::{self, Extent};
-use crate::view::View;
+use crate::plan::view::View;
 use glam::{DQuat, DVec3};
 use revmap::error::Result;
 use revmap::profile::Profile;

@@ -1,9 +1,9 @@
 //! The measurements of a plan: views, settings, and which of them are measured against each other.
 
 use super::entry::Measure;
-use crate::floor;
+use crate::method::floor;
 use crate::method::{Edges, Method, MethodSettings};
-use crate::view::View;
+use crate::plan::view::View;
 use revmap::maps::MapFormat;
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use revmap_searches::CIRCLE;
@@ -239,7 +239,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::Pick;
     use super::*;
-    use crate::view::tests::spindle;
+    use crate::plan::view::tests::spindle;
     use revmap::maps::MapSource;
 
     fn entry() -> Measure {

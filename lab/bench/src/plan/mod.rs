@@ -1,12 +1,14 @@
-//! A plan says what a benchmark measures. Its file is [`plan_file`](crate::plan_file).
+//! A plan says what a benchmark measures. Its file is [`plan_file`](crate::report::plan_file).
 
 mod arrange;
 mod cases;
 mod entry;
+mod framing;
 mod overrides;
 pub mod suite;
 mod time_budget;
 mod values;
+pub mod view;
 mod views;
 
 pub use arrange::{army, flight_camera};

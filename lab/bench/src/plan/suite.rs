@@ -1,7 +1,7 @@
 //! The solids that are measured when no scene is named, carried within the program.
 
 use crate::names::number;
-use crate::view::View;
+use crate::plan::view::View;
 use glam::DVec3;
 use revmap::error::Result;
 use revmap::scene::{Camera, Object, Scene};

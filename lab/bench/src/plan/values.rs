@@ -1,7 +1,7 @@
 //! Values of a plan's keys, as their files spell them.
 
 use crate::method::Edges;
-use crate::view::Framing;
+use crate::plan::view::Framing;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Shadow;
 use revmap::settings::{DrawStage, Tolerance};

@@ -4,7 +4,7 @@ use super::arrange::{army, avenue, distant, field, sparse, thousand};
 use super::overrides::Overrides;
 use super::suite::{self, Extent};
 use super::values::list;
-use crate::view::{Framing, View};
+use crate::plan::view::{Framing, View};
 use revmap::error::Result;
 use revmap::maps::{BakeOptions, ColorMap, ShapeMap};
 use revmap::scene::{Clip, Offset, Shadow};

@@ -1,15 +1,15 @@
 //! A submission from a run.
 
 use super::{Described, FORMAT, Line, OnePicture, OneShader, Pictures, Submission, figure, short};
-use crate::columns::Context;
-use crate::drawn::Drawn;
 use crate::exhibit::cell;
-use crate::machine::Machine;
 use crate::measure::Measured;
+use crate::measure::drawn::Drawn;
+use crate::measure::machine::Machine;
+use crate::measure::ratios::{Over, mean_ms, over};
+use crate::measure::row::{Clocks, Row};
 use crate::plan::Plan;
-use crate::ratios::{Over, mean_ms, over};
-use crate::row::{Clocks, Row};
-use crate::view::Framing;
+use crate::plan::view::Framing;
+use crate::table::columns::Context;
 use revmap::error::Result;
 use revmap::gpu::DeviceReport;
 

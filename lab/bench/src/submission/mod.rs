@@ -8,10 +8,10 @@ mod make;
 
 pub use make::make;
 
-use super::drawn::fnv1a_64;
-use super::measure::RenderedCase;
-use super::stats::Interval;
+use crate::measure::RenderedCase;
+use crate::measure::drawn::fnv1a_64;
 use crate::method::MethodSettings;
+use crate::stats::Interval;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
 use serde::{Deserialize, Serialize};
@@ -261,7 +261,7 @@ fn figure(interval: Interval) -> Figure {
 
 /// A number with five digits.
 fn short(value: f64) -> f64 {
-    super::names::number(value, 5).parse().unwrap_or(value)
+    crate::names::number(value, 5).parse().unwrap_or(value)
 }
 
 /// Checksums of the pictures of a run: 64 bits over the colours of all pixels, four bytes each, as a

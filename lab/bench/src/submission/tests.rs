@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used)]
-use super::super::columns::tests::with_context;
-use super::super::machine::Machine;
-use super::super::measure::Measured;
-use super::super::plan::{Plan, rbm_baseline};
-use super::super::row::Row;
-use super::super::row::tests::row;
-use super::super::view::tests::spindle;
 use super::*;
+use crate::measure::Measured;
+use crate::measure::machine::Machine;
+use crate::measure::row::Row;
+use crate::measure::row::tests::row;
 use crate::method::Method;
+use crate::plan::view::tests::spindle;
+use crate::plan::{Plan, rbm_baseline};
+use crate::table::columns::tests::with_context;
 use revmap::gpu::DeviceReport;
 use std::time::Duration;
 
@@ -86,9 +86,9 @@ fn the_lines_are_the_tables() {
     assert!((ours.time_ms[0] - 5.05).abs() < 1e-9 && (ours.ratio[0] - 0.5).abs() < 1e-9);
     assert_eq!((ours.wrong, ours.pictures), (Some(0.003), 1));
     with_context(&rows(0.1), |context| {
-        let over = super::super::ratios::over(
+        let over = crate::measure::ratios::over(
             context.rows.iter().copied(),
-            super::super::ratios::Over::Baseline,
+            crate::measure::ratios::Over::Baseline,
         );
         assert_eq!(figure(over[0].time), ours.ratio);
     });
@@ -191,7 +191,7 @@ fn devices_stand_side_by_side() {
     std::fs::create_dir(&out).unwrap();
     let said = gather::write(&all, &out, None).unwrap();
     assert!(said.contains("0.7 (0.6 to 0.8)"), "{said}");
-    let table = super::super::table::Table::load(&out.join("results.csv")).unwrap();
+    let table = crate::table::Table::load(&out.join("results.csv")).unwrap();
     assert_eq!(table.records.len(), 6);
     assert_eq!(table.records[2][0], "card 1.2 (2)");
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();

@@ -1,15 +1,15 @@
 //! How a benchmark goes about its plan, with a stand-in for the device.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan};
-use revmap_bench::folder;
-use revmap_bench::machine::Machine;
+use revmap_bench::chart::series_style::SeriesStyles;
+use revmap_bench::measure::machine::Machine;
 use revmap_bench::measure::{Observer, measure};
 use revmap_bench::method::Method;
-use revmap_bench::pictures::Album;
 use revmap_bench::plan::TimeBudget;
-use revmap_bench::plan_file::embedded;
 use revmap_bench::report::Run;
-use revmap_bench::series_style::SeriesStyles;
+use revmap_bench::report::folder;
+use revmap_bench::report::pictures::Album;
+use revmap_bench::report::plan_file::embedded;
 use revmap_bench::table::Table;
 use std::sync::atomic::AtomicBool;
 

@@ -1,11 +1,11 @@
 #![allow(clippy::unwrap_used)]
 use super::super::tests::folder_of;
 use super::*;
+use crate::measure::ratios::{Over, over};
+use crate::measure::row::Row;
+use crate::measure::row::tests::row;
 use crate::plan::rbm_baseline;
-use crate::ratios::{Over, over};
-use crate::row::Row;
-use crate::row::tests::row;
-use crate::view::tests::spindle;
+use crate::plan::view::tests::spindle;
 
 /// Two pictures by the default search, which takes `part` of the baseline's time, and by the
 /// baseline; with so many wrong pixels of the search.

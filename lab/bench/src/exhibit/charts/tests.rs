@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::columns::tests::with_context;
-use crate::row::tests::timed;
+use crate::measure::row::tests::timed;
+use crate::table::columns::tests::with_context;
 use revmap::settings::Solver;
 
 fn item(stage: DrawStage, x: f64, y: f64, unresolved: bool) -> Item {

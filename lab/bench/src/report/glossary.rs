@@ -1,0 +1,121 @@
+//! The meanings of methods' names in a report, a sentence each.
+
+use crate::measure::Measured;
+use crate::measure::row::Row;
+use crate::method::Method;
+use crate::plan::{RBM_BASELINE, is_rbm_baseline};
+use crate::report::page::Page;
+use revmap::settings::Solver;
+use revmap_searches::folder;
+
+/// The meaning of a method's name.
+pub fn meaning(method: Method) -> &'static str {
+    match method {
+        Method::Search(Solver::Other(search)) => search.about,
+        Method::Search(Solver::Live) => {
+            "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame"
+        }
+        Method::Search(Solver::Quadric) => {
+            "no map: the outline as quadric patches, solved exactly, found by a tree"
+        }
+        Method::Search(Solver::Exact) => {
+            "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
+        }
+        Method::MeshWithin { .. } => {
+            "the mesh that follows the view: triangles whose silhouettes keep so many pixels, segments and rings for each copy by its size on the screen, in levels of a factor of 1.4; copies beside the picture are left out, the nearest are drawn first. Only silhouettes keep the tolerance: depths and normals err by more. Beyond 65,536 pixels for a solid's height meshes grow no finer"
+        }
+        Method::Floor => {
+            "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. It is an estimate of the least time of a search, not a proven bound: it shades some pixels beside the solid, and reads only the nearest copies"
+        }
+        Method::Mesh { .. } => {
+            "a mesh of one fineness: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
+        }
+    }
+}
+
+const PAPERS: &str = "revolution-bump mapping as it was published: circle tracing of 20 steps (25 and 10 halvings under a bevel) over the distances of a binary image in 8 bits";
+
+/// The publications of the RBM baseline.
+const SOURCES: [&str; 4] = [
+    "A. Halli, A. Saaidi, K. Satori, H. Tairi: Extrusion and revolution mapping. ACM Transactions on Graphics 29 (5), 2010, 1-14. doi:10.1145/1857907.1857908",
+    "A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori: Revolution mapping with bump mapping support. Graphical Models 100, 2018, 1-11. doi:10.1016/j.gmod.2018.09.001",
+    "A. Ragragui, A. Ouazzani Chahdi, A. Halli, K. Satori, H. El Moubtahij: The extensions of revolution-bump mapping. Journal of Graphic Engineering and Design 13 (1), 2022, 21-31. doi:10.24867/JGED-2022-1-021",
+    "A. Ragragui, A. Ouazzani Chahdi, A. Arbah, H. El Moubtahij, A. Halli, K. Satori: Revolution-bump mapping with texture function adjustment according to the geometry of the revolved object. Journal of Graphic Engineering and Design, 2025",
+];
+
+/// The names that occur in these rows, each with its meaning, in the reports' order.
+pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
+    let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);
+    let mut all: Vec<(&'static str, String)> = Vec::new();
+    for method in Method::ALL {
+        if occurs(&|r| r.settings.method == method && !is_rbm_baseline(&r.settings)) {
+            all.push((method.name(), meaning(method).to_owned()));
+        }
+    }
+    for row in rows {
+        let method = row.settings.method;
+        if let Some(folder) = method.solver().and_then(folder::of)
+            && all.iter().all(|(name, _)| *name != method.name())
+        {
+            let about = format!("{} ({})", meaning(method), folder.origin());
+            all.push((method.name(), about));
+        }
+    }
+    let meshes = || rows.iter().map(|r| r.settings.method);
+    let within = meshes().find(|m| m.pixels().is_some());
+    all.extend(within.map(|mesh| ("mesh:PIXELSpx", meaning(mesh).to_owned())));
+    let fixed = meshes().find(|m| m.quads() > 0);
+    all.extend(fixed.map(|mesh| ("mesh:SEGMENTSxRINGS", meaning(mesh).to_owned())));
+    if occurs(&|r| r.settings.method == Method::Floor) {
+        all.push((Method::Floor.name(), meaning(Method::Floor).to_owned()));
+    }
+    if occurs(&|r| is_rbm_baseline(&r.settings)) {
+        all.push((RBM_BASELINE, PAPERS.to_owned()));
+    }
+    all
+}
+
+/// The chapter that explains them.
+pub fn chapter(page: &mut Page, measured: &Measured) {
+    page.chapter("What is compared");
+    page.text(
+        "Ways of finding the first point of a solid of revolution along each pixel's ray. In the fragment stage a fragment shader searches within each solid's box, in the compute stage \
+         a compute shader does; pictures are the same but for rounding.",
+    );
+    page.facts(&names(&measured.rows));
+    if measured.rows.iter().any(|r| is_rbm_baseline(&r.settings)) {
+        page.text("The RBM baseline is revolution mapping, and its extensions, as published in:");
+        SOURCES.iter().for_each(|source| page.text(source));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::measure::row::tests::timed;
+    use crate::plan::rbm_baseline;
+    use crate::plan::view::tests::spindle;
+
+    #[test]
+    fn every_name_that_occurs_is_explained_once() {
+        let fixed = [16, 32].map(|n| Method::mesh(n, 2 * n).unwrap());
+        let within = [0.1, 2.0].map(|pixels| Method::mesh_within(pixels).unwrap());
+        let row = |method| {
+            let mut row = timed(&[1.0]);
+            row.settings.method = method;
+            row
+        };
+        let methods = Method::ALL.into_iter().chain(fixed).chain(within);
+        let mut rows: Vec<Row> = methods.map(row).collect();
+        let mut papers = rows[0].clone();
+        papers.settings = rbm_baseline(&spindle(), &papers.settings);
+        rows.push(papers);
+        let named = names(&rows);
+        assert_eq!(named.len(), Method::ALL.len() + 3);
+        for (i, (name, meaning)) in named.iter().enumerate() {
+            assert!(meaning.len() > 20 && named[..i].iter().all(|t| t.0 != *name));
+        }
+        assert_eq!(names(&rows[..1]).len(), 1);
+    }
+}
