@@ -99,6 +99,23 @@ pub fn geometric(observations: &[f64]) -> Option<Interval> {
     Some(Interval::new(value.exp(), low.exp(), high.exp()))
 }
 
+/// The logarithm of the median ratio of times that were taken in the same rounds.
+pub fn log_ratio(
+    a: impl IntoIterator<Item = f64>,
+    b: impl IntoIterator<Item = f64>,
+) -> Option<f64> {
+    let logs: Vec<f64> = a.into_iter().zip(b).map(|(a, b)| (a / b).ln()).collect();
+    median(&logs).filter(|v| v.is_finite())
+}
+
+/// The geometric mean over pictures, with its interval over the passes that all have. `logs`: of
+/// each picture the logarithms of its passes.
+pub fn over_pictures(logs: &[Vec<f64>]) -> Option<Interval> {
+    let passes = logs.iter().map(Vec::len).min()?;
+    let in_pass = |pass: usize| logs.iter().map(|l| l[pass]).sum::<f64>() / logs.len() as f64;
+    geometric(&(0..passes).map(|p| in_pass(p).exp()).collect::<Vec<_>>())
+}
+
 /// The mean with Student's interval, which excludes nothing for one value; `None` of nothing.
 pub fn mean(observations: &[f64]) -> Option<Interval> {
     let Some((value, error)) = mean_and_error(observations) else {

@@ -245,7 +245,7 @@ fn ratio_claim(runs: &[Run; 2], pairs: &[Pair]) -> Option<Claim> {
     let (logs, pictures) = common(runs, pairs, logs)?;
     let lacking = pictures.too_few("times");
     lacking.or_else(|| {
-        let [kept, new] = logs.map(|logs| ratio(&logs));
+        let [kept, new] = logs.map(|logs| stats::over_pictures(&logs));
         let (kept, new) = kept.zip(new)?;
         let (low, high) = (kept.low / MACHINES, kept.high * MACHINES);
         let (verdict, wide) = match (new.low <= high && new.high >= low, new.relative()) {
@@ -275,24 +275,13 @@ fn ratio_claim(runs: &[Run; 2], pairs: &[Pair]) -> Option<Claim> {
     })
 }
 
-/// The ratio of times over pictures: of each the logarithms of its ratios in each pass.
-fn ratio(logs: &[Vec<f64>]) -> Option<Interval> {
-    let passes = logs.iter().map(Vec::len).min().unwrap_or(0);
-    let in_pass = |pass: usize| logs.iter().map(|l| l[pass]).sum::<f64>() / logs.len() as f64;
-    let ratios: Vec<f64> = (0..passes).map(|pass| in_pass(pass).exp()).collect();
-    stats::geometric(&ratios)
-}
-
 /// Logarithms of a row's ratios to the RBM baseline in the fragment stage, one for each pass: medians
 /// over the rounds. `None` if a clock was rejected, and without such a baseline.
 fn logs(run: &Run, row: usize) -> Option<Vec<f64>> {
     let record = run.results.records.get(row)?;
     let rival = run.baseline_of(record, STAGES[0])?;
     let passes = run.times(row).zip(run.times(rival));
-    let log = |(a, b): (&[f64], &[f64])| {
-        let logs: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a / b).ln()).collect();
-        stats::median(&logs)
-    };
+    let log = |(a, b): (&[f64], &[f64])| stats::log_ratio(a.iter().copied(), b.iter().copied());
     let logs: Vec<f64> = passes.filter_map(log).collect();
     (!logs.is_empty()).then_some(logs)
 }

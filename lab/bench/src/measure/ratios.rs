@@ -180,13 +180,8 @@ pub fn over<'a>(rows: impl IntoIterator<Item = &'a Row>, over: Over) -> Vec<Rati
 
 /// The geometric mean of the times of rows, ms, with its interval over the passes that all have.
 pub fn mean_ms(rows: &[&Row]) -> Option<Interval> {
-    let medians: Vec<Vec<f64>> = rows.iter().map(|r| r.pass_medians()).collect();
-    let passes = medians.iter().map(Vec::len).min()?;
-    let in_pass = |pass: usize| {
-        let logs = medians.iter().map(|m| m[pass].ln());
-        (logs.sum::<f64>() / rows.len() as f64).exp()
-    };
-    stats::geometric(&(0..passes).map(in_pass).collect::<Vec<_>>())
+    let logs = |r: &&Row| r.pass_medians().into_iter().map(f64::ln).collect();
+    stats::over_pictures(&rows.iter().map(logs).collect::<Vec<_>>())
 }
 
 /// True if the depth error of a row (99th percentile) is no more than that of another.
@@ -212,14 +207,15 @@ fn of_way<'a>(
     // A pass that was ended early holds fewer pictures and would compare others.
     let whole = |logs: &Vec<f64>| logs.len() == pairs.len();
     let all: Vec<Vec<f64>> = (0..passes).map(in_pass).filter(whole).collect();
+    let of_picture = |k: usize| all.iter().map(|logs| logs[k]).collect();
+    let logs: Vec<Vec<f64>> = (0..pairs.len()).map(of_picture).collect();
+    let time = stats::over_pictures(&logs)?;
     let mean = |logs: &Vec<f64>| (logs.iter().sum::<f64>() / logs.len() as f64).exp();
-    let time = stats::geometric(&all.iter().map(mean).collect::<Vec<_>>())?;
-    let single = (0..pairs.len()).map(|k| mean(&all.iter().map(|logs| logs[k]).collect()));
     Some(Ratio {
         settings: *way,
         mesh,
         time,
-        range: single.fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(v), h.max(v))),
+        range: (logs.iter().map(mean)).fold((f64::INFINITY, 0.0), |(l, h), v| (l.min(v), h.max(v))),
         pairs,
     })
 }
@@ -242,15 +238,13 @@ pub fn between(a: &Row, b: &Row) -> Option<Interval> {
     a.time().and(b.time())?;
     let passes = a.passes.len().min(b.passes.len());
     let logs = (0..passes).filter_map(|pass| paired(a, b, pass));
-    stats::geometric(&logs.map(f64::exp).collect::<Vec<_>>())
+    stats::over_pictures(&[logs.collect()])
 }
 
 /// Logarithm of the median ratio of samples that were taken in the same round.
 fn paired(a: &Row, b: &Row, pass: usize) -> Option<f64> {
     let (a, b) = (a.passes.get(pass)?, b.passes.get(pass)?);
-    let log = |(a, b): (&Sample, &Sample)| (a.ms() / b.ms()).ln();
-    let logs: Vec<f64> = a.iter().zip(b).map(log).collect();
-    stats::median(&logs).filter(|v| v.is_finite())
+    stats::log_ratio(a.iter().map(Sample::ms), b.iter().map(Sample::ms))
 }
 
 #[cfg(test)]

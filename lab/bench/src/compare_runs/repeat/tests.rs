@@ -61,7 +61,7 @@ fn ratios_are_those_of_the_report() {
     let own = super::rows(&run, "exact", "fragment");
     let of_each: Vec<_> = own.iter().map(|&row| logs(&run, row).unwrap()).collect();
     let wanted = over(&rows, Over::Baseline);
-    let (a, b) = (ratio(&of_each).unwrap(), wanted[0].time);
+    let (a, b) = (stats::over_pictures(&of_each).unwrap(), wanted[0].time);
     for (a, b) in [(a.value, b.value), (a.low, b.low), (a.high, b.high)] {
         assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
     }
