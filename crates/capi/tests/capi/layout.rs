@@ -64,28 +64,3 @@ fn structures_are_the_same_in_c() {
     std::fs::write(&file, text).unwrap();
     compile("c11", &[], &[file], &folder.path().join("layout"));
 }
-
-/// Programs that were compiled with an earlier header pass structures of these sizes.
-#[test]
-#[cfg(target_pointer_width = "64")]
-fn added_fields_begin_where_earlier_structures_end() {
-    assert_eq!(offset_of!(RevmapPass, attachments), 56);
-    assert_eq!(offset_of!(RevmapView, last), 296);
-    assert_eq!(offset_of!(RevmapView, depth_range), 336);
-    assert_eq!(offset_of!(RevmapView, ray_width), 352);
-    assert_eq!(offset_of!(RevmapObjectInfo, has_material), 264);
-}
-
-/// These have no size of their own, so they never change: callers pass arrays of them.
-#[test]
-fn structures_without_a_size_never_change() {
-    let sizes = [
-        size_of::<RevmapPlacement>(),
-        size_of::<RevmapOffset>(),
-        size_of::<RevmapLight>(),
-        size_of::<RevmapRay>(),
-        size_of::<RevmapRayHit>(),
-        size_of::<RevmapBounds>(),
-    ];
-    assert_eq!(sizes, [80, 24, 40, 48, 40, 48]);
-}

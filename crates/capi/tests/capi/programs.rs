@@ -141,10 +141,101 @@ fn two_thousand_cycles_leave_nothing_behind() {
     println!("{said}");
 }
 
+/// The header of an earlier release by its table: the present one without later members, and
+/// assertions of all sizes, places, numbers and types of functions that the table has.
+fn header_of(table: &str, present: &str) -> String {
+    let (mut header, mut claims) = (present.to_owned(), String::new());
+    let mut claim = |what: String| claims += &format!("_Static_assert({what}, \"release\");\n");
+    let mut functions = String::new();
+    for line in table.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        let pairs = |from: usize| {
+            words[from..]
+                .iter()
+                .map(|word| word.split_once(':').unwrap())
+        };
+        match words[0] {
+            "struct" => {
+                let (name, bytes) = (words[1], words[2]);
+                let begin = header.find(&format!("struct {name} {{\n")).unwrap();
+                let end = begin + header[begin..].find("\n}").unwrap();
+                let is_kept = |line: &&str| {
+                    let member = line
+                        .trim_end_matches(';')
+                        .rsplit([' ', '*'])
+                        .next()
+                        .unwrap();
+                    let member = member.split('[').next().unwrap();
+                    let named = || pairs(3).any(|(name, _)| name == member);
+                    // A structure without a size never grows.
+                    words[3] != "size:0+4" || !line.ends_with(';') || named()
+                };
+                let kept: Vec<&str> = header[begin..end].lines().filter(is_kept).collect();
+                let kept = kept.join("\n");
+                header.replace_range(begin..end, &kept);
+                claim(format!("sizeof({name}) == {bytes}"));
+                for (member, place) in pairs(3) {
+                    let (at, bytes) = place.split_once('+').unwrap();
+                    claim(format!("offsetof({name}, {member}) == {at}"));
+                    claim(format!("sizeof((({name} *)0)->{member}) == {bytes}"));
+                }
+            }
+            "numbers" => pairs(1).for_each(|(name, number)| claim(format!("{name} == {number}"))),
+            _ => functions += &format!("{line};\n"),
+        }
+    }
+    format!("{header}{claims}{functions}")
+}
+
+/// The tables of earlier releases, each with its name.
+fn releases() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c/releases");
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        (name, std::fs::read_to_string(entry.path()).unwrap())
+    });
+    entries.collect()
+}
+
+fn present_header() -> String {
+    std::fs::read_to_string(root().join("crates/capi/include/revmap.h")).unwrap()
+}
+
+/// A member, a number, a structure without a size and a function that changed since a release.
+#[test]
+fn planted_changes_since_a_release_are_found() {
+    let (folder, header) = (folder(), present_header());
+    let (_, table) = releases().remove(0);
+    let compiles = |header: &str| {
+        let file = folder.path().join("release.h");
+        std::fs::write(&file, header_of(&table, header)).unwrap();
+        let mut command = compiler("cc", "c11");
+        let out = command
+            .args(["-fsyntax-only", "-x", "c"])
+            .arg(file)
+            .output();
+        out.unwrap().status.success()
+    };
+    assert!(compiles(&header));
+    for (from, to) in [
+        ("    double fov_y;", "    float fov_y;"),
+        ("REVMAP_SOLVER_EXACT = 9", "REVMAP_SOLVER_EXACT = 10"),
+        (
+            "    double direction[3];\n} RevmapRay;",
+            "    double direction[3];\n    double far;\n} RevmapRay;",
+        ),
+        ("uint32_t revmap_abi(void)", "uint64_t revmap_abi(void)"),
+    ] {
+        assert!(header.contains(from), "{from}");
+        assert!(!compiles(&header.replace(from, to)), "{to}");
+    }
+}
+
 /// A program that was compiled with the header of an earlier release does what it does with the
 /// present one.
 #[test]
-fn programs_with_kept_headers_do_the_same() {
+fn programs_of_earlier_releases_do_the_same() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/c");
     let folder = folder();
     let said = |name: &str, flags: &[&str]| {
@@ -154,17 +245,22 @@ fn programs_with_kept_headers_do_the_same() {
         run(&mut validated(&program))
     };
     let present = said("present", &[]);
-    let headers = std::fs::read_dir(own.join("headers")).unwrap();
-    let headers: Vec<PathBuf> = headers.map(|entry| entry.unwrap().path()).collect();
-    assert!(!headers.is_empty());
-    for header in headers {
-        let include = folder.path().join(header.file_stem().unwrap());
+    let releases = releases();
+    assert!(!releases.is_empty());
+    for (name, table) in releases {
+        let include = folder.path().join(format!("include-{name}"));
         std::fs::create_dir(&include).unwrap();
-        std::fs::copy(&header, include.join("revmap.h")).unwrap();
+        std::fs::write(
+            include.join("revmap.h"),
+            header_of(&table, &present_header()),
+        )
+        .unwrap();
         let flag = format!("-I{}", include.display());
-        let name = header.file_name().unwrap().to_str().unwrap();
-        let program = format!("program-{name}");
-        assert_eq!(said(&program, &[&flag]), present, "{name}");
+        assert_eq!(
+            said(&format!("program-{name}"), &[&flag]),
+            present,
+            "{name}"
+        );
     }
 }
 
