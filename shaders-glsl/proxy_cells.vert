@@ -18,7 +18,13 @@ void main()
     hand_over(i, frame.depth_sense);
     cell_record = at;
     if (FETCHED_CELLS == 0u) {
-        [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+        [[unroll]] for (uint k = 0u; k < FEW_PATCHES; ++k) {
+            cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
+            cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
+        }
+    }
+    if (FETCHED_CELLS == 0u && FEW_IN_CELLS == 0u) {
+        [[unroll]] for (uint k = FEW_PATCHES; k < PATCHES_PER_CELL; ++k) {
             cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
             cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
         }

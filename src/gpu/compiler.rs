@@ -170,6 +170,7 @@ impl PipelineCompiler {
                         },
                         outside: if may_cut { Outside::None } else { Outside::All },
                         depths,
+                        few: !depths,
                     },
                     ..general
                 });

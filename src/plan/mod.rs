@@ -22,9 +22,10 @@ pub use view::{DepthOrder, View, Viewport};
 pub(crate) use tiles::MOST_PIXELS;
 use tiles::Projector;
 
-use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
+use crate::shader::generated::{BOX_INDICES, FEW_PATCHES, RING_CORNERS};
 use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
 use crate::solid::offset_surface::Part;
+use crate::surface::Frustum;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -210,8 +211,10 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let mut add = |kind, outside, draws: Vec<IndexedDraw>| {
-                let variant = variants[n].seen_from_outside(outside).of_kind(kind);
+            let mut add = |kind, [outside, few]: [bool; 2], draws: Vec<IndexedDraw>| {
+                let mut variant = variants[n].seen_from_outside(outside);
+                variant.speciality.few = few;
+                let variant = variant.of_kind(kind);
                 let layer = layers.of(objects, n as u32, (variant, kind));
                 layers.all[layer].draws.extend(draws);
             };
@@ -222,19 +225,37 @@ impl FramePlan {
                     self.parts[n][Part::Tables as usize] = true;
                     let surface = of.surface().filter(|s| s.is_of_patches());
                     self.outside[n] = surface.is_some_and(|s| apart(s));
-                    add(Kind::Boxes, self.outside[n], vec![draw(BOX_INDICES, 0)]);
+                    add(
+                        Kind::Boxes,
+                        [self.outside[n], false],
+                        vec![draw(BOX_INDICES, 0)],
+                    );
                 }
                 Path::Cells([cut, whole]) => {
-                    let corners = |frusta: u32| 6 * RING_CORNERS * frusta;
-                    let of_run = |run: &Range<u32>| {
-                        let first = BOX_INDICES + corners(run.start);
-                        draw(corners(run.end - run.start), first)
+                    let corners = |frusta: usize| 6 * RING_CORNERS * frusta as u32;
+                    let frusta = of.surface().map(|s| s.hull().hull.frusta.as_slice());
+                    let is_few = |f: &Frustum| f.count <= FEW_PATCHES;
+                    // The draws of the parts of a run whose cells have few patches, or many.
+                    let of_run = |run: &Range<u32>, few: bool| {
+                        let mut begin = run.start as usize;
+                        let frusta = &frusta.unwrap_or_default()[begin..run.end as usize];
+                        let parts = frusta.chunk_by(|a, b| is_few(a) == is_few(b));
+                        let draws = parts.filter_map(|part| {
+                            let first = BOX_INDICES + corners(begin);
+                            begin += part.len();
+                            (is_few(&part[0]) == few).then(|| draw(corners(part.len()), first))
+                        });
+                        draws.collect::<Vec<_>>()
                     };
                     self.parts[n][Part::Frusta as usize] = true;
                     self.parts[n][Part::Tables as usize] = !cut.is_empty();
                     for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
-                        if !runs.is_empty() {
-                            add(kind, false, runs.iter().map(of_run).collect());
+                        for few in [true, false] {
+                            let draws: Vec<_> =
+                                runs.iter().flat_map(|run| of_run(run, few)).collect();
+                            if !draws.is_empty() {
+                                add(kind, [false, few], draws);
+                            }
                         }
                     }
                 }

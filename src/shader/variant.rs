@@ -147,11 +147,14 @@ pub struct Speciality {
     pub outside: Outside,
     /// Compute stage: false if each pixel is drawn once, so no depth is compared or kept.
     pub depths: bool,
+    /// Cells: true if none has more than [`FEW_PATCHES`](g::FEW_PATCHES) patches.
+    pub few: bool,
 }
 
 /// The names of the members of [`Speciality`], in order.
 #[cfg(feature = "other-shaders")]
-pub(crate) const SPECIALITIES: [&str; 4] = ["lights", "one-object", "outside", "depths"];
+pub(crate) const SPECIALITIES: [&str; 5] =
+    ["lights", "one-object", "outside", "depths", "few-patches"];
 
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
@@ -169,11 +172,12 @@ impl Speciality {
     }
 
     /// Copies each member from another value, in order.
-    const MEMBERS: [fn(&mut Self, Self); 4] = [
+    const MEMBERS: [fn(&mut Self, Self); 5] = [
         |to, from| to.lights = from.lights,
         |to, from| to.drawn = from.drawn,
         |to, from| to.outside = from.outside,
         |to, from| to.depths = from.depths,
+        |to, from| to.few = from.few,
     ];
 
     /// Promises nothing.
@@ -182,6 +186,7 @@ impl Speciality {
         drawn: Drawn::Objects,
         outside: Outside::Some,
         depths: true,
+        few: false,
     };
 }
 
@@ -234,6 +239,7 @@ impl Variant {
             speciality.outside = Outside::None;
         }
         speciality.depths |= !kind.draws_in_compute();
+        speciality.few &= cells;
         Self {
             technique: if lists { Technique::LISTS } else { technique },
             speciality,
@@ -291,7 +297,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 16] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 17] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
@@ -311,6 +317,7 @@ impl Variant {
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
             (g::OUTSIDE_ID, speciality.outside as u32),
             (g::ONE_OBJECT_ID, speciality.drawn as u32),
+            (g::FEW_IN_CELLS_ID, speciality.few.into()),
         ]
     }
 }

@@ -4,8 +4,12 @@
 use super::QuadricPatch;
 use glam::DVec2;
 
-/// Walls reach at least this far into the solid, object units.
-const ROOT: f64 = 1e-4;
+/// Slope `|dr/dz|` from which frusta reach past the ends of their patches.
+const FLAT: f64 = 4.0;
+
+/// Walls reach at least this far into the solid, object units: guards admit points up to 1.6e-4 past the
+/// ends of flat patches.
+const ROOT: f64 = 2e-4;
 
 /// Options for making shells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +18,8 @@ pub struct ProxyHullOptions {
     pub sides: u32,
     /// Most patches of a cell, all of which a fragment tests.
     pub patches_per_cell: u32,
+    /// Most patches of a cell that is drawn by a faster pipeline.
+    pub few: u32,
     /// Largest distance of the surface below a frustum before the frustum is divided, object units.
     pub gap: f64,
     /// Distance by which frusta are moved outwards beyond touching, object units: a rasteriser
@@ -28,6 +34,7 @@ impl Default for ProxyHullOptions {
         Self {
             sides: 12,
             patches_per_cell: 8,
+            few: 2,
             gap: 0.03,
             margin: 1e-4,
         }
@@ -190,9 +197,10 @@ impl FrustaBuilder<'_> {
             DVec2::new(q.x.max(0.0) * factor, q.y)
         };
         let [mut from, mut to] = [rim(a, b), rim(b, a)];
-        if patch.is_plane() {
-            // A plane extends its own rims over the part that the neighbours' margins leave out.
-            let way = (to - from).normalize_or_zero() * self.options.margin;
+        if (to.x - from.x).abs() > FLAT * (to.y - from.y).abs() {
+            // A plane extends its own rims over the part that the neighbours' margins leave out, and a
+            // flat patch over that which its guard admits past its ends.
+            let way = (to - from).normalize_or_zero() * self.options.margin.max(ROOT);
             (from, to) = (from - way, to + way);
             (from.x, to.x) = (from.x.max(0.0), to.x.max(0.0));
         }

@@ -45,6 +45,7 @@
 
 use super::QuadricPatch;
 use super::cavity_culling::CavityCulling;
+use super::cells;
 use super::frusta::FrustaBuilder;
 pub use super::frusta::ProxyHullOptions;
 use glam::DVec2;
@@ -90,30 +91,17 @@ impl ProxyHull {
             ..Self::default()
         };
         let widen = 1.0 / (std::f64::consts::PI / f64::from(sides)).cos();
-        let most = options.patches_per_cell.clamp(1, 255) as usize;
         let builder = FrustaBuilder {
             options,
             patches,
             widen,
         };
-        let mut cells = Vec::new();
-        let mut first = 0;
-        while first < patches.len() {
-            let chain = patches[first].chain;
-            let left = patches[first..]
-                .iter()
-                .take_while(|p| p.chain == chain)
-                .count();
-            // Cells of a chain are as even as possible: the largest sets the number of tests of
-            // each fragment.
-            let count = left.div_ceil(left.div_ceil(most));
-            let cell = &patches[first..first + count];
-            let points = builder.of(cell);
-            hull.push(&points, first, count);
+        let cells = cells::divide(patches, options);
+        for range in &cells {
+            let cell = &patches[range.clone()];
+            hull.push(&builder.of(cell), range.start, range.len());
             hull.reaches
                 .push(cell.iter().fold(0.0, |most, p| most.max(p.r[1])));
-            cells.push(first..first + count);
-            first += count;
         }
         hull.sight = CavityCulling::new(patches, &cells);
         hull

@@ -20,6 +20,7 @@
 //! prepared once, in the [`ContourSource`].
 
 mod cavity_culling;
+mod cells;
 mod chain;
 mod contour;
 mod cylinders;

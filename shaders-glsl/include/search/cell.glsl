@@ -23,19 +23,25 @@ bool trace_cell(vec2 pixel, out Hit hit)
         row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
     }
     bool entered = false;
+    const uint TESTS = FEW_IN_CELLS != 0u ? FEW_PATCHES : PATCHES_PER_CELL;
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
-    for (uint k = 0u; k < FETCHED_CELLS * PATCHES_PER_CELL; ++k) {
+    for (uint k = 0u; k < FETCHED_CELLS * TESTS; ++k) {
         uint at = cell_record + 2u * k;
         vec4 quadric = uintBitsToFloat(patch_tables[at + 1u]);
         vec4 guard = uintBitsToFloat(patch_tables[at + 2u]);
         entered = take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric) || entered;
     }
     if (FETCHED_CELLS == 0u) {
-        [[unroll]] for (uint k = 0u; k < PATCHES_PER_CELL; ++k) {
+        [[unroll]] for (uint k = 0u; k < FEW_PATCHES; ++k) {
             entered = take_nearer(row.m, cell_quadric[k], cell_guard[k], row.least, row.best, row.quadric) || entered;
         }
     }
-    bool found = end_row(row, PATCHES_PER_CELL, hit);
+    if (FETCHED_CELLS == 0u && FEW_IN_CELLS == 0u) {
+        [[unroll]] for (uint k = FEW_PATCHES; k < PATCHES_PER_CELL; ++k) {
+            entered = take_nearer(row.m, cell_quadric[k], cell_guard[k], row.least, row.best, row.quadric) || entered;
+        }
+    }
+    bool found = end_row(row, TESTS, hit);
     // A ray that enters the solid before a side may be in the solid there, or leave it into the shell of a cell that it
     // then enters from behind. The fragment of the cell where it entered searches all of the box.
     if (CUT_CELLS != 0u && by_side && entered) {
