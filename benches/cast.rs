@@ -8,6 +8,10 @@ use revmap::cast::RayCaster;
 use revmap::scene::{Object, Placement};
 use revmap_files::ProfileAxis;
 
+#[path = "../tests/common/random.rs"]
+mod random;
+use random::Random;
+
 const RAYS: usize = 1000;
 
 fn main() {
@@ -31,13 +35,8 @@ fn object(copies: u32) -> Object {
 fn rays(caster: &RayCaster) -> Vec<(DVec3, DVec3)> {
     let [low, high] = caster.bounds().unwrap();
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let mut state = 1u64;
-    let mut number = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 40) as f64 / f64::from(1 << 23) - 1.0
-    };
+    let mut random = Random(1);
+    let mut number = || 2.0 * random.next() - 1.0;
     let mut point = |scale: f64| {
         let p = DVec3::new(number(), number(), number());
         middle + p * half * scale

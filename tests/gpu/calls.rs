@@ -221,19 +221,7 @@ impl Layer {
         mask: Mask,
     ) -> ash::Instance {
         *MASK.lock().unwrap() = mask;
-        planted_instance(entry, instance, |name, real| {
-            let n = QUERIES.iter().position(|known| *known == name)?;
-            REAL_QUERIES[n].store(real, Ordering::SeqCst);
-            let queries = [
-                properties as *const c_void,
-                properties2 as *const c_void,
-                features as *const c_void,
-                families as *const c_void,
-                formats as *const c_void,
-                image_formats as *const c_void,
-            ];
-            Some(queries[n])
-        })
+        planted_instance(entry, instance, queries)
     }
 }
 
@@ -377,43 +365,51 @@ pub fn least_limits() -> vk::PhysicalDeviceLimits {
 
 static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
 
-const QUERIES: [&CStr; 6] = [
-    c"vkGetPhysicalDeviceProperties",
-    c"vkGetPhysicalDeviceProperties2",
-    c"vkGetPhysicalDeviceFeatures",
-    c"vkGetPhysicalDeviceQueueFamilyProperties",
-    c"vkGetPhysicalDeviceFormatProperties",
-    c"vkGetPhysicalDeviceImageFormatProperties",
-];
-static REAL_QUERIES: [AtomicUsize; QUERIES.len()] = [const { AtomicUsize::new(0) }; QUERIES.len()];
-
-/// # Safety
-/// The function that is kept has the type `F`.
-pub unsafe fn real<F: Copy>(kept: &AtomicUsize) -> F {
-    let pointer = kept.load(Ordering::SeqCst);
-    // SAFETY: a pointer to a function.
-    unsafe { std::mem::transmute_copy(&pointer) }
-}
-
-/// Functions in place of the queries, by their numbers: the mask changes what the driver says.
-macro_rules! queries {
-    ($($n:literal $name:ident: $driver:ident($($arg:ident: $of:ty),*) $(-> $result:ty)?, |$mask:ident| $change:block)*) => {
-        $(unsafe extern "system" fn $name($($arg: $of),*) $(-> $result)? {
-            let $mask = *MASK.lock().unwrap();
-            // SAFETY: the driver's own function, and the caller's pointers.
-            unsafe {
-                let said = real::<vk::$driver>(&REAL_QUERIES[$n])($($arg),*);
-                $change
-                said
+/// Functions above the driver's own. Each body has the driver's function; `$plant` puts all above
+/// those of their names.
+macro_rules! above {
+    ($plant:ident; $($called:literal $name:ident: $driver:ident($($arg:ident: $of:ty),* $(,)?) $(-> $result:ty)?, |$real:ident| $body:block)*) => {
+        $(
+            mod $name {
+                pub static REAL: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
             }
-        })*
+
+            unsafe extern "system" fn $name($($arg: $of),*) $(-> $result)? {
+                let kept = $name::REAL.load(std::sync::atomic::Ordering::SeqCst);
+                // SAFETY: the driver's own function, and the caller's pointers.
+                unsafe {
+                    let $real = std::mem::transmute::<usize, vk::$driver>(kept);
+                    $body
+                }
+            }
+        )*
+
+        /// The function above `real`, if there is one of this name.
+        fn $plant(name: &std::ffi::CStr, real: usize) -> Option<*const std::ffi::c_void> {
+            match name.to_str() {
+                $(Ok($called) => {
+                    $name::REAL.store(real, std::sync::atomic::Ordering::SeqCst);
+                    Some($name as *const std::ffi::c_void)
+                })*
+                _ => None,
+            }
+        }
     };
 }
+#[allow(unused_imports)] // each crate of tests takes what it needs
+pub(crate) use above;
 
-queries! {
-    0 properties: PFN_vkGetPhysicalDeviceProperties(
+/// The mask in force.
+fn mask() -> Mask {
+    *MASK.lock().unwrap()
+}
+
+above! { queries;
+    "vkGetPhysicalDeviceProperties" properties: PFN_vkGetPhysicalDeviceProperties(
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties
-    ), |mask| {
+    ), |real| {
+        real(physical, out);
+        let mask = mask();
         let limits = &mut (*out).limits;
         if mask.version {
             (*out).api_version = vk::API_VERSION_1_1;
@@ -433,9 +429,11 @@ queries! {
             limits.max_storage_buffer_range = mask.storage;
         }
     }
-    1 properties2: PFN_vkGetPhysicalDeviceProperties2(
+    "vkGetPhysicalDeviceProperties2" properties2: PFN_vkGetPhysicalDeviceProperties2(
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties2<'_>
-    ), |mask| {
+    ), |real| {
+        real(physical, out);
+        let mask = mask();
         let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'_>>();
         while let Some(one) = next.as_mut() {
             if mask.subgroup > 0 && one.s_type == vk::StructureType::PHYSICAL_DEVICE_SUBGROUP_PROPERTIES {
@@ -445,9 +443,11 @@ queries! {
             next = one.p_next;
         }
     }
-    2 features: PFN_vkGetPhysicalDeviceFeatures(
+    "vkGetPhysicalDeviceFeatures" features: PFN_vkGetPhysicalDeviceFeatures(
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures
-    ), |mask| {
+    ), |real| {
+        real(physical, out);
+        let mask = mask();
         if mask.stores {
             (*out).fragment_stores_and_atomics = vk::FALSE;
         }
@@ -455,9 +455,11 @@ queries! {
             (*out).sampler_anisotropy = vk::FALSE;
         }
     }
-    3 families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
+    "vkGetPhysicalDeviceQueueFamilyProperties" families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
         physical: vk::PhysicalDevice, count: *mut u32, out: *mut vk::QueueFamilyProperties
-    ), |mask| {
+    ), |real| {
+        real(physical, count, out);
+        let mask = mask();
         // `out` has room for `count`, or is null.
         let room = if out.is_null() { 0 } else { *count as usize };
         for n in 0..room {
@@ -469,19 +471,24 @@ queries! {
             }
         }
     }
-    4 formats: PFN_vkGetPhysicalDeviceFormatProperties(
+    "vkGetPhysicalDeviceFormatProperties" formats: PFN_vkGetPhysicalDeviceFormatProperties(
         physical: vk::PhysicalDevice, format: vk::Format, out: *mut vk::FormatProperties
-    ), |mask| {
+    ), |real| {
+        real(physical, format, out);
+        let mask = mask();
         if mask.format == Some(format) {
             *out = vk::FormatProperties::default();
         }
     }
-    5 image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
+    "vkGetPhysicalDeviceImageFormatProperties" image_formats: PFN_vkGetPhysicalDeviceImageFormatProperties(
         physical: vk::PhysicalDevice, format: vk::Format, kind: vk::ImageType, tiling: vk::ImageTiling,
         usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags, out: *mut vk::ImageFormatProperties
-    ) -> vk::Result, |mask| {
+    ) -> vk::Result, |real| {
+        let said = real(physical, format, kind, tiling, usage, flags, out);
+        let mask = mask();
         if mask.samples {
             (*out).sample_counts = vk::SampleCountFlags::TYPE_1;
         }
+        said
     }
 }

@@ -1,7 +1,7 @@
 //! The commands of a frame are counted between the renderer and Vulkan. Their number follows the
 //! pipelines and texture sets, whatever the number of objects and copies.
 
-use crate::calls::planted_device;
+use crate::calls::{above, planted_device};
 use crate::common::host::{HostBuffer, assert_silent, barrier, borrow_through, once, open};
 use crate::common::{placement, scene_of, shapes};
 use ash::vk;
@@ -11,82 +11,60 @@ use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Planes, Settings, Tolerance};
 use revmap_offscreen::Offscreen;
 use std::ffi::c_void;
-use std::sync::Arc;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::SeqCst};
+use std::sync::{Arc, Mutex};
 
-/// Wraps commands: each wrapper counts its calls and passes them on.
+/// Counts calls of commands and passes them on.
 macro_rules! counted {
-    ($($command:ident($pointer:ty, $name:literal, $($parameter:ident: $of:ty),*);)*) => {
+    ($($command:ident($driver:ident, $name:literal, $($parameter:ident: $of:ty),*);)*) => {
         /// Calls of each command in one frame.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         struct Counts {
             $($command: u32,)*
         }
 
-        mod calls {
-            use super::*;
-            $(pub mod $command {
-                use super::*;
-                pub static REAL: AtomicUsize = AtomicUsize::new(0);
-                pub static COUNT: AtomicU32 = AtomicU32::new(0);
-
-                pub unsafe extern "system" fn call($($parameter: $of),*) {
-                    COUNT.fetch_add(1, SeqCst);
-                    // SAFETY: the driver's function of this name, with the caller's arguments.
-                    unsafe {
-                        let real: $pointer = std::mem::transmute(REAL.load(SeqCst));
-                        real($($parameter),*);
-                    }
-                }
-            })*
-        }
+        static COUNTS: Mutex<Option<Counts>> = Mutex::new(None);
 
         /// The counts since the last call.
         fn taken() -> Counts {
-            Counts { $($command: calls::$command::COUNT.swap(0, SeqCst),)* }
+            COUNTS.lock().unwrap().take().unwrap_or_default()
         }
 
-        /// The device with this layer above it.
-        fn layer(instance: &ash::Instance, device: &ash::Device) -> ash::Device {
-            planted_device(instance, device, |name, real| match name.to_str() {
-                $(Ok($name) => {
-                    calls::$command::REAL.store(real, SeqCst);
-                    Some(calls::$command::call as *const c_void)
-                })*
-                _ => None,
-            })
+        above! { layer;
+            $($name $command: $driver($($parameter: $of),*), |real| {
+                COUNTS.lock().unwrap().get_or_insert_default().$command += 1;
+                real($($parameter),*);
+            })*
         }
     };
 }
 
 counted! {
-    barriers(vk::PFN_vkCmdPipelineBarrier, "vkCmdPipelineBarrier",
+    barriers(PFN_vkCmdPipelineBarrier, "vkCmdPipelineBarrier",
         cmd: vk::CommandBuffer, from: vk::PipelineStageFlags, to: vk::PipelineStageFlags,
         flags: vk::DependencyFlags, count: u32, memory: *const vk::MemoryBarrier,
         buffers: u32, of_buffers: *const vk::BufferMemoryBarrier,
         images: u32, of_images: *const vk::ImageMemoryBarrier);
-    updates(vk::PFN_vkCmdUpdateBuffer, "vkCmdUpdateBuffer",
+    updates(PFN_vkCmdUpdateBuffer, "vkCmdUpdateBuffer",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, size: u64, data: *const c_void);
-    fills(vk::PFN_vkCmdFillBuffer, "vkCmdFillBuffer",
+    fills(PFN_vkCmdFillBuffer, "vkCmdFillBuffer",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, size: u64, value: u32);
-    copies(vk::PFN_vkCmdCopyBuffer, "vkCmdCopyBuffer",
+    copies(PFN_vkCmdCopyBuffer, "vkCmdCopyBuffer",
         cmd: vk::CommandBuffer, from: vk::Buffer, to: vk::Buffer, count: u32,
         regions: *const vk::BufferCopy);
-    pipelines(vk::PFN_vkCmdBindPipeline, "vkCmdBindPipeline",
+    pipelines(PFN_vkCmdBindPipeline, "vkCmdBindPipeline",
         cmd: vk::CommandBuffer, point: vk::PipelineBindPoint, pipeline: vk::Pipeline);
-    draws(vk::PFN_vkCmdDraw, "vkCmdDraw",
+    draws(PFN_vkCmdDraw, "vkCmdDraw",
         cmd: vk::CommandBuffer, vertices: u32, instances: u32, first: u32, first_instance: u32);
-    indexed(vk::PFN_vkCmdDrawIndexed, "vkCmdDrawIndexed",
+    indexed(PFN_vkCmdDrawIndexed, "vkCmdDrawIndexed",
         cmd: vk::CommandBuffer, indices: u32, instances: u32, first: u32, offset: i32,
         first_instance: u32);
-    indirect(vk::PFN_vkCmdDrawIndexedIndirect, "vkCmdDrawIndexedIndirect",
+    indirect(PFN_vkCmdDrawIndexedIndirect, "vkCmdDrawIndexedIndirect",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, count: u32, stride: u32);
-    dispatches(vk::PFN_vkCmdDispatch, "vkCmdDispatch",
+    dispatches(PFN_vkCmdDispatch, "vkCmdDispatch",
         cmd: vk::CommandBuffer, x: u32, y: u32, z: u32);
-    indirect_draws(vk::PFN_vkCmdDrawIndirect, "vkCmdDrawIndirect",
+    indirect_draws(PFN_vkCmdDrawIndirect, "vkCmdDrawIndirect",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64, count: u32, stride: u32);
-    indirect_dispatches(vk::PFN_vkCmdDispatchIndirect, "vkCmdDispatchIndirect",
+    indirect_dispatches(PFN_vkCmdDispatchIndirect, "vkCmdDispatchIndirect",
         cmd: vk::CommandBuffer, buffer: vk::Buffer, at: u64);
 }
 
@@ -163,7 +141,7 @@ fn commands_follow_pipelines() {
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner);
     let host = open();
-    let raw = layer(&host.instance, &host.device);
+    let raw = planted_device(&host.instance, &host.device, layer);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let all = |c: &Counts| {
         let draws = c.draws + c.indexed + c.indirect + c.indirect_draws;
@@ -205,7 +183,7 @@ fn an_update_is_noticed() {
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner);
     let host = open();
-    let raw = layer(&host.instance, &host.device);
+    let raw = planted_device(&host.instance, &host.device, layer);
     let words = HostBuffer::of(&host, &[0u32; 4], vk::BufferUsageFlags::TRANSFER_DST).unwrap();
     taken();
     once(&host, |cmd| {

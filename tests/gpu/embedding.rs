@@ -6,7 +6,7 @@ use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open,
 use crate::common::{eye, next_frame, scene_of, shapes, sized};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use revmap::gpu::{Device, Renderer, View};
-use revmap::scene::{Camera, CameraFrame, Lighting, Object, Placement, Scene};
+use revmap::scene::{Camera, CameraFrame, Clip, Lighting, Object, Placement, Scene, Shadow};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
 use revmap_offscreen::Offscreen;
@@ -50,6 +50,44 @@ pub fn hundred() -> Scene {
     };
     scene.objects[1].instances = (0..100).map(place).collect();
     scene
+}
+
+/// Scenes that every draw path takes some of: cells, tiles of copies, boxes of replicas, what the
+/// box cuts, shadows, an eye within.
+pub fn every_way() -> Vec<(&'static str, Scene)> {
+    let with = |change: fn(&mut Scene)| {
+        let mut scene = three();
+        change(&mut scene);
+        scene
+    };
+    vec![
+        ("three", three()),
+        ("copies", hundred()),
+        ("replicas", with(|s| s.objects[0].repeat = [2, 3, 1])),
+        (
+            "cut by the box",
+            with(|s| {
+                s.objects[0].clip = Clip::Box;
+                s.objects[0].axis = [0.45, 0.5];
+                s.objects[0].offset.extend = 0.3;
+            }),
+        ),
+        ("shadows", with(|s| s.shadow = Shadow::Hard)),
+        (
+            "one",
+            with(|s| {
+                s.objects.truncate(1);
+                s.objects[0].profile = shapes::glass().into();
+            }),
+        ),
+        (
+            "an eye within",
+            with(|s| {
+                s.camera.eye = DVec3::new(0.02, 0.01, 0.5);
+                s.camera.target = DVec3::new(-0.3, 0.4, 0.45);
+            }),
+        ),
+    ]
 }
 
 /// The host's picture of this scene only, from the off-screen camera.

@@ -2,15 +2,14 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{self, Attachments, Host, Options, borrow, open, order, viewport};
-use crate::common::shapes;
-use crate::embedding::{hundred, options, three};
+use crate::embedding::{every_way, options};
 use crate::embedding_outputs::{by_proxies_of, depth_only};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 use revmap::cast::RayCaster;
 use revmap::gpu::{Device, DrawPath, Output, PassFormats, View};
-use revmap::scene::{Clip, Scene, Shadow};
+use revmap::scene::Scene;
 use revmap::settings::{Planes, SearchSettings, Solver};
 use std::collections::HashSet;
 
@@ -109,29 +108,14 @@ fn depths(
 fn the_near_plane_cuts_solids() {
     let host = open();
     let device = borrow(&host);
-    let mut replicas = three();
-    replicas.objects[0].repeat = [2, 3, 1];
-    let mut cut = three();
-    cut.objects[0].clip = Clip::Box;
-    cut.objects[0].axis = [0.45, 0.5];
-    cut.objects[0].offset.extend = 0.3;
-    let mut shadows = three();
-    shadows.shadow = Shadow::Hard;
-    let mut within = three();
-    within.camera.eye = DVec3::new(0.02, 0.01, 0.5);
-    within.camera.target = DVec3::new(-0.3, 0.4, 0.45);
-    let mut alone = three();
-    alone.objects.truncate(1);
-    alone.objects[0].profile = shapes::glass().into();
-    let scenes = [
-        ("three", three(), vec![1.5, 2.95, 6.0]),
-        ("one", alone, vec![3.05]),
-        ("copies", hundred(), vec![2.6, 3.5]),
-        ("replicas", replicas, vec![2.9]),
-        ("cut by the box", cut, vec![3.1]),
-        ("shadows", shadows, vec![2.9]),
-        ("an eye within", within, vec![0.01, 0.3]),
-    ];
+    let planes_of = |name: &str| match name {
+        "three" => vec![1.5, 2.95, 6.0],
+        "one" => vec![3.05],
+        "copies" => vec![2.6, 3.5],
+        "cut by the box" => vec![3.1],
+        "an eye within" => vec![0.01, 0.3],
+        _ => vec![2.9],
+    };
     let of = |solver| SearchSettings {
         solver,
         ..SearchSettings::exact()
@@ -143,9 +127,9 @@ fn the_near_plane_cuts_solids() {
         of(Solver::Live),
     ];
     let mut paths = HashSet::new();
-    for (name, scene, all) in &scenes {
-        for (near, reversed, parallel) in all.iter().flat_map(|near| {
-            [(false, false), (true, false), (false, true)].map(|(r, p)| (*near, r, p))
+    for (name, scene) in &every_way() {
+        for (near, reversed, parallel) in planes_of(name).into_iter().flat_map(|near| {
+            [(false, false), (true, false), (false, true)].map(|(r, p)| (near, r, p))
         }) {
             let options = Options {
                 reversed,

@@ -4,12 +4,12 @@
 
 use crate::common::host::{self, Attachments, Host, Options, borrow, dynamic, open, viewport};
 use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
-use crate::embedding::{BACKGROUND, drawn_by, hundred, options, three, upright};
+use crate::embedding::{BACKGROUND, drawn_by, every_way, options, three, upright};
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{
     ComputeTarget, DepthOrder, Device, DrawPath, Output, PassFormats, Renderer, View,
 };
-use revmap::scene::{Clip, Scene, Shadow};
+use revmap::scene::{Clip, Scene};
 use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
 use revmap_offscreen::Offscreen;
@@ -102,21 +102,8 @@ fn depth_along_parallel_rays_is_analytic() {
 fn depth_alone_has_equal_bits_by_every_path() {
     let host = open();
     let device = borrow(&host);
-    let mut scenes = vec![("cells", three())];
-    let mut shadows = three();
-    shadows.shadow = Shadow::Hard;
-    scenes.push(("boxes under shadows", shadows));
-    scenes.push(("tiles of copies", hundred()));
-    let mut replicas = three();
-    replicas.objects[0].repeat = [2, 3, 1];
-    scenes.push(("replicas", replicas));
-    let mut cut = three();
-    cut.objects[0].clip = Clip::Box;
-    cut.objects[0].axis = [0.45, 0.5];
-    cut.objects[0].offset.extend = 0.3;
-    scenes.push(("cut by the box", cut));
     let mut paths = HashSet::new();
-    for (name, scene) in &scenes {
+    for (name, scene) in &every_way() {
         let (eye, target) = (scene.camera.eye, scene.camera.target);
         let [view, projection] = host::view_and_projection(eye, target, &options());
         let light = seen(view, projection);
@@ -128,7 +115,7 @@ fn depth_alone_has_equal_bits_by_every_path() {
             let hits = pairs().filter(|(d, _)| **d < 1.0).count();
             let apart = pairs().filter(|(a, b)| a.to_bits() != b.to_bits()).count();
             println!("{name}, {least}: {apart} of {hits} by {own:?}");
-            assert!(hits > 3000 && apart == 0, "{name}: {apart} of {hits}");
+            assert!(hits > 2000 && apart == 0, "{name}: {apart} of {hits}");
             paths.extend(own);
         }
     }

@@ -2,7 +2,7 @@
 //! have only one. Non-coherent memory is never mapped, so nothing needs a flush.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, planted_device, planted_instance, real};
+use crate::calls::{Layer, above, planted_device, planted_instance};
 use crate::common::host::{Host, borrow_through, open};
 use crate::common::{eye, scene_of, shapes};
 use ash::vk;
@@ -32,62 +32,51 @@ static ALLOCATED: [AtomicU64; TYPES.len()] = [const { AtomicU64::new(0) }; TYPES
 /// The driver's types behind the simulated ones: one that is device-local, for images too, and one
 /// that the host sees.
 static TRUE_TYPES: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
-static REAL: [AtomicUsize; 3] = [const { AtomicUsize::new(0) }; 3];
 
-unsafe extern "system" fn types(
-    _: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceMemoryProperties,
-) {
-    let mut all = vk::PhysicalDeviceMemoryProperties {
-        memory_type_count: TYPES.len() as u32,
-        memory_heap_count: 2,
-        ..Default::default()
-    };
-    for (to, flags) in all.memory_types.iter_mut().zip(TYPES) {
-        to.property_flags = flags;
-        to.heap_index = u32::from(!flags.contains(Flags::DEVICE_LOCAL));
-    }
-    all.memory_heaps[0].flags = vk::MemoryHeapFlags::DEVICE_LOCAL;
-    all.memory_heaps[..2]
-        .iter_mut()
-        .for_each(|heap| heap.size = 1 << 30);
-    // SAFETY: the caller's pointer.
-    unsafe { *out = all };
-}
+/// Memory of any type.
+const ANY: u32 = (1 << TYPES.len()) - 1;
 
-/// What a buffer or an image needs: memory of any type.
-macro_rules! requirements {
-    ($name:ident, $n:literal, $driver:ident, $of:ty) => {
-        unsafe extern "system" fn $name(
-            device: vk::Device,
-            of: $of,
-            out: *mut vk::MemoryRequirements,
-        ) {
-            // SAFETY: the driver's own function, and the caller's pointer.
-            unsafe {
-                real::<vk::$driver>(&REAL[$n])(device, of, out);
-                (*out).memory_type_bits = (1 << TYPES.len()) - 1;
-            }
+above! { types;
+    "vkGetPhysicalDeviceMemoryProperties" properties: PFN_vkGetPhysicalDeviceMemoryProperties(
+        _physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceMemoryProperties
+    ), |_real| {
+        let mut all = vk::PhysicalDeviceMemoryProperties {
+            memory_type_count: TYPES.len() as u32,
+            memory_heap_count: 2,
+            ..Default::default()
+        };
+        for (to, flags) in all.memory_types.iter_mut().zip(TYPES) {
+            to.property_flags = flags;
+            to.heap_index = u32::from(!flags.contains(Flags::DEVICE_LOCAL));
         }
-    };
+        all.memory_heaps[0].flags = vk::MemoryHeapFlags::DEVICE_LOCAL;
+        all.memory_heaps[..2].iter_mut().for_each(|heap| heap.size = 1 << 30);
+        *out = all;
+    }
 }
 
-requirements!(of_buffer, 0, PFN_vkGetBufferMemoryRequirements, vk::Buffer);
-requirements!(of_image, 1, PFN_vkGetImageMemoryRequirements, vk::Image);
-
-unsafe extern "system" fn allocate(
-    device: vk::Device,
-    info: *const vk::MemoryAllocateInfo<'_>,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-    out: *mut vk::DeviceMemory,
-) -> vk::Result {
-    // SAFETY: as above.
-    unsafe {
+above! { memory;
+    "vkGetBufferMemoryRequirements" of_buffer: PFN_vkGetBufferMemoryRequirements(
+        device: vk::Device, buffer: vk::Buffer, out: *mut vk::MemoryRequirements
+    ), |real| {
+        real(device, buffer, out);
+        (*out).memory_type_bits = ANY;
+    }
+    "vkGetImageMemoryRequirements" of_image: PFN_vkGetImageMemoryRequirements(
+        device: vk::Device, image: vk::Image, out: *mut vk::MemoryRequirements
+    ), |real| {
+        real(device, image, out);
+        (*out).memory_type_bits = ANY;
+    }
+    "vkAllocateMemory" allocate: PFN_vkAllocateMemory(
+        device: vk::Device, info: *const vk::MemoryAllocateInfo<'_>,
+        callbacks: *const vk::AllocationCallbacks<'_>, out: *mut vk::DeviceMemory
+    ) -> vk::Result, |real| {
         let mut info = *info;
         ALLOCATED[info.memory_type_index as usize].fetch_add(info.allocation_size, SeqCst);
         let seen = TYPES[info.memory_type_index as usize].contains(Flags::HOST_VISIBLE);
         info.memory_type_index = TRUE_TYPES[usize::from(seen)].load(SeqCst) as u32;
-        real::<vk::PFN_vkAllocateMemory>(&REAL[2])(device, &raw const info, callbacks, out)
+        real(device, &raw const info, callbacks, out)
     }
 }
 
@@ -105,18 +94,10 @@ pub fn simulated(
         let found = all.position(|t| t.property_flags.contains(flags));
         to.store(found.unwrap(), SeqCst);
     }
-    let instance = planted_instance(&host.entry, &host.instance, |name, _| {
-        (name == c"vkGetPhysicalDeviceMemoryProperties").then_some(types as *const c_void)
-    });
+    let instance = planted_instance(&host.entry, &host.instance, types);
     let raw = planted_device(&host.instance, &host.device, |name, real| {
-        let (n, planted) = match name.to_bytes() {
-            b"vkGetBufferMemoryRequirements" => (0, of_buffer as *const c_void),
-            b"vkGetImageMemoryRequirements" => (1, of_image as *const c_void),
-            b"vkAllocateMemory" => (2, allocate as *const c_void),
-            _ => return above(name, real),
-        };
-        REAL[n].store(real, SeqCst);
-        Some(above(name, planted as usize).unwrap_or(planted))
+        let planted = memory(name, real);
+        above(name, planted.map_or(real, |own| own as usize)).or(planted)
     });
     (instance, raw)
 }

@@ -2,7 +2,7 @@
 //! filter weights of 8 bits. The shaders are edited on their way to the driver.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, planted_device, real};
+use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open_with};
 use crate::common::passing::count;
 use crate::common::ways::apart;
@@ -14,31 +14,25 @@ use revmap::maps::MapFormat;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
 use revmap_searches::CIRCLE;
-use std::ffi::c_void;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
 static HOW: Mutex<Option<Arithmetic>> = Mutex::new(None);
 static EDITS: AtomicUsize = AtomicUsize::new(0);
-static REAL: AtomicUsize = AtomicUsize::new(0);
 
-unsafe extern "system" fn create(
-    device: vk::Device,
-    info: *const vk::ShaderModuleCreateInfo<'_>,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-    out: *mut vk::ShaderModule,
-) -> vk::Result {
-    // SAFETY: the driver's own function, and the caller's pointers.
-    unsafe {
-        let create = real::<vk::PFN_vkCreateShaderModule>(&REAL);
+above! { edits;
+    "vkCreateShaderModule" create: PFN_vkCreateShaderModule(
+        device: vk::Device, info: *const vk::ShaderModuleCreateInfo<'_>,
+        callbacks: *const vk::AllocationCallbacks<'_>, out: *mut vk::ShaderModule
+    ) -> vk::Result, |real| {
         let Some(how) = *HOW.lock().unwrap() else {
-            return create(device, info, callbacks, out);
+            return real(device, info, callbacks, out);
         };
         let words = std::slice::from_raw_parts((*info).p_code, (*info).code_size / 4);
         let (words, edits) = edited(words, how);
         EDITS.fetch_add(edits, SeqCst);
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        create(device, &raw const info, callbacks, out)
+        real(device, &raw const info, callbacks, out)
     }
 }
 
@@ -54,12 +48,7 @@ fn drawn(scene: &Scene, settings: &Settings, how: Option<Arithmetic>) -> Edited 
         shader_float64: vk::TRUE,
         ..features
     });
-    let raw = planted_device(&host.instance, &host.device, |name, real| {
-        (name == c"vkCreateShaderModule").then(|| {
-            REAL.store(real, SeqCst);
-            create as *const c_void
-        })
-    });
+    let raw = planted_device(&host.instance, &host.device, edits);
     *HOW.lock().unwrap() = how;
     EDITS.store(0, SeqCst);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::common::ways::STAGES;
 use crate::common::{device, drawn_by, next_frame, placement, scene_of, shapes};
+use crate::random::Random;
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::scene::Scene;
@@ -22,13 +23,8 @@ fn field(count: u32) -> Scene {
     scene.background = [0.0; 4];
     let half = distance * (0.5 * scene.camera.fov_y.to_radians()).tan();
     let pixel = 2.0 * half / f64::from(SIZE.1);
-    let mut state = 11u64;
-    let mut random = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 40) as f64 / f64::from(1u32 << 24) - 0.5
-    };
+    let mut numbers = Random(11);
+    let mut random = move || numbers.next() - 0.5;
     let (width, height) = (f64::from(SIZE.0) - 4.0, f64::from(SIZE.1) - 4.0);
     let mut place = |_| {
         let at = [0.0, width * pixel * random(), height * pixel * random()];

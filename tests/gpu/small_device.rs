@@ -1,7 +1,7 @@
 //! A simulated device of 4 GiB: what does not fit is refused by kind, and everything else goes on.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, planted_device, real};
+use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open};
 use crate::common::{next_frame, sized};
 use crate::embedding::three;
@@ -13,7 +13,6 @@ use revmap::scene::Placement;
 use revmap::settings::{DrawStage, Planes, Settings};
 use revmap_offscreen::{Offscreen, OffscreenOptions};
 use std::collections::HashMap;
-use std::ffi::c_void;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
@@ -24,58 +23,42 @@ const BYTES: u64 = 4 << 30;
 static LIVE: Mutex<Option<HashMap<vk::DeviceMemory, u64>>> = Mutex::new(None);
 /// Allocations that did not fit.
 static REFUSED: AtomicUsize = AtomicUsize::new(0);
-static REAL: [AtomicUsize; 2] = [const { AtomicUsize::new(0) }; 2];
 
 fn live() -> u64 {
     let live = LIVE.lock().unwrap();
     live.iter().flat_map(|all| all.values()).sum()
 }
 
-unsafe extern "system" fn allocate(
-    device: vk::Device,
-    info: *const vk::MemoryAllocateInfo<'_>,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-    out: *mut vk::DeviceMemory,
-) -> vk::Result {
-    // SAFETY: the caller's pointers, and the driver's own function.
-    unsafe {
+above! { memory;
+    "vkAllocateMemory" allocate: PFN_vkAllocateMemory(
+        device: vk::Device, info: *const vk::MemoryAllocateInfo<'_>,
+        callbacks: *const vk::AllocationCallbacks<'_>, out: *mut vk::DeviceMemory
+    ) -> vk::Result, |real| {
         let bytes = (*info).allocation_size;
         if live() + bytes > BYTES {
             REFUSED.fetch_add(1, SeqCst);
             return vk::Result::ERROR_OUT_OF_DEVICE_MEMORY;
         }
-        let code = real::<vk::PFN_vkAllocateMemory>(&REAL[0])(device, info, callbacks, out);
+        let code = real(device, info, callbacks, out);
         if code == vk::Result::SUCCESS {
             let mut live = LIVE.lock().unwrap();
             live.get_or_insert_default().insert(*out, bytes);
         }
         code
     }
-}
-
-unsafe extern "system" fn free(
-    device: vk::Device,
-    memory: vk::DeviceMemory,
-    callbacks: *const vk::AllocationCallbacks<'_>,
-) {
-    LIVE.lock().unwrap().get_or_insert_default().remove(&memory);
-    // SAFETY: the driver's own function.
-    unsafe { real::<vk::PFN_vkFreeMemory>(&REAL[1])(device, memory, callbacks) };
+    "vkFreeMemory" free: PFN_vkFreeMemory(
+        device: vk::Device, memory: vk::DeviceMemory, callbacks: *const vk::AllocationCallbacks<'_>
+    ), |real| {
+        LIVE.lock().unwrap().get_or_insert_default().remove(&memory);
+        real(device, memory, callbacks);
+    }
 }
 
 #[test]
 fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     let _alone = Layer::take();
     let host = open();
-    let raw = planted_device(&host.instance, &host.device, |name, real| {
-        let (n, planted) = match name.to_bytes() {
-            b"vkAllocateMemory" => (0, allocate as *const c_void),
-            b"vkFreeMemory" => (1, free as *const c_void),
-            _ => return None,
-        };
-        REAL[n].store(real, SeqCst);
-        Some(planted)
-    });
+    let raw = planted_device(&host.instance, &host.device, memory);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let mut scene = three();
     let place = |n: u32| Placement {

@@ -4,9 +4,9 @@
 use crate::calls::Layer;
 use crate::check::{Drawn, Fault, check};
 use crate::common::host::{Host, borrow_through};
-use crate::dice::Dice;
 use crate::log::{Finding, Log, found};
 use crate::player::Player;
+use crate::random::Random;
 use crate::values::Palette;
 use ash::vk;
 use revmap::gpu::Device;
@@ -35,7 +35,7 @@ pub struct Episode<'a> {
     /// Another device over the same handles, for fresh renderers: they compile nothing for the
     /// players.
     pub apart: Option<Device>,
-    pub dice: Dice,
+    pub dice: Random,
     pub log: &'a mut Log,
     pub layer: &'a Layer,
     fault: Fault,
@@ -51,7 +51,7 @@ impl<'a> Episode<'a> {
     pub fn new(
         (layer, host, raw): (&'a Layer, &'a Host, &ash::Device),
         log: &'a mut Log,
-        mut dice: Dice,
+        mut dice: Random,
         fault: Fault,
     ) -> Result<Self, Finding> {
         let device = borrow_through(host, &host.instance, raw)?;

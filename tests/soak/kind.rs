@@ -1,7 +1,7 @@
 //! The kinds of output that renderers of a random host have.
 
 use crate::common::host::{COLOR, DEPTH, Options, dynamic, order};
-use crate::dice::Dice;
+use crate::random::Random;
 use ash::vk;
 use revmap::gpu::{HostPass, Output, PassFormats, PassKind};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Solver, Tolerance};
@@ -20,7 +20,7 @@ pub struct Kind {
 }
 
 impl Kind {
-    pub fn random(dice: &mut Dice) -> Self {
+    pub fn random(dice: &mut Random) -> Self {
         let (width, height) = dice.pick(&[(24, 20), (33, 17), (20, 36), (24, 20), (64, 48)]);
         let mut kind = Self {
             options: Options {
@@ -123,7 +123,7 @@ impl Kind {
     }
 }
 
-fn search(dice: &mut Dice) -> SearchSettings {
+fn search(dice: &mut Random) -> SearchSettings {
     SearchSettings {
         solver: dice.pick(&[
             Solver::Exact,
@@ -146,7 +146,7 @@ fn search(dice: &mut Dice) -> SearchSettings {
 }
 
 /// Some planes in any order.
-fn planes(dice: &mut Dice) -> Vec<Plane> {
+fn planes(dice: &mut Random) -> Vec<Plane> {
     let mut left = vec![
         Plane::Color,
         Plane::BaseColor,

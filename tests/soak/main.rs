@@ -21,7 +21,6 @@ mod random;
 mod actions;
 mod check;
 mod common;
-mod dice;
 mod episode;
 mod findings;
 mod frames;

@@ -1,10 +1,10 @@
 //! A renderer of the host, what the host believes of it, and what its slots are drawn into.
 
 use crate::common::host::{Host, HostBuffer};
-use crate::dice::Dice;
 use crate::kind::Kind;
 use crate::log::Finding;
 use crate::model::{Model, Thing};
+use crate::random::Random;
 use crate::surface::{Surface, target, words};
 use crate::views::Seen;
 use revmap::gpu::{Device, PreparedFrame, Renderer};
@@ -42,7 +42,7 @@ pub struct Player<'a> {
 impl<'a> Player<'a> {
     pub fn new(
         (host, device): (&'a Host, &Device),
-        dice: &mut Dice,
+        dice: &mut Random,
         frames: usize,
     ) -> Result<Self, Finding> {
         let kind = Rc::new(Kind::random(dice));

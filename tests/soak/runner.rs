@@ -3,9 +3,9 @@
 use crate::calls::Layer;
 use crate::check::Fault;
 use crate::common::host::open;
-use crate::dice::Dice;
 use crate::episode::Episode;
 use crate::log::{Finding, Log, Tally, found};
+use crate::random::Random;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Frames of an episode.
@@ -18,7 +18,7 @@ fn episode(seed: u64, fault: Fault) -> Result<Tally, Finding> {
     let raw = layer.device(&host.instance, &host.device);
     layer.fail_at(usize::MAX);
     let mut log = Log::new(seed);
-    let played = Episode::new((&layer, &host, &raw), &mut log, Dice::new(seed), fault);
+    let played = Episode::new((&layer, &host, &raw), &mut log, Random::of(seed), fault);
     let played = played.and_then(|mut episode| {
         episode.compares = variable("REVMAP_SOAK_COMPARES") != Some(0);
         episode.play(FRAMES)

@@ -2,7 +2,7 @@
 
 use crate::common::host::{Host, Texture};
 use crate::common::shapes;
-use crate::dice::Dice;
+use crate::random::Random;
 use ash::vk;
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::gpu::HostImage;
@@ -88,7 +88,7 @@ fn kept(host: &Host, kind: u32, seed: u32) -> Kept<'_> {
 }
 
 /// An outline of some corners, from the axis to the axis.
-fn profile(dice: &mut Dice) -> Profile {
+fn profile(dice: &mut Random) -> Profile {
     if dice.chance(0.1) {
         // One that has no contour.
         return shapes::crossing();
@@ -104,7 +104,7 @@ fn profile(dice: &mut Dice) -> Profile {
 }
 
 impl<'a> Palette<'a> {
-    pub fn new(host: &'a Host, dice: &mut Dice) -> Self {
+    pub fn new(host: &'a Host, dice: &mut Random) -> Self {
         let mut profiles = shapes::all();
         let profiles = (0..4).map(|_| profiles.remove(dice.below(profiles.len())).1);
         let textures: Vec<_> = (0..6).map(|n| kept(host, n / 2, 3 + n % 2)).collect();
@@ -125,7 +125,7 @@ impl<'a> Palette<'a> {
     }
 
     /// Replaces an image. The old one is destroyed when nothing holds it.
-    pub fn change_images(&mut self, dice: &mut Dice) {
+    pub fn change_images(&mut self, dice: &mut Random) {
         let (kind, seed) = (dice.below(3), dice.below(250));
         let new = kept(self.host, kind as u32, seed as u32);
         self.images[kind][dice.below(2)] = new.image.clone();
@@ -133,7 +133,7 @@ impl<'a> Palette<'a> {
     }
 
     /// Replaces a profile by one that no object has.
-    pub fn change_profile(&mut self, dice: &mut Dice) {
+    pub fn change_profile(&mut self, dice: &mut Random) {
         let profile = Arc::new(profile(dice));
         let n = dice.below(self.profiles.len());
         self.profiles[n] = profile;
@@ -152,7 +152,7 @@ impl<'a> Palette<'a> {
     }
 
     /// An object with one copy or several.
-    pub fn object(&self, dice: &mut Dice) -> Object {
+    pub fn object(&self, dice: &mut Random) -> Object {
         let mut object = Object::new("one", dice.pick(&self.profiles));
         object.placement = placement(dice);
         self.change_look(dice, &mut object);
@@ -163,7 +163,7 @@ impl<'a> Palette<'a> {
     }
 
     /// Changes some values of an object other than its copies.
-    pub fn change_look(&self, dice: &mut Dice, object: &mut Object) {
+    pub fn change_look(&self, dice: &mut Random, object: &mut Object) {
         if dice.chance(0.2) {
             object.profile = dice.pick(&self.profiles);
         }
@@ -194,7 +194,7 @@ impl<'a> Palette<'a> {
         }
     }
 
-    fn change_textures(&self, dice: &mut Dice, object: &mut Object) {
+    fn change_textures(&self, dice: &mut Random, object: &mut Object) {
         let look = &mut object.texturing;
         look.color_map = match dice.below(4) {
             0 => None,
@@ -210,7 +210,7 @@ impl<'a> Palette<'a> {
         look.offset = dice.pick(&[[0.0; 2], [0.0; 2], [0.3, 0.0], [-1.6, 0.4]]);
     }
 
-    pub fn offset(&self, dice: &mut Dice) -> Offset {
+    pub fn offset(&self, dice: &mut Random) -> Offset {
         Offset {
             extend: dice.pick(&[0.0, 0.0, -0.01, 0.01, 0.03, 0.2]),
             bevel: dice.pick(&[0.0, 0.0, 0.08]),
@@ -218,8 +218,8 @@ impl<'a> Palette<'a> {
         }
     }
 
-    pub fn lighting(&self, dice: &mut Dice) -> Lighting {
-        let light = |dice: &mut Dice| Light {
+    pub fn lighting(&self, dice: &mut Random) -> Lighting {
+        let light = |dice: &mut Random| Light {
             direction: DVec3::new(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0), -0.6),
             color: [0.4; 3],
             radius: dice.pick(&[2.0, 20.0]),
@@ -237,7 +237,7 @@ impl<'a> Palette<'a> {
 }
 
 /// A placement near the origin.
-pub fn placement(dice: &mut Dice) -> Placement {
+pub fn placement(dice: &mut Random) -> Placement {
     let mut turn = || dice.between(-3.0, 3.0);
     let turns = [turn(), turn(), turn()];
     let rotation = match dice.chance(0.5) {
@@ -258,12 +258,12 @@ pub fn placement(dice: &mut Dice) -> Placement {
 }
 
 /// Copies around the limits at which draw paths change; 0 is one copy at the placement.
-pub fn copies(dice: &mut Dice) -> Copies {
+pub fn copies(dice: &mut Random) -> Copies {
     let count = dice.pick(&[0, 0, 1, 2, 2, 5, 63, 64, 65, 66, 130, 400, 700]);
     many(dice, count)
 }
 
-pub fn many(dice: &mut Dice, count: usize) -> Copies {
+pub fn many(dice: &mut Random, count: usize) -> Copies {
     let size = 2.0 / (count as f64).cbrt().max(1.0);
     let one = |_| {
         let mut one = placement(dice);

@@ -1,8 +1,8 @@
 //! Random views.
 
 use crate::common::host::order;
-use crate::dice::Dice;
 use crate::kind::Kind;
+use crate::random::Random;
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4};
 use revmap::gpu::{View, Viewport};
@@ -20,7 +20,7 @@ pub struct Seen {
 
 /// A view of a scene near the origin, in which a solid may be at `inside`.
 pub fn random(
-    dice: &mut Dice,
+    dice: &mut Random,
     kind: &Kind,
     inside: Option<Placement>,
     last: Option<&View>,
@@ -95,7 +95,7 @@ pub fn random(
 }
 
 /// Eye, target, and what they are called.
-fn eye(dice: &mut Dice, inside: Option<Placement>) -> (DVec3, DVec3, &'static str) {
+fn eye(dice: &mut Random, inside: Option<Placement>) -> (DVec3, DVec3, &'static str) {
     let mut at = |size: f64| {
         let mut one = || dice.between(-size, size);
         DVec3::new(one(), one(), one())
@@ -133,7 +133,7 @@ fn whole(kind: &Kind) -> Viewport {
     }
 }
 
-fn viewport(dice: &mut Dice, kind: &Kind) -> Viewport {
+fn viewport(dice: &mut Random, kind: &Kind) -> Viewport {
     let whole = whole(kind);
     let (width, height) = (whole.width, whole.height);
     let mut port = match dice.below(10) {
@@ -184,7 +184,7 @@ fn look(eye: DVec3, target: DVec3) -> DMat4 {
 }
 
 /// A frustum in the middle or beside it; reversed depth may reach to infinity.
-fn perspective(dice: &mut Dice, port: &Viewport, reversed: bool) -> DMat4 {
+fn perspective(dice: &mut Random, port: &Viewport, reversed: bool) -> DMat4 {
     let (near, far) = (0.05, 60.0);
     let focal = 1.0 / dice.pick(&[10f64, 20.0, 45.0]).to_radians().tan();
     let aspect = port.width / port.height;
@@ -203,7 +203,7 @@ fn perspective(dice: &mut Dice, port: &Viewport, reversed: bool) -> DMat4 {
     )
 }
 
-fn parallel(dice: &mut Dice, reversed: bool, flipped: bool) -> DMat4 {
+fn parallel(dice: &mut Random, reversed: bool, flipped: bool) -> DMat4 {
     let (near, far) = (0.05, 60.0);
     let half = dice.pick(&[0.5, 1.5, 4.0]);
     let (z, w) = match reversed {

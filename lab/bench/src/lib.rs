@@ -23,6 +23,9 @@ pub mod measure;
 pub mod method;
 pub mod names;
 pub mod plan;
+#[cfg(test)]
+#[path = "../../../tests/common/random.rs"]
+mod random;
 pub mod report;
 mod stats;
 pub mod submission;

@@ -207,14 +207,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// Uniform numbers in [0, 1), the same on every run.
-    fn noise(seed: &mut u64) -> f64 {
-        *seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (*seed >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     #[test]
     fn ranks_and_medians() {
         let v = [5.0, 1.0, 3.0, 2.0];
@@ -246,9 +238,9 @@ mod tests {
     /// 95 % intervals cover the truth in 95 % of many trials, not in 80 and not in 100.
     #[test]
     fn intervals_cover_as_often_as_they_say() {
-        let mut seed = 7;
+        let mut random = crate::random::Random(7);
         let mut gauss = || {
-            let (a, b) = (noise(&mut seed).max(1e-300), noise(&mut seed));
+            let (a, b) = (random.next().max(1e-300), random.next());
             (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
         };
         let (mut single, mut double) = (0, 0);

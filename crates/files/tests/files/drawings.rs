@@ -1,5 +1,6 @@
 //! Drawings of many programs: drawn as browsers draw them, warned of, or refused by name.
 
+use crate::random::Random;
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use revmap_files::{ProfileAxis, profile_from_bytes};
@@ -278,19 +279,6 @@ fn circles_and_depth_are_refused() {
     };
     let small = std::thread::Builder::new().stack_size(1 << 20);
     small.spawn(run).unwrap().join().unwrap();
-}
-
-/// A generator of random numbers.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end.max(1)
-    }
 }
 
 /// Drawings with random changes are drawn or refused. `REVMAP_MUTATE_SECONDS` runs for longer.

@@ -1,5 +1,6 @@
 //! Every edge belongs to two triangles, also where parts of a solid touch.
 
+use crate::random::Random;
 use crate::{object, volume};
 use glam::DVec2;
 use revmap::profile::{Outline, Profile};
@@ -29,19 +30,6 @@ fn faults(mesh: &Triangles) -> usize {
         }
     }
     edges.values().filter(|count| **count != [1, 1]).count()
-}
-
-/// Numbers from 0 to 1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
 }
 
 fn segments(outline: &Outline) -> impl Iterator<Item = [DVec2; 2]> {
@@ -85,7 +73,7 @@ fn check(points: &[[f64; 2]], axis: [f64; 2], tolerance: f64, what: &str) {
 fn random_polygons_have_edges_of_two_triangles() {
     let (mut met, mut all) = (0, 0);
     for seed in 0..3000u64 {
-        let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random = Random::of(seed);
         random.next();
         let cells = if seed % 3 == 2 { 1e9 } else { 5.0 };
         let count = 3 + (random.next() * 8.0) as usize;

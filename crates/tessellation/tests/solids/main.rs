@@ -4,6 +4,8 @@
 mod coordinates;
 mod distances;
 mod edges;
+#[path = "../../../../tests/common/random.rs"]
+mod random;
 
 use glam::DVec3;
 use revmap::profile::Profile;

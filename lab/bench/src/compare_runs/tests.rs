@@ -92,16 +92,8 @@ fn a_slower_machine_is_told_from_a_slower_search() {
 /// twenty comparisons, and a change by a fifth in every one.
 #[test]
 fn a_run_against_itself_names_nothing() {
-    let mut seed = 1u64;
-    let mut normal = || -> f64 {
-        let mut uniform = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    };
+    let mut random = crate::random::Random(1);
+    let mut normal = || (0..12).map(|_| random.next()).sum::<f64>() - 6.0;
     let mut rows = |changed: f64| -> Vec<Row> {
         let row = |steps: u32| {
             let own = 10.0 * (0.02 * normal()).exp() * if steps == 7 { changed } else { 1.0 };
