@@ -3,6 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::host_memory::{filled, zeroed};
 use std::ops::Range;
+use std::slice::{from_mut, from_ref};
 
 /// Largest number of pixels in a frame: 16384 x 8192. A pixel of all planes takes 68 bytes, so this
 /// is 9 GB.
@@ -126,30 +127,17 @@ impl Frame {
         if index >= self.pixels() {
             return [0.0; 17];
         }
-        let [r, g, b, a] = self.color[index];
-        let [nx, ny, nz] = self.normal[index];
-        let [sx, sy, sz] = self.shading_normal[index];
-        let [ar, ag, ab] = self.albedo[index];
-        let [u, v] = self.uv[index];
-        [
-            r,
-            g,
-            b,
-            a,
-            self.distance[index],
-            nx,
-            ny,
-            nz,
-            sx,
-            sy,
-            sz,
-            ar,
-            ag,
-            ab,
-            u,
-            v,
-            self.steps[index],
-        ]
+        let channels: [&[f32]; 7] = [
+            &self.color[index],
+            from_ref(&self.distance[index]),
+            &self.normal[index],
+            &self.shading_normal[index],
+            &self.albedo[index],
+            &self.uv[index],
+            from_ref(&self.steps[index]),
+        ];
+        let mut values = channels.into_iter().flatten().copied();
+        std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// Sets all channels of pixel number `index`; does nothing past the end.
@@ -157,32 +145,18 @@ impl Frame {
         if index >= self.pixels() {
             return;
         }
-        let [
-            r,
-            g,
-            b,
-            a,
-            z,
-            nx,
-            ny,
-            nz,
-            sx,
-            sy,
-            sz,
-            ar,
-            ag,
-            ab,
-            u,
-            v,
-            steps,
-        ] = value;
-        self.color[index] = [r, g, b, a];
-        self.distance[index] = z;
-        self.normal[index] = [nx, ny, nz];
-        self.shading_normal[index] = [sx, sy, sz];
-        self.albedo[index] = [ar, ag, ab];
-        self.uv[index] = [u, v];
-        self.steps[index] = steps;
+        let channels: [&mut [f32]; 7] = [
+            &mut self.color[index],
+            from_mut(&mut self.distance[index]),
+            &mut self.normal[index],
+            &mut self.shading_normal[index],
+            &mut self.albedo[index],
+            &mut self.uv[index],
+            from_mut(&mut self.steps[index]),
+        ];
+        for (channel, value) in channels.into_iter().flatten().zip(value) {
+            *channel = value;
+        }
     }
 
     /// The first bit difference of `self` and `other`, or `None` if they are equal in all channels.

@@ -1,6 +1,7 @@
 //! Colours of CSS, as values of sRGB.
 
 use super::value::{Value, radians, split_number};
+use color::ColorSpaceTag as Tag;
 use std::str::FromStr;
 
 /// Red, green, blue and alpha from 0 to 1; not premultiplied.
@@ -123,132 +124,39 @@ fn function(name: &str, arguments: &str) -> Value<Color> {
         [alpha] => alpha.of(1.0),
         _ => None,
     };
-    if space.is_some_and(|s| !matches!(s, "srgb" | "srgb-linear" | "display-p3")) {
-        return Value::Unread(REMEDY);
-    }
-    let rgb = match name {
-        "rgb" | "rgba" => {
-            all([a.of(255.0), b.of(255.0), c.of(255.0)]).map(|v| v.map(|v| v / 255.0))
-        }
-        "hsl" | "hsla" => all([a.degrees(), b.of(100.0), c.of(100.0)]).map(hsl),
-        "hwb" => all([a.degrees(), b.of(100.0), c.of(100.0)]).map(hwb),
-        "lab" => all([a.of(100.0), b.of(125.0), c.of(125.0)]).map(lab),
-        "lch" => all([a.of(100.0), b.of(150.0), c.degrees()]).map(|v| lab(from_polar(v))),
-        "oklab" => all([a.of(1.0), b.of(0.4), c.of(0.4)]).map(oklab),
-        "oklch" => all([a.of(1.0), b.of(0.4), c.degrees()]).map(|v| oklab(from_polar(v))),
-        _ => all([a.of(1.0), b.of(1.0), c.of(1.0)]).map(|v| match space {
-            Some("srgb-linear") => v.map(encoded),
-            Some("display-p3") => from_display_p3(v),
-            _ => v,
-        }),
+    let tag = match (name, space) {
+        (_, Some("srgb")) | ("rgb" | "rgba", _) => Tag::Srgb,
+        (_, Some("srgb-linear")) => Tag::LinearSrgb,
+        (_, Some("display-p3")) => Tag::DisplayP3,
+        (_, Some(_)) => return Value::Unread(REMEDY),
+        ("hsl" | "hsla", _) => Tag::Hsl,
+        ("hwb", _) => Tag::Hwb,
+        ("lab", _) => Tag::Lab,
+        ("lch", _) => Tag::Lch,
+        ("oklab", _) => Tag::Oklab,
+        ("oklch", _) => Tag::Oklch,
+        _ => return Value::Wrong,
     };
-    Value::from_option(
-        rgb.zip(alpha)
-            .map(|([r, g, b], alpha)| [r, g, b, alpha].map(|v| v.clamp(0.0, 1.0) as f32)),
-    )
-}
-
-fn all(parts: [Option<f64>; 3]) -> Option<[f64; 3]> {
-    Some([parts[0]?, parts[1]?, parts[2]?])
-}
-
-fn from_polar([lightness, chroma, degrees]: [f64; 3]) -> [f64; 3] {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    [lightness, chroma * cos, chroma * sin]
-}
-
-/// CSS Color 4, section 7.1.
-fn hsl([hue, saturation, lightness]: [f64; 3]) -> [f64; 3] {
-    let (s, l) = ((saturation / 100.0).clamp(0.0, 1.0), lightness / 100.0);
-    let channel = |n: f64| {
-        let k = (n + hue / 30.0).rem_euclid(12.0);
-        l - s * l.min(1.0 - l) * (k - 3.0).min(9.0 - k).clamp(-1.0, 1.0)
+    // What a hundred percent are.
+    let read = match tag {
+        Tag::Hsl | Tag::Hwb => [a.degrees(), b.of(100.0), c.of(100.0)],
+        Tag::Lab => [a.of(100.0), b.of(125.0), c.of(125.0)],
+        Tag::Lch => [a.of(100.0), b.of(150.0), c.degrees()],
+        Tag::Oklab => [a.of(1.0), b.of(0.4), c.of(0.4)],
+        Tag::Oklch => [a.of(1.0), b.of(0.4), c.degrees()],
+        _ if space.is_none() => [a, b, c].map(|part| Some(part.of(255.0)? / 255.0)),
+        _ => [a, b, c].map(|part| part.of(1.0)),
     };
-    [channel(0.0), channel(8.0), channel(4.0)]
-}
-
-/// CSS Color 4, section 8.1.
-fn hwb([hue, white, black]: [f64; 3]) -> [f64; 3] {
-    let (white, black) = (white / 100.0, black / 100.0);
-    if white + black >= 1.0 {
-        return [white / (white + black); 3];
-    }
-    hsl([hue, 100.0, 50.0]).map(|v| v * (1.0 - white - black) + white)
-}
-
-/// CIE L*a*b* under D50, adapted to D65 (CSS Color 4, section 18).
-fn lab([l, a, b]: [f64; 3]) -> [f64; 3] {
-    let f1 = (l + 16.0) / 116.0;
-    let back = |f: f64| match f.powi(3) {
-        cube if cube > 216.0 / 24389.0 => cube,
-        _ => (116.0 * f - 16.0) / (24389.0 / 27.0),
+    let ([Some(a), Some(b), Some(c)], Some(alpha)) = (read, alpha) else {
+        return Value::Wrong;
     };
-    let xyz = [
-        back(f1 + a / 500.0) * 0.964_295_676,
-        back(f1),
-        back(f1 - b / 200.0) * 0.825_104_603,
-    ];
-    product(
-        [
-            [3.134_136, -1.617_386, -0.490_662],
-            [-0.978_796, 1.916_254, 0.033_443],
-            [0.071_955, -0.228_977, 1.405_386],
-        ],
-        xyz,
-    )
-    .map(encoded)
-}
-
-/// Ottosson 2020.
-fn oklab([l, a, b]: [f64; 3]) -> [f64; 3] {
-    let cones = product(
-        [
-            [1.0, 0.396_337_777_4, 0.215_803_757_3],
-            [1.0, -0.105_561_345_8, -0.063_854_172_8],
-            [1.0, -0.089_484_177_5, -1.291_485_548],
-        ],
-        [l, a, b],
-    );
-    product(
-        [
-            [4.076_741_662_1, -3.307_711_591_3, 0.230_969_929_2],
-            [-1.268_438_004_6, 2.609_757_401_1, -0.341_319_396_5],
-            [-0.004_196_086_3, -0.703_418_614_7, 1.707_614_701],
-        ],
-        cones.map(|v| v.powi(3)),
-    )
-    .map(encoded)
-}
-
-fn from_display_p3(p3: [f64; 3]) -> [f64; 3] {
-    product(
-        [
-            [1.224_940_18, -0.224_940_18, 0.0],
-            [-0.042_056_955, 1.042_056_955, 0.0],
-            [-0.019_637_555, -0.078_636_046, 1.098_273_6],
-        ],
-        p3.map(linear),
-    )
-    .map(encoded)
-}
-
-fn product(rows: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    rows.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
-}
-
-/// The transfer function of sRGB.
-fn encoded(v: f64) -> f64 {
-    match v.abs() {
-        small if small <= 0.003_130_8 => 12.92 * v,
-        large => (1.055 * large.powf(1.0 / 2.4) - 0.055).copysign(v),
-    }
-}
-
-fn linear(v: f64) -> f64 {
-    match v.abs() {
-        small if small <= 0.040_45 => v / 12.92,
-        large => ((large + 0.055) / 1.055).powf(2.4).copysign(v),
-    }
+    let b = if tag == Tag::Hsl {
+        b.clamp(0.0, 100.0)
+    } else {
+        b
+    };
+    let [r, g, b] = tag.convert(Tag::Srgb, [a, b, c].map(|v| v as f32));
+    Value::Is([r, g, b, alpha as f32].map(|v| v.clamp(0.0, 1.0)))
 }
 
 #[cfg(test)]
