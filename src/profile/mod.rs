@@ -59,6 +59,8 @@ pub struct Profile {
     /// Features of the picture that look unintended: one sentence each, with the key that changes
     /// it.
     pub warnings: Vec<String>,
+    /// What a photograph was read as: one sentence. Other profiles have none.
+    pub notes: Vec<String>,
 }
 
 impl Profile {
@@ -108,6 +110,7 @@ impl Profile {
             radius,
             raster: None,
             warnings: Vec::new(),
+            notes: Vec::new(),
         }
     }
 }

@@ -123,6 +123,7 @@ impl Growth {
             radius: (profile.radius + self.side) * scale,
             raster: profile.raster.as_ref().map(|raster| self.raster(raster)),
             warnings: Vec::new(),
+            notes: Vec::new(),
         }
     }
 

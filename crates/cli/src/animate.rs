@@ -5,6 +5,7 @@ use super::moving::{ENDINGS, Format, Motion, Playing, Stillness, claim, frames_i
 use super::options::{Drawing, Samples, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
+use super::reading::ShownOutline;
 use super::vary::Vary;
 use clap::Args;
 use glam::{DQuat, DVec3};
@@ -28,8 +29,10 @@ use std::time::Instant;
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_smooth = "auto"
+    /// profile_read = "auto" and profile_smooth = "auto"
     scene: PathBuf,
+    #[command(flatten)]
+    outline: ShownOutline,
     /// Number of frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
@@ -113,6 +116,7 @@ impl Animate {
         }
         let target = self.destination()?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
+        self.outline.check(&self.scene)?;
         let varied: Vec<_> = (self.vary.iter())
             .map(|text| Vary::parse(text))
             .collect::<Result<_>>()?;
@@ -129,6 +133,7 @@ impl Animate {
             None => {}
         }
         output::spare(file.files(), written.iter().chain(&old), "--output")?;
+        self.outline.finish(&file, &first, self.drawing.quiet)?;
         let (device, kept) = self.drawing.open()?;
         if let Some(Target::Folder(folder)) = target {
             claim(folder, &old, self.overwrite)?;

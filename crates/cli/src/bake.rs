@@ -3,12 +3,15 @@
 use super::options::named;
 use super::output;
 use super::progress::Progress;
+use super::reading::tell;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{BakeOptions, MapSource, Projection, ShapeMap, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::Object;
-use revmap_files::{ProfileAxis, ProfileOptions, Smooth, mark_projection, projection_of};
+use revmap_files::{
+    ProfileAxis, ProfileOptions, ProfileRead, Smooth, mark_projection, projection_of,
+};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -48,11 +51,17 @@ pub struct ProfileArguments {
     /// The profile: an SVG drawing, or a PNG or JPEG picture, dark = solid
     pub profile: PathBuf,
     /// Position of the axis: left (half a profile), center (a silhouette), or a fraction of the width
-    #[arg(long, value_name = "AXIS", default_value = "center")]
-    profile_axis: ProfileAxis,
-    /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white)
-    #[arg(long, value_name = "LEVEL", default_value_t = 0.5)]
-    profile_threshold: f64,
+    /// [default: center]
+    #[arg(long, value_name = "AXIS")]
+    profile_axis: Option<ProfileAxis>,
+    /// Grey level below which a picture's pixel is solid, from 0 (black) to 1 (white) [default: 0.5]
+    #[arg(long, value_name = "LEVEL")]
+    profile_threshold: Option<f64>,
+    /// The way in which the solid of a picture is found: auto finds ground, thing, axis and tilt of a
+    /// photograph, threshold takes what is dark about the given axis [default: threshold in bake and
+    /// with an axis, threshold or inversion, else auto]
+    #[arg(long, value_name = "WAY", value_parser = named(&ProfileRead::NAMES))]
+    profile_read: Option<ProfileRead>,
     /// Light is solid, dark is empty
     #[arg(long)]
     profile_invert: bool,
@@ -66,15 +75,34 @@ pub struct ProfileArguments {
 }
 
 impl ProfileArguments {
-    /// Reads the profile; `smooth` holds where no option says otherwise.
-    pub fn read(&self, smooth: Smooth) -> Result<Profile> {
-        let options = ProfileOptions {
-            axis: self.profile_axis,
-            threshold: self.profile_threshold,
+    /// The options; `read` and `smooth` hold where none says otherwise.
+    pub fn options(&self, read: ProfileRead, smooth: Smooth) -> ProfileOptions {
+        let default = ProfileOptions::default();
+        let by_threshold =
+            self.profile_axis.is_some() || self.profile_threshold.is_some() || self.profile_invert;
+        let read = if by_threshold {
+            ProfileRead::Threshold
+        } else {
+            read
+        };
+        ProfileOptions {
+            axis: self.profile_axis.unwrap_or(default.axis),
+            read: self.profile_read.unwrap_or(read),
+            threshold: self.profile_threshold.unwrap_or(default.threshold),
             invert: self.profile_invert,
             smooth: self.profile_smooth.unwrap_or(smooth),
             min_stroke: self.profile_min_stroke,
-        };
+        }
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> String {
+        let name = self.profile.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    /// Reads the profile.
+    pub fn read(&self, options: ProfileOptions) -> Result<Profile> {
         revmap_files::profile(&self.profile, options).map_err(|mut e| {
             e.message = with_options(&e.message);
             e
@@ -96,7 +124,10 @@ impl Bake {
 
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
-        let profile = self.profile.read(Smooth::Pixels(0.0))?;
+        let options = self
+            .profile
+            .options(ProfileRead::Threshold, Smooth::default());
+        let profile = self.profile.read(options)?;
         let source = self.map_source.unwrap_or_default();
         let options = BakeOptions::new(source, self.map_rows);
         let map =
@@ -111,6 +142,7 @@ impl Bake {
         if !self.quiet {
             let warnings = profile.warnings.iter();
             warnings.for_each(|w| output::warn(&with_options(w)));
+            tell(&self.profile.name(), &profile.notes);
             let old = beside(&map_file);
             if slopes.is_none() && old.exists() {
                 output::warn(&format!(
@@ -145,7 +177,14 @@ impl Bake {
 /// A message with options in place of the keys of a scene file.
 pub fn with_options(message: &str) -> String {
     let mut text = message.replace("profile_invert = true", "profile_invert");
-    for key in ["axis", "invert", "smooth", "threshold", "min_stroke"] {
+    for key in [
+        "axis",
+        "invert",
+        "read",
+        "smooth",
+        "threshold",
+        "min_stroke",
+    ] {
         let option = format!("--profile-{}", key.replace('_', "-"));
         let key = format!("profile_{key}");
         text = text.replace(&format!("{key} = "), &format!("{option} "));

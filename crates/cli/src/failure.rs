@@ -8,12 +8,13 @@ use revmap::gpu::DEVICE_VARIABLE;
 use std::process::ExitCode;
 
 /// Keys of the library, each with the option that sets it.
-const OPTIONS: [(&str, &str); 11] = [
+const OPTIONS: [(&str, &str); 12] = [
     ("device", "--device"),
     ("out", "--out"),
     ("profile_axis", "--profile-axis"),
     ("profile_invert", "--profile-invert"),
     ("profile_min_stroke", "--profile-min-stroke"),
+    ("profile_read", "--profile-read"),
     ("profile_smooth", "--profile-smooth"),
     ("profile_threshold", "--profile-threshold"),
     ("sets", "--set"),

@@ -20,6 +20,7 @@ mod output;
 mod overrun;
 mod profile;
 mod progress;
+mod reading;
 mod render;
 mod run;
 mod searches;

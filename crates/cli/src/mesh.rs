@@ -2,6 +2,7 @@
 
 use super::output::{self, usage};
 use super::progress::Progress;
+use super::reading::ShownOutline;
 use clap::Args;
 use revmap::error::{Error, Result};
 use revmap::scene::{Object, Scene};
@@ -22,8 +23,10 @@ same, with copies written out, and a .mtl and pictures beside it. An .stl holds 
 )]
 pub struct Mesh {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_smooth = "auto"
+    /// profile_read = "auto" and profile_smooth = "auto"
     scene: PathBuf,
+    #[command(flatten)]
+    outline: ShownOutline,
     /// The file: .glb, .obj or .stl
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
@@ -57,6 +60,7 @@ pub struct Mesh {
 impl Mesh {
     pub fn run(self) -> Result<()> {
         output::check([&self.output], "--output", &MESH_ENDINGS, &[&self.scene])?;
+        self.outline.check(&self.scene)?;
         let mut file = SceneFile::open(&self.scene)?;
         let mut scene = file.scene(&self.set)?;
         if self.at_origin {
@@ -64,6 +68,7 @@ impl Mesh {
         }
         let written = mesh_files(&scene, &self.output);
         output::spare(file.files(), &written, "--output")?;
+        self.outline.finish(&file, &scene, self.quiet)?;
         let progress = Progress::start("making triangles", self.quiet);
         let mut meshes = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {

@@ -2,9 +2,10 @@
 
 use super::bake::{ProfileArguments, with_options};
 use super::output::{self, usage};
+use super::reading::{ShownOutline, tell};
 use clap::Args;
 use revmap::error::Result;
-use revmap_files::{Smooth, write_outline};
+use revmap_files::{ProfileRead, Smooth, show_outline, write_outline};
 use std::path::PathBuf;
 
 /// A larger part of the area that differs is told.
@@ -13,12 +14,14 @@ const CHANGED: f64 = 0.01;
 /// Writes the outline of a drawing or picture as an SVG of a few curves, to be changed by hand
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
-    revmap profile photo.jpg -o clean.svg --tolerance 0.001\n  \
+    revmap profile photo.jpg -o clean.svg --tolerance 0.001 --show-outline check.png\n  \
     revmap profile assets/profiles/bottle.png -o bottle.svg\n  \
     revmap render bottle.svg -o bottle.png")]
 pub struct Profile {
     #[command(flatten)]
     profile: ProfileArguments,
+    #[command(flatten)]
+    outline: ShownOutline,
     /// The drawing
     #[arg(long, short, value_name = "FILE.svg")]
     output: PathBuf,
@@ -38,8 +41,12 @@ impl Profile {
             &["svg"],
             &[&self.profile.profile],
         )?;
+        self.outline.check(&self.profile.profile)?;
         // As `render` reads a profile in place of a scene.
-        let profile = self.profile.read(Smooth::Auto)?;
+        let options = self.profile.options(ProfileRead::Auto, Smooth::Auto);
+        let profile = self.profile.read(options)?;
+        let shown = || show_outline(&self.profile.profile, options).map(Some);
+        self.outline.write(shown)?;
         let written =
             write_outline(&profile, &self.output, self.tolerance).map_err(|e| match &e.key {
                 Some(_) => usage("--tolerance", e.message),
@@ -48,6 +55,7 @@ impl Profile {
         if !self.quiet {
             let warnings = profile.warnings.iter();
             warnings.for_each(|w| output::warn(&with_options(w)));
+            tell(&self.profile.name(), &profile.notes);
             if written.changed > CHANGED {
                 output::warn(&format!(
                     "--tolerance: {:.0} % of the solid's area changed; parts thinner than the tolerance merge or vanish, give a smaller one",

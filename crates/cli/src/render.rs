@@ -2,6 +2,7 @@
 
 use super::options::{self, Drawing, Samples, Surroundings, Tracing};
 use super::progress::Progress;
+use super::reading::ShownOutline;
 use super::{levels, output};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -28,8 +29,10 @@ use std::time::Instant;
     revmap render assets/scenes/pawn.toml -o truth.exr --stage reference --size 400x300")]
 pub struct Render {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_smooth = "auto"
+    /// profile_read = "auto" and profile_smooth = "auto"
     scene: PathBuf,
+    #[command(flatten)]
+    outline: ShownOutline,
     /// Picture file: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
@@ -67,12 +70,15 @@ impl Render {
         let pictures = self.output.iter().chain(&self.levels);
         output::check(pictures, "--levels", &["png", "exr"], &[&self.scene])?;
         output::check(&self.levels, "--levels", &["png"], &[])?;
+        self.outline.check(&self.scene)?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
         let mut scene = file.scene(&self.drawing.set)?;
         self.surroundings.add_to(&mut scene)?;
         output::spare(file.files(), &self.output, "--output")?;
         output::spare(file.files(), &self.levels, "--levels")?;
+        let silent = self.drawing.quiet || self.json;
+        self.outline.finish(&file, &scene, silent)?;
         let loading = milliseconds(begin);
         let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         // Searches that run out of steps are counted beside the planes; such pixels cause a

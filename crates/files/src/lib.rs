@@ -63,7 +63,9 @@ pub use mesh::{MESH_ENDINGS, mesh_files, stl_rounding, write_meshes};
 pub use openexr::{read_exr, write_exr};
 pub use outline::{WrittenOutline, write_outline};
 pub use picture::{Picture, write_png};
-pub use profile::{ProfileAxis, ProfileOptions, Smooth, profile, profile_from_bytes};
+pub use profile::{
+    ProfileAxis, ProfileOptions, ProfileRead, Smooth, profile, profile_from_bytes, show_outline,
+};
 pub use scene::{SceneFile, scene, warnings};
 pub use trace::trace;
 

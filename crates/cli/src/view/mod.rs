@@ -17,6 +17,7 @@ mod shown;
 mod times;
 
 use super::output;
+use super::reading::ShownOutline;
 use clap::Args;
 use eframe::egui::{ViewportBuilder, vec2};
 use revmap::error::{Error, ErrorKind, Result};
@@ -32,8 +33,10 @@ use std::path::PathBuf;
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_smooth = "auto"
+    /// profile_read = "auto" and profile_smooth = "auto"
     scene: PathBuf,
+    #[command(flatten)]
+    outline: ShownOutline,
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
@@ -74,6 +77,8 @@ impl View {
         output::spare(file.files(), &self.screenshot, "--screenshot")?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         output::spare(file.files(), &self.times, "--times")?;
+        self.outline.check(&self.scene)?;
+        self.outline.finish(&file, &scene, false)?;
         let search = SearchSettings {
             solver: self.solver,
             tolerance: self.tolerance,

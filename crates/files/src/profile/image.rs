@@ -1,7 +1,7 @@
 //! Profiles from pictures: dark is solid.
 
 use super::form::{Silhouette, is_shell};
-use super::{ProfileOptions, options, thin_lines, transparency};
+use super::{ProfileOptions, ProfileRead, options, photo, thin_lines, transparency};
 use crate::content_fault;
 use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;
@@ -16,7 +16,7 @@ use revmap::profile::{Profile, Raster};
 const PICTURE: &str = "the pixels of a picture";
 
 /// Files that profiles are read from.
-const KINDS: &str = "PNG, JPEG or SVG";
+pub(super) const KINDS: &str = "PNG, JPEG or SVG";
 
 /// A profile from the bytes of a PNG or JPEG.
 ///
@@ -37,6 +37,11 @@ pub(super) fn profile(bytes: &[u8], options: &ProfileOptions) -> Result<Profile>
         return Err(content_fault(format!(
             "the image has {width} x {height} pixels, too few for a shape; give at least 2 x 2"
         )));
+    }
+    if options.read == ProfileRead::Auto
+        && let Some(found) = photo::profile(&picture, options)?
+    {
+        return Ok(found);
     }
     // Darkness over white; with `invert`, lightness over black.
     let dark = picture.map(|[r, g, b, alpha]| {

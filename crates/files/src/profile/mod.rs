@@ -12,6 +12,7 @@ mod marks;
 mod noise;
 mod options;
 mod paint;
+mod photo;
 mod svg;
 mod thin_lines;
 mod thin_strokes;
@@ -21,10 +22,12 @@ mod transparency;
 pub(crate) use canvas::FLATNESS;
 pub(crate) use gaps::hints as gap_hints;
 pub use noise::Smooth;
-pub use options::{ProfileAxis, ProfileOptions};
+pub use options::{ProfileAxis, ProfileOptions, ProfileRead};
+pub(crate) use photo::outline_over;
 
+use crate::Picture;
 use crate::pixels::is_picture;
-use crate::{file_fault, read_bytes};
+use crate::{content_fault, file_fault, read_bytes};
 use revmap::error::Result;
 use revmap::profile::Profile;
 use std::path::Path;
@@ -69,7 +72,23 @@ pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> R
     }
 }
 
-fn read_file(path: &Path) -> Result<Vec<u8>> {
+/// The picture of a profile, with the outline that [`profile`] reads from it drawn over it.
+///
+/// # Errors
+/// The errors of [`profile`]; [`ErrorKind::Content`](revmap::error::ErrorKind::Content) for a
+/// drawing.
+pub fn show_outline(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Result<Picture> {
+    let (path, options) = (path.as_ref(), options.into());
+    let read = || match read_file(path)? {
+        bytes if is_picture(&bytes) => outline_over(&bytes, &options),
+        _ => Err(content_fault(
+            "is no picture; an outline is shown over pictures alone",
+        )),
+    };
+    read().map_err(|e| e.in_file(path))
+}
+
+pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
     if path.is_dir() {
         return Err(file_fault("is a folder; give a PNG, JPEG or SVG file"));
     }

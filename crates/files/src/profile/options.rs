@@ -53,11 +53,31 @@ impl std::str::FromStr for ProfileAxis {
     }
 }
 
+/// The way in which the solid of a picture is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProfileRead {
+    /// By a grey level, about an axis that is given.
+    #[default]
+    Threshold,
+    /// Ground, thing, axis and tilt of a photograph are found. A picture without colour of which
+    /// 99 % are near two greys is a drawing, and read by a grey level of one half.
+    Auto,
+}
+
+impl ProfileRead {
+    /// The names in options and scene files.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("threshold", Self::Threshold), ("auto", Self::Auto)];
+}
+
 /// Options for reading a profile from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileOptions {
     /// The part of the picture that is the half-plane.
     pub axis: ProfileAxis,
+    /// The way in which the solid is found. [`ProfileRead::Auto`] takes no axis, threshold or
+    /// inversion. For pictures only.
+    pub read: ProfileRead,
     /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
     /// own (sRGB) values. For pictures only.
     pub threshold: f64,
@@ -75,6 +95,7 @@ impl Default for ProfileOptions {
     fn default() -> Self {
         Self {
             axis: ProfileAxis::default(),
+            read: ProfileRead::default(),
             threshold: 0.5,
             invert: false,
             smooth: Smooth::default(),
@@ -93,6 +114,9 @@ impl From<ProfileAxis> for ProfileOptions {
 }
 
 impl ProfileOptions {
+    /// Keys that [`ProfileRead::Threshold`] alone takes.
+    pub(crate) const OF_THRESHOLD: [&'static str; 3] =
+        ["profile_axis", "profile_threshold", "profile_invert"];
     /// The largest standard deviation of the blur, pixels.
     pub const MOST_SMOOTH: f64 = 100.0;
 
@@ -112,6 +136,16 @@ impl ProfileOptions {
             let message = format!("is {:?}; give a grey level between 0 and 1", self.threshold);
             return wrong("profile_threshold", message);
         }
+        if self.read == ProfileRead::Auto {
+            let found = Self {
+                smooth: Smooth::default(),
+                min_stroke: 0.0,
+                read: ProfileRead::default(),
+                ..*self
+            };
+            found
+                .unset("counts for profile_read = \"threshold\" alone; leave one of the two out")?;
+        }
         if let Smooth::Pixels(pixels) = self.smooth
             && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
         {
@@ -129,12 +163,13 @@ impl ProfileOptions {
         Ok(())
     }
 
-    /// Refuses options that apply only to pictures. [`Smooth::Auto`] is accepted, since a drawing
-    /// has no noise.
+    /// Refuses options that apply only to pictures. [`Smooth::Auto`] and [`ProfileRead::Auto`] are
+    /// accepted, since a drawing has no noise and is no photograph.
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
         let mut own = Self {
             axis: ProfileAxis::default(),
             min_stroke: 0.0,
+            read: ProfileRead::default(),
             ..*self
         };
         if own.smooth == Smooth::Auto {
@@ -163,6 +198,7 @@ impl ProfileOptions {
         let plain = Self::default();
         let key = match self {
             _ if self.axis != plain.axis => "profile_axis",
+            _ if self.read != plain.read => "profile_read",
             _ if self.threshold != plain.threshold => "profile_threshold",
             _ if self.invert => "profile_invert",
             _ if self.smooth != plain.smooth => "profile_smooth",

@@ -326,7 +326,7 @@ pub fn decimal_comma(text: &str) -> Option<String> {
 }
 
 /// Keys of `[[object]]`.
-pub(super) const OBJECT: &str = "profile polygon profile_axis profile_threshold profile_invert \
+pub(super) const OBJECT: &str = "profile polygon profile_axis profile_read profile_threshold profile_invert \
     profile_smooth profile_min_stroke radius map_rows color color_map specular shininess roughness \
     metalness height_map bump bump_form \
     projection texture_repeat texture_offset extend bevel chamfer clip axis repeat mirror position \

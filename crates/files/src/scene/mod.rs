@@ -15,9 +15,9 @@ mod warnings;
 pub use keys::decimal_comma;
 pub use warnings::{blank, warnings};
 
-use crate::pixels::foreign;
+use crate::pixels::{foreign, is_picture};
 use crate::profile::is_profile;
-use crate::{file_fault, read_bytes, text};
+use crate::{Picture, ProfileOptions, file_fault, read_bytes, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
@@ -101,11 +101,15 @@ impl SceneFile {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
         // A name that is no text cannot be written in TOML; the bytes are found by this one.
+        let is_picture = is_picture(&bytes);
         reader.keep(folder.join(&*name), file, bytes);
-        let object = table([
+        let mut object = table([
             ("profile", name.into_owned().into()),
             ("profile_smooth", "auto".into()),
         ]);
+        if is_picture {
+            object.insert("profile_read".to_owned(), "auto".into());
+        }
         let camera = camera(DVec3::X, DVec3::ZERO);
         let root = table([("camera", camera.into()), ("object", vec![object].into())]);
         Self {
@@ -167,8 +171,34 @@ impl SceneFile {
         })
     }
 
+    /// The file's tables with `sets`. A picture in place of a scene is read by its own way, unless a
+    /// key of another is set.
+    fn applied(&self, sets: &[String]) -> Result<Table> {
+        let mut root = overrides::applied(&self.root, sets)?;
+        let objects = root.get_mut("object").and_then(Value::as_array_mut);
+        if let Some(Value::Table(object)) = objects.and_then(|o| o.first_mut())
+            && self.reader.stands_for_scene()
+            && ProfileOptions::OF_THRESHOLD
+                .iter()
+                .any(|key| object.contains_key(*key))
+            && !sets.iter().any(|set| set.contains("profile_read"))
+        {
+            object.remove("profile_read");
+        }
+        Ok(root)
+    }
+
+    /// The first picture that is a profile, with the outline that was read from it drawn over it.
+    /// `None` for a scene without such a picture.
+    ///
+    /// # Errors
+    /// The errors of reading it.
+    pub fn show_outline(&self) -> Result<Option<Picture>> {
+        self.reader.show_outline()
+    }
+
     fn read(&mut self, sets: &[String]) -> Result<Scene> {
-        let root = overrides::applied(&self.root, sets)?;
+        let root = self.applied(sets)?;
         let scene = self.reader.scene(&root);
         let scene = scene.map_err(|e| spelling::hinted(e, &root))?;
         scene.check()?;
@@ -188,7 +218,7 @@ impl SceneFile {
             return Err(file_fault(message).in_file(file));
         }
         let fault = |e| Error::new(ErrorKind::Other, format!("cannot be written as TOML: {e}"));
-        toml::to_string(&overrides::applied(&self.root, sets)?).map_err(fault)
+        toml::to_string(&self.applied(sets)?).map_err(fault)
     }
 }
 

@@ -3,10 +3,11 @@
 use super::instances;
 use super::keys::{Keys, OBJECT};
 use super::polygon;
-use crate::profile::gap_hints;
+use crate::pixels::is_picture;
+use crate::profile::{gap_hints, outline_over, read_file};
 use crate::{
-    ProfileAxis, ProfileOptions, Smooth, color_map, displacement_map, profile, profile_from_bytes,
-    projection_of,
+    Picture, ProfileAxis, ProfileOptions, ProfileRead, Smooth, color_map, displacement_map,
+    profile, profile_from_bytes, projection_of,
 };
 use glam::DQuat;
 use revmap::error::{Error, Result};
@@ -83,6 +84,26 @@ impl Reader {
     pub(super) fn unnamed(&self) -> Option<&Path> {
         let kept = self.kept.as_ref().filter(|kept| kept.named != kept.file)?;
         Some(&kept.file)
+    }
+
+    /// Returns true if a profile stands in place of the scene.
+    pub(super) fn stands_for_scene(&self) -> bool {
+        self.kept.is_some()
+    }
+
+    /// The first profile that is a picture, with its outline.
+    pub(super) fn show_outline(&self) -> Result<Option<Picture>> {
+        for (named, options, _) in &self.profiles {
+            let bytes = match self.kept.as_ref().filter(|kept| kept.named == *named) {
+                Some(kept) => kept.bytes.clone(),
+                None => read_file(named).map_err(|e| e.in_file(named))?,
+            };
+            if is_picture(&bytes) {
+                let shown = outline_over(&bytes, options);
+                return shown.map(Some).map_err(|e| e.in_file(named));
+            }
+        }
+        Ok(None)
     }
 
     /// Every file that was read.
@@ -181,6 +202,7 @@ impl Reader {
         {
             keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
         }
+        keys.choose("profile_read", &ProfileRead::NAMES, &mut options.read)?;
         keys.set("profile_threshold", &mut options.threshold)?;
         keys.set("profile_invert", &mut options.invert)?;
         options.smooth = match keys.number_or_auto("profile_smooth")? {

@@ -64,6 +64,7 @@ pub(crate) fn trace_split(raster: Raster, split: bool) -> Result<Profile> {
         raster: (!split).then_some(raster),
         outline,
         warnings: Vec::new(),
+        notes: Vec::new(),
     })
 }
 

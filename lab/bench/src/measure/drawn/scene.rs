@@ -159,6 +159,7 @@ fn profile(of: &Profile) -> String {
         radius,
         raster,
         warnings: _,
+        notes: _,
     } = of;
     let points = || outline.loops.iter().flatten();
     let ends = outline.loops.iter().map(|points| points.len() as f64);

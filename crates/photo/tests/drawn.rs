@@ -1,0 +1,359 @@
+//! Pictures drawn here, with a known outline: ground, light, shadow, tilt, bands, handles, cuts.
+#![allow(clippy::unwrap_used)]
+
+use proptest::prelude::*;
+use revmap_photo::{Doubt, Fault, Ground, Half, LeftOut, Photo, Reading, Tone, is_drawing, read};
+
+const SIZE: [usize; 2] = [180, 240];
+
+/// A baluster's radius at a height, both as parts of the thing's height.
+fn radius(z: f64) -> f64 {
+    let wave = 0.16 + 0.07 * (7.0 * z + 0.6).sin() + 0.03 * (16.0 * z).cos();
+    if (0.0..=1.0).contains(&z) { wave } else { -1.0 }
+}
+
+type Color = [f64; 3];
+
+/// A turned thing before a ground.
+struct Scene {
+    axis: f64,
+    tilt: f64,
+    color: Color,
+    ground: Color,
+    table: Option<Color>,
+    /// Light at the left and at the right edge.
+    light: [f64; 2],
+    /// Offset of a shadow on the wall, and its darkness.
+    shadow: Option<(f64, f64)>,
+    noise: f64,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            axis: 0.5,
+            tilt: 0.0,
+            color: [0.35, 0.25, 0.2],
+            ground: [0.8, 0.78, 0.74],
+            table: None,
+            light: [1.0, 1.0],
+            shadow: None,
+            noise: 0.01,
+        }
+    }
+}
+
+impl Scene {
+    /// Height of the thing, pixels.
+    const TALL: f64 = 170.0;
+
+    /// Place of a pixel: across the axis and along it, heights of the thing.
+    fn place(&self, x: f64, y: f64) -> [f64; 2] {
+        let (s, c) = self.tilt.to_radians().sin_cos();
+        let (x, y) = (x - self.axis * SIZE[0] as f64, 0.5 * SIZE[1] as f64 - y);
+        [
+            (c * x - s * y) / Self::TALL,
+            (s * x + c * y) / Self::TALL + 0.5,
+        ]
+    }
+
+    /// The picture; `more` changes the colour at a place.
+    fn draw(&self, more: impl Fn([f64; 2], bool, Color) -> Color) -> Vec<[u8; 4]> {
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
+        };
+        let mut pixels = Vec::new();
+        for i in 0..SIZE[0] * SIZE[1] {
+            let (px, py) = ((i % SIZE[0]) as f64, (i / SIZE[0]) as f64);
+            let mut sum = [0.0; 3];
+            for k in 0..4 {
+                let (x, y) = (
+                    px + 0.25 + 0.5 * f64::from(k % 2),
+                    py + 0.25 + 0.5 * f64::from(k / 2),
+                );
+                let [u, z] = self.place(x, y);
+                let inside = u.abs() < radius(z);
+                let behind = self.table.filter(|_| y > 0.8 * SIZE[1] as f64);
+                let mut color = if inside {
+                    self.color
+                } else {
+                    behind.unwrap_or(self.ground)
+                };
+                if inside {
+                    let round = (1.0 - (u / radius(z)).powi(2)).sqrt();
+                    color = color.map(|v| v * (0.7 + 0.3 * round));
+                } else if let Some((offset, dark)) = self.shadow {
+                    let deep = radius(z + 0.03) - (u - offset).abs();
+                    color = color.map(|v| v * (1.0 - dark * (deep / 0.03).clamp(0.0, 1.0)));
+                }
+                color = more([u, z], inside, color);
+                let across = x / SIZE[0] as f64;
+                let light = self.light[0] * (1.0 - across) + self.light[1] * across;
+                (0..3).for_each(|c| sum[c] += 0.25 * color[c] * light);
+            }
+            let noise = 2.0 * self.noise * random();
+            let [r, g, b] = sum.map(|v| ((v + noise) * 255.0).round() as u8);
+            pixels.push([r, g, b, 255]);
+        }
+        pixels
+    }
+
+    fn plain(&self) -> Vec<[u8; 4]> {
+        self.draw(|_, _, color| color)
+    }
+}
+
+fn photo(rgba: &[[u8; 4]]) -> Photo<'_> {
+    Photo {
+        width: SIZE[0] as u32,
+        height: SIZE[1] as u32,
+        rgba,
+    }
+}
+
+/// Intersection over union of a reading and the baluster, each over its own height.
+fn likeness(reading: &Reading) -> f64 {
+    let (mut both, mut either) = (0.0, 0.0);
+    for k in 0..400 {
+        let part = (f64::from(k) + 0.5) / 400.0;
+        let z = reading.bottom + part * (reading.top - reading.bottom);
+        let (a, b) = (
+            reading.radius_at(z) / (reading.top - reading.bottom),
+            radius(part),
+        );
+        both += a.min(b);
+        either += a.max(b);
+    }
+    both / either
+}
+
+#[track_caller]
+fn assert_read(pixels: &[[u8; 4]], least: f64) -> Reading {
+    assert!(!is_drawing(&photo(pixels)));
+    let reading = read(&photo(pixels)).unwrap();
+    let found = likeness(&reading);
+    assert!(found >= least, "{found}: {reading}");
+    reading
+}
+
+#[track_caller]
+fn assert_sure(pixels: &[[u8; 4]], least: f64) -> Reading {
+    let reading = assert_read(pixels, least);
+    assert_eq!(reading.doubts, []);
+    reading
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_tilted_lit_and_shadowed_thing_comes_back(
+        axis in 0.4..0.6,
+        tilt in -6.0..6.0,
+        pale in any::<bool>(),
+        dark in 0.1..0.4,
+        light in 0.6..1.0,
+    ) {
+        let scene = Scene {
+            axis,
+            tilt,
+            color: if pale { [0.95, 0.9, 0.8] } else { [0.25, 0.2, 0.3] },
+            ground: if pale { [0.4, 0.42, 0.5] } else { [0.8, 0.78, 0.74] },
+            light: [1.0, light],
+            shadow: Some((0.16, dark)),
+            ..Scene::default()
+        };
+        let reading = read(&photo(&scene.plain())).unwrap();
+        prop_assert!(likeness(&reading) > 0.94, "{}: {}", likeness(&reading), reading);
+        prop_assert!((reading.tilt - tilt).abs() < 0.4, "{} for {}", reading.tilt, tilt);
+        prop_assert!((reading.axis - axis).abs() < 0.02);
+        prop_assert_eq!(reading.doubts, []);
+    }
+}
+
+#[test]
+fn tones_and_grounds_are_named() {
+    let dark = assert_sure(&Scene::default().plain(), 0.96);
+    assert_eq!(
+        (dark.tone, dark.half, &dark.left_out[..]),
+        (Tone::Darker, Half::Both, &[][..])
+    );
+    let pale = Scene {
+        color: [0.9, 0.86, 0.8],
+        ground: [0.2, 0.2, 0.22],
+        ..Scene::default()
+    };
+    assert_eq!(assert_sure(&pale.plain(), 0.96).tone, Tone::Lighter);
+    let hue = Scene {
+        color: [0.62, 0.35, 0.35],
+        ground: [0.34, 0.42, 0.34],
+        ..Scene::default()
+    };
+    assert_sure(&hue.plain(), 0.96);
+    let table = Scene {
+        table: Some([0.4, 0.3, 0.2]),
+        color: [0.3, 0.4, 0.6],
+        ..Scene::default()
+    };
+    let table = assert_sure(&table.plain(), 0.95).to_string();
+    assert!(table.starts_with("read as a photograph: "), "{table}");
+}
+
+#[test]
+fn what_is_left_out_is_named() {
+    let shadowed = Scene {
+        shadow: Some((0.2, 0.35)),
+        ..Scene::default()
+    };
+    let shadowed = assert_sure(&shadowed.plain(), 0.95);
+    assert!(shadowed.left_out.contains(&LeftOut::Shadow), "{shadowed}");
+    let scene = Scene::default();
+    let handle = scene.draw(|[u, z], _, color| {
+        let ring = (u - 0.2).hypot(z - 0.5);
+        let is = u > 0.0 && (0.09..0.13).contains(&ring);
+        if is { scene.color } else { color }
+    });
+    let handle = assert_sure(&handle, 0.95);
+    assert!(handle.left_out.contains(&LeftOut::OneSide), "{handle}");
+    let second = scene.draw(|[u, z], _, color| match (u - 0.42).hypot(z - 0.1) < 0.09 {
+        true => [0.3, 0.4, 0.5],
+        false => color,
+    });
+    let second = assert_sure(&second, 0.95);
+    assert!(second.left_out.contains(&LeftOut::Things(1)), "{second}");
+    let mut framed = scene.plain();
+    for (i, pixel) in framed.iter_mut().enumerate() {
+        let (x, y) = (i % SIZE[0], i / SIZE[0]);
+        let rim = x.min(y).min(SIZE[0] - 1 - x).min(SIZE[1] - 1 - y);
+        *pixel = if rim < 5 { [12, 12, 12, 255] } else { *pixel };
+    }
+    let framed = assert_sure(&framed, 0.95);
+    assert!(framed.left_out.contains(&LeftOut::Frame), "{framed}");
+}
+
+#[test]
+fn bands_of_the_grounds_colour_belong_to_the_thing() {
+    let scene = Scene::default();
+    let banded = scene.draw(
+        |[_, z], inside, color| match inside && (z * 9.0) as i32 % 2 == 1 {
+            true => [0.74, 0.71, 0.66].map(|v| v * color[0] / scene.color[0]),
+            false => color,
+        },
+    );
+    assert_read(&banded, 0.93);
+}
+
+#[test]
+fn a_half_that_the_edge_cuts_is_not_used() {
+    let scene = Scene {
+        axis: 0.12,
+        ..Scene::default()
+    };
+    let cut = assert_sure(&scene.plain(), 0.93);
+    assert_eq!((cut.half, cut.cut), (Half::Right, true));
+    assert!(
+        cut.to_string().contains("edge of the picture cuts"),
+        "{cut}"
+    );
+}
+
+#[test]
+fn transparency_is_the_ground() {
+    let scene = Scene::default();
+    let mut pixels = scene.plain();
+    for (i, pixel) in pixels.iter_mut().enumerate() {
+        let [u, z] = scene.place((i % SIZE[0]) as f64 + 0.5, (i / SIZE[0]) as f64 + 0.5);
+        pixel[3] = match (u.abs() < radius(z), (u - 0.1).abs() < radius(z)) {
+            (true, _) => 255,
+            (_, shadow) => {
+                if shadow {
+                    90
+                } else {
+                    0
+                }
+            }
+        };
+    }
+    let reading = assert_sure(&pixels, 0.95);
+    assert_eq!(reading.ground, Ground::Transparent);
+}
+
+#[test]
+fn a_faint_edge_is_doubted() {
+    let scene = Scene {
+        color: [0.8, 0.78, 0.74],
+        noise: 0.004,
+        ..Scene::default()
+    };
+    // The light falls from the left: only the right side is darker than the ground.
+    let faint = scene.draw(|[u, z], inside, color| match inside {
+        true => scene
+            .ground
+            .map(|v| v * (1.0 - 0.25 * (u / radius(z)).max(0.0))),
+        false => color,
+    });
+    match read(&photo(&faint)) {
+        Ok(reading) => assert!(
+            reading.doubts.iter().any(|d| matches!(d, Doubt::Faint(_))),
+            "{} {reading} {:?}",
+            likeness(&reading),
+            reading.doubts
+        ),
+        Err(fault) => assert_ne!(fault, Fault::NoSymmetry),
+    }
+}
+
+#[test]
+fn things_that_were_not_turned_are_refused_or_doubted() {
+    let scene = Scene::default();
+    // A flag on a pole, and a stair.
+    let flag = |[u, z]: [f64; 2]| {
+        (u + 0.3).abs() < 0.02 && z < 1.0 || u > -0.3 && u < 0.3 && (0.5..1.0).contains(&z)
+    };
+    let stair = |[u, z]: [f64; 2]| {
+        u > -0.35 && u < 0.35 && z > 0.0 && z < ((u + 0.35) * 8.0).floor() / 6.0 + 0.1
+    };
+    for is in [&flag as &dyn Fn([f64; 2]) -> bool, &stair] {
+        let pixels = scene.draw(|p, inside, color| match (is(p), inside) {
+            (true, _) => scene.color,
+            (false, true) => scene.ground,
+            _ => color,
+        });
+        match read(&photo(&pixels)) {
+            Err(fault) => assert_eq!(fault, Fault::NoSymmetry),
+            Ok(reading) => assert!(
+                reading.doubts.iter().any(|d| matches!(d, Doubt::Uneven(_))),
+                "{reading}"
+            ),
+        }
+    }
+    let nothing = vec![[200, 190, 180, 255]; SIZE[0] * SIZE[1]];
+    assert_eq!(read(&photo(&nothing)).unwrap_err(), Fault::Nothing);
+}
+
+#[test]
+fn drawings_are_told_from_photographs() {
+    let scene = Scene {
+        color: [0.1, 0.1, 0.1],
+        ground: [0.9, 0.9, 0.9],
+        noise: 0.02,
+        ..Scene::default()
+    };
+    let flat = scene.draw(|_, inside, _| if inside { scene.color } else { scene.ground });
+    assert!(is_drawing(&photo(&flat)));
+    let colored = scene.draw(|_, inside, _| {
+        if inside {
+            [0.1, 0.1, 0.4]
+        } else {
+            scene.ground
+        }
+    });
+    assert!(!is_drawing(&photo(&colored)));
+    let lit = Scene {
+        light: [1.0, 0.6],
+        ..scene
+    };
+    assert!(!is_drawing(&photo(&lit.plain())));
+}
