@@ -1,6 +1,5 @@
 //! What a photograph was read as: one line, and a picture.
 
-use super::bake::with_options;
 use super::output::{self, usage};
 use clap::Args;
 use revmap::error::Result;
@@ -51,6 +50,6 @@ impl ShownOutline {
 /// Prints what a photograph was read as.
 pub fn tell(name: &str, notes: &[String]) {
     for note in notes {
-        output::note(&format!("{name}: {}", with_options(note)));
+        output::note(&format!("{name}: {note}"));
     }
 }

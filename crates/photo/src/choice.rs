@@ -150,10 +150,8 @@ impl Candidate {
 impl Candidate {
     /// The part of the mask that is on both sides of its axis.
     pub fn mirrored(&self, work: &Work) -> Mask {
-        let middle = [0.5 * work.width as f64, 0.5 * work.height as f64];
-        shared(&self.mask, |p| {
-            mirrored(p, middle, self.axis, self.rows.angle)
-        })
+        let (axis, angle) = (self.axis, self.rows.angle);
+        shared(&self.mask, |p| mirrored(p, work.middle(), axis, angle))
     }
 
     /// Masks that are better where the thing has bands, a handle or a shadow.
@@ -164,7 +162,7 @@ impl Candidate {
             false => self.border.rows(self.rows.angle),
         };
         let (axis, angle) = (rows.axis(w as f64), rows.angle);
-        let middle = [0.5 * w as f64, 0.5 * h as f64];
+        let middle = work.middle();
         let of = |mask: Mask, part: f64| {
             if count(&mask) < 50 || likeness(&mask, &self.mask) >= 0.99 {
                 return None;

@@ -2,7 +2,7 @@
 
 use crate::Photo;
 use crate::choice::Candidate;
-use crate::form::mode;
+use crate::form::{mode, turned};
 use crate::work::{Color, Work, distance, lab_of, median};
 use rayon::prelude::*;
 
@@ -50,11 +50,8 @@ pub(crate) struct Sampler<'a> {
 
 impl Sampler<'_> {
     /// A place of the turned frame in the reduced picture.
-    pub fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let (s, c) = self.angle.to_radians().sin_cos();
-        let middle = [0.5 * self.work.width as f64, 0.5 * self.work.height as f64];
-        let (u, v) = (u - middle[0], v - middle[1]);
-        [c * u - s * v + middle[0], s * u + c * v + middle[1]]
+    pub fn place(&self, p: [f64; 2]) -> [f64; 2] {
+        turned(p, self.work.middle(), -self.angle)
     }
 
     fn reduced(&self, p: [f64; 2]) -> Color {
@@ -189,45 +186,21 @@ fn finish(ends: Vec<[f64; 2]>, top: f64, step: f64, axis: f64, width: f64) -> Ha
         ends.iter().filter(|e| touching(e)[side]).count() as f64 / ends.len().max(1) as f64
     };
     let cut = [0, 1].map(|side| part(side) > 0.05);
-    let lesser = |s: &[f64; 2]| s[0].min(s[1]);
-    let (half, radii): (Half, Vec<f64>) = match cut {
-        [true, false] => (
-            Half::Right,
-            ends.iter()
-                .zip(&sides)
-                .map(|(e, s)| if touching(e)[0] { s[1] } else { lesser(s) })
-                .collect(),
-        ),
-        [false, true] => (
-            Half::Left,
-            ends.iter()
-                .zip(&sides)
-                .map(|(e, s)| if touching(e)[1] { s[0] } else { lesser(s) })
-                .collect(),
-        ),
-        _ if differ > ALIKE => {
-            let left = sum(&|s| s[0]) < sum(&|s| s[1]);
-            (
-                if left { Half::Left } else { Half::Right },
-                sides.iter().map(lesser).collect(),
-            )
-        }
-        _ => (
-            Half::Both,
-            sides.iter().map(|s| 0.5 * (s[0] + s[1])).collect(),
-        ),
+    let half = match cut {
+        [true, false] => Half::Right,
+        [false, true] => Half::Left,
+        _ if differ <= ALIKE => Half::Both,
+        _ if sum(&|s| s[0]) < sum(&|s| s[1]) => Half::Left,
+        _ => Half::Right,
     };
-    let smooth = (0..radii.len()).map(|i| {
-        let mut near = [
-            radii[i.saturating_sub(1)],
-            radii[i],
-            radii[(i + 1).min(radii.len() - 1)],
-        ];
-        near.sort_by(f64::total_cmp);
-        near[1]
-    });
+    let radius = |(e, s): (&[f64; 2], &[f64; 2])| match (touching(e), half) {
+        ([true, false], _) => s[1],
+        ([false, true], _) => s[0],
+        (_, Half::Both) => 0.5 * (s[0] + s[1]),
+        _ => s[0].min(s[1]),
+    };
     Halves {
-        radii: smooth.collect(),
+        radii: ends.iter().zip(&sides).map(radius).collect(),
         top,
         step,
         axis,

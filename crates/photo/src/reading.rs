@@ -36,6 +36,8 @@ pub struct Reading {
     pub cut: bool,
     /// Elevation of the camera, degrees, if foot and rim were cut at the middles of their ellipses.
     pub elevation: Option<f64>,
+    /// What speaks for the outline, in `[0, 1]`: symmetry, edges and size.
+    pub score: f64,
     /// Reasons for which the outline may be wrong; a sure reading has none.
     pub doubts: Vec<Doubt>,
 }
@@ -80,12 +82,14 @@ pub enum Doubt {
 /// The reason why nothing was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing differs from the ground.
+    /// Nothing stands out from the ground.
     Nothing,
     /// Nothing is alike on both sides of an axis.
     NoSymmetry,
 }
 
+/// Less is found in textures. Things in a dark room with much noise have 0.27.
+const LEAST_SCORE: f64 = 0.15;
 /// A thing of less symmetry is none that was turned.
 const LEAST_SYMMETRY: f64 = 0.75;
 /// Things of less symmetry are doubtful.
@@ -127,7 +131,7 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
     };
     let best = found
         .first()
-        .filter(|c: &&Candidate| c.score > 0.0)
+        .filter(|c: &&Candidate| c.score > LEAST_SCORE)
         .ok_or(Fault::Nothing)?;
     let backdrop = backdrops.get(best.ground);
     let sides = backdrop.map_or(Sides::OPAQUE, |b| Sides::of(&work, b, best));
@@ -181,6 +185,7 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
         differ: halves.differ,
         cut: halves.cut,
         elevation,
+        score: best.score,
         doubts: doubts(best, &sides, &halves),
     })
 }

@@ -97,7 +97,7 @@ impl Display for Doubt {
 impl Display for Fault {
     fn fmt(&self, f: &mut Formatter) -> Result {
         f.write_str(match self {
-            Self::Nothing => "no thing is found in the photograph: nothing differs from the ground; give more contrast, or set profile_read = \"threshold\"",
+            Self::Nothing => "no thing is found in the photograph: nothing stands out from the ground; give more contrast, or set profile_read = \"threshold\"",
             Self::NoSymmetry => "the thing in the photograph has no axis of symmetry: nothing is alike on both sides of one; photograph a turned thing from the side, or set profile_read = \"threshold\"",
         })
     }

@@ -106,6 +106,11 @@ impl Work {
         })
     }
 
+    /// The middle of the reduced picture.
+    pub fn middle(&self) -> [f64; 2] {
+        [0.5 * self.width as f64, 0.5 * self.height as f64]
+    }
+
     pub fn color(&self, x: usize, y: usize) -> Color {
         self.lab.get_pixel(x as u32, y as u32).0
     }

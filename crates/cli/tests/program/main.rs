@@ -15,6 +15,7 @@ mod mesh_command;
 mod moving_pictures;
 #[cfg(feature = "shaderc")]
 mod own_search;
+mod photographs;
 mod pictures;
 mod run;
 #[cfg(target_os = "linux")] // Mesa has the compiler for AMD's GPUs only there

@@ -1,7 +1,7 @@
 //! Profiles from pictures: dark is solid.
 
 use super::form::{Silhouette, is_shell};
-use super::{ProfileOptions, ProfileRead, options, photo, thin_lines, transparency};
+use super::{KINDS, ProfileOptions, ProfileRead, options, photo, thin_lines, transparency};
 use crate::content_fault;
 use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;
@@ -14,9 +14,6 @@ use revmap::profile::{Profile, Raster};
 
 /// What needs memory, in messages.
 const PICTURE: &str = "the pixels of a picture";
-
-/// Files that profiles are read from.
-pub(super) const KINDS: &str = "PNG, JPEG or SVG";
 
 /// A profile from the bytes of a PNG or JPEG.
 ///

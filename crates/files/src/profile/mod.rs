@@ -32,6 +32,9 @@ use revmap::error::Result;
 use revmap::profile::Profile;
 use std::path::Path;
 
+/// Files that profiles are read from.
+const KINDS: &str = "PNG, JPEG or SVG";
+
 /// Reads a profile from a file, by its content: PNG, JPEG, or SVG (also gzip-compressed).
 ///
 /// `options` are a [`ProfileAxis`] or all [`ProfileOptions`]. The top edge is `z = 1`, the bottom

@@ -415,6 +415,8 @@ mod tests {
                 assert_eq!(error.key.as_deref(), Some(key));
             }
         }
+        let error = read(0, 255, |o| (o.read, o.invert) = (ProfileRead::Auto, true)).unwrap_err();
+        assert_eq!(error.key.as_deref(), Some("profile_invert"));
         for edge in [0.0, 1.0] {
             assert!(read(0, 255, |o| o.threshold = edge).is_err());
         }

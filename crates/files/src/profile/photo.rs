@@ -1,7 +1,6 @@
 //! Profiles from photographs, as [`revmap_photo`] reads them.
 
-use super::image::KINDS;
-use super::{ProfileOptions, ProfileRead, Smooth};
+use super::{KINDS, ProfileOptions, ProfileRead, Smooth};
 use crate::Picture;
 use crate::pixels::{Pixels, decode};
 use crate::trace::trace;
@@ -101,4 +100,60 @@ pub(crate) fn outline_over(bytes: &[u8], options: &ProfileOptions) -> Result<Pic
         height: pixels.height,
         rgba,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::png_bytes;
+    use image::{Rgb, RgbImage};
+
+    /// A lit ball of radius 40 at (62, 58), in a picture of 120 x 160.
+    fn ball() -> Vec<u8> {
+        png_bytes(RgbImage::from_fn(120, 160, |x, y| {
+            let away = (f64::from(x) - 61.5).hypot(f64::from(y) - 57.5);
+            match away < 40.0 {
+                true => Rgb([230 - x as u8, 215 - x as u8, 190 - x as u8]),
+                false => Rgb([60, 80 + (y / 8) as u8, 130]),
+            }
+        }))
+    }
+
+    #[test]
+    fn a_photograph_becomes_an_outline_in_the_units_of_its_picture() {
+        let options = ProfileOptions {
+            read: ProfileRead::Auto,
+            ..ProfileOptions::default()
+        };
+        let ball = ball();
+        let profile = profile_from_bytes(&ball, options).unwrap();
+        assert_eq!(profile.outline.loops.len(), 1);
+        assert!((profile.radius - 0.375).abs() < 2e-3, "{}", profile.radius);
+        let middle = glam::DVec2::new(0.0, 1.0 - 58.0 / 160.0);
+        for segment in profile.outline.surface_segments() {
+            let away = (segment.a - middle).length();
+            assert!((away - 0.25).abs() < 0.006, "{away}");
+        }
+        assert!(profile.notes[0].starts_with("read as a photograph: light"));
+        assert_eq!(profile.warnings, [""; 0]);
+        // The outline over the picture: along the ball's border, by either way of reading.
+        let near = |options: &ProfileOptions| {
+            let shown = outline_over(&ball, options).unwrap();
+            let red = |i: &usize| shown.rgba[*i] == [255, 0, 64, 255];
+            let away = |i: usize| (i as f64 % 120.0 - 61.5).hypot((i / 120) as f64 - 57.5);
+            let red: Vec<f64> = (0..shown.rgba.len()).filter(red).map(away).collect();
+            let count = red.iter().filter(|r| (*r - 40.0).abs() < 2.5).count();
+            (count, red.len())
+        };
+        let (count, all) = near(&options);
+        assert!(count > 200 && count == all, "{count} of {all}");
+        let dark = ProfileOptions {
+            axis: crate::ProfileAxis::At(62.0 / 120.0),
+            invert: true,
+            ..ProfileOptions::default()
+        };
+        let (count, all) = near(&dark);
+        assert!(count > 150 && 10 * count > 7 * all, "{count} of {all}");
+    }
 }

@@ -280,6 +280,7 @@ color_map = "-"                     => /dev/stdin
 [[light]] # colour = [1, 1, 1]      => light.0.colour: unknown key; did you mean `color`?
 [[object]] # profile = "none.svg" # profile_axis = "0.5" => "center", or a number without quotes
 profile_axis = "left"               => object.0.profile_axis: counts for files
+profile_read = "auto"               => object.0.profile_read: counts for files
 profile_threshold = 0.3             => object.0.profile_threshold: counts for files
 profile_invert = true               => object.0.profile_invert: counts for files
 profile_smooth = 2                  => object.0.profile_smooth: counts for files
