@@ -148,12 +148,14 @@ mod tests {
         };
         let (count, all) = near(&options);
         assert!(count > 200 && count == all, "{count} of {all}");
-        let dark = ProfileOptions {
+        let light = ProfileOptions {
             axis: crate::ProfileAxis::At(62.0 / 120.0),
+            threshold: 0.39,
             invert: true,
             ..ProfileOptions::default()
         };
-        let (count, all) = near(&dark);
-        assert!(count > 150 && 10 * count > 7 * all, "{count} of {all}");
+        // Its loops close along the axis.
+        let (count, all) = near(&light);
+        assert!(count > 200 && all < 350, "{count} of {all}");
     }
 }
