@@ -4,13 +4,16 @@ use crate::Photo;
 
 /// Levels of 255 that a pixel may be from one of the two greys, and its channels from each other.
 const NEAR: i32 = 20;
+/// Levels that the mean of 5 x 5 pixels near one grey may be from it: noise is averaged away, and
+/// light that changes is not.
+const EVEN: i32 = 7;
 /// Part of the pixels that may be neither near a grey nor on an edge between both.
 const FEW: f64 = 0.01;
 /// Pixels that are looked at.
-const MOST: f64 = 1e6;
+const MOST: f64 = 3e5;
 
 /// Returns true if the picture has no colour, and if at least 99 % of its pixels over white are near
-/// two greys, or have pixels near both greys beside them.
+/// two even greys, or have pixels near both greys beside them.
 #[must_use]
 pub fn is_drawing(photo: &Photo) -> bool {
     let (w, h) = (photo.width as usize, photo.height as usize);
@@ -51,20 +54,31 @@ pub fn is_drawing(photo: &Photo) -> bool {
     let (Some(first), Some(second)) = (first, peak(first)) else {
         return false;
     };
-    let at = |x: usize, y: usize| {
-        let grey = grey(photo.rgba[y * w + x]).0;
-        [(grey - first).abs() <= NEAR, (grey - second).abs() <= NEAR]
-    };
-    let on_edge = |x: usize, y: usize| {
-        let mut both = [false; 2];
-        for y in y.saturating_sub(1)..(y + 2).min(h) {
-            for x in x.saturating_sub(1)..(x + 2).min(w) {
-                let near = at(x, y);
-                both = [both[0] | near[0], both[1] | near[1]];
+    // The mean of what is near a peak is less moved by noise.
+    let shades = [first, second].map(|peak| {
+        let near = (peak - NEAR).max(0)..=(peak + NEAR).min(255);
+        let count: u32 = near.clone().map(|k| counts[k as usize]).sum();
+        let sum: u32 = near.map(|k| k as u32 * counts[k as usize]).sum();
+        (sum / count.max(1)) as i32
+    });
+    let strange = places().filter(|&(x, y)| {
+        let near = |y: usize, most: usize| y.saturating_sub(2)..(y + 3).min(most);
+        let around = near(y, h).flat_map(|j| near(x, w).map(move |i| (i, j)));
+        let (mut next, mut own, mut mean) = ([0, 0], [false; 2], [0, 0]);
+        for (i, j) in around {
+            let grey = grey(photo.rgba[j * w + i]).0;
+            let is = shades.map(|shade| (grey - shade).abs() <= NEAR);
+            let beside = i.abs_diff(x) <= 1 && j.abs_diff(y) <= 1;
+            (0..2).for_each(|k| next[k] += usize::from(is[k] && beside));
+            (0..2).for_each(|k| mean[k] += if is[k] { grey } else { i32::MIN / 64 });
+            if (i, j) == (x, y) {
+                own = is;
             }
         }
-        both == [true; 2]
-    };
-    let strange = places().filter(|&(x, y)| at(x, y) == [false; 2] && !on_edge(x, y));
+        let count = (near(x, w).len() * near(y, h).len()) as i32;
+        let on_edge = next[0] > 0 && next[1] > 0;
+        let uneven = |k: usize| mean[k] > 0 && (mean[k] / count - shades[k]).abs() > EVEN;
+        own == [false; 2] && !on_edge || uneven(0) || uneven(1)
+    });
     strange.count() as f64 <= most
 }

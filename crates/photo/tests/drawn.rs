@@ -352,7 +352,7 @@ fn drawings_are_told_from_photographs() {
     });
     assert!(!is_drawing(&photo(&colored)));
     let lit = Scene {
-        light: [1.0, 0.6],
+        light: [1.0, 0.88],
         ..scene
     };
     assert!(!is_drawing(&photo(&lit.plain())));
