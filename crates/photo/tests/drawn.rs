@@ -146,7 +146,7 @@ fn assert_sure(pixels: &[[u8; 4]], least: f64) -> Reading {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_tilted_lit_and_shadowed_thing_comes_back(
