@@ -271,10 +271,6 @@ fn trace_local(object: &Object, origin: DVec3, direction: DVec3) -> Found {
 }
 
 impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
     fn vector(&mut self, low: f64, high: f64) -> DVec3 {
         DVec3::from_array(std::array::from_fn(|_| self.between(low, high)))
     }
