@@ -8,10 +8,11 @@
 //! ```
 //! use revmap_photo::{Photo, is_drawing, read};
 //!
-//! // A pale ball before a blue wall, lit from the left.
-//! let pixel = |x: i32, y: i32| match (x - 60).pow(2) + (y - 80).pow(2) < 1600 {
-//!     true => [230 - x as u8, 215 - x as u8, 190 - x as u8, 255],
-//!     false => [60, 80, 130, 255],
+//! // A pale ball before a blue wall, lit from the left. As in all photographs, edges are soft.
+//! let pixel = |x: i32, y: i32| {
+//!     let of_ball = (40.5 - f64::from(x - 60).hypot(f64::from(y - 80))).clamp(0.0, 1.0);
+//!     let mixed = |ball: i32, wall: i32| wall + (of_ball * f64::from(ball - x - wall)) as i32;
+//!     [mixed(230, 60) as u8, mixed(215, 80) as u8, mixed(190, 130) as u8, 255]
 //! };
 //! let rgba: Vec<_> = (0..160 * 120).map(|i| pixel(i % 120, i / 120)).collect();
 //! let photo = Photo { width: 120, height: 160, rgba: &rgba };
