@@ -2,8 +2,7 @@
 
 use super::notes::{Notes, line_at, line_starts};
 use super::reader::SVG;
-use super::selector::Selector;
-use super::selector_reader::selectors;
+use super::selector::{Selector, selectors};
 use super::value::unescaped;
 
 /// Rules and `@media` may be nested this deep.
