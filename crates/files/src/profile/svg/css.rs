@@ -3,7 +3,6 @@
 use super::notes::{Notes, line_at, line_starts};
 use super::reader::SVG;
 use super::selector::{Selector, selectors};
-use super::value::unescaped;
 
 /// Rules and `@media` may be nested this deep.
 const MOST_NESTED: usize = 32;
@@ -53,9 +52,12 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
         let Some((name, value)) = part.split_once(':') else {
             continue;
         };
-        let name = match unescaped(name.trim()) {
-            custom if custom.starts_with("--") => custom,
-            name => name.to_ascii_lowercase(),
+        let mut input = cssparser::Parser::new(name);
+        let name = input.expect_ident_cloned();
+        let name = match name.and_then(|name| input.expect_exhausted().map(|()| name)) {
+            Ok(custom) if custom.starts_with("--") => custom.to_string(),
+            Ok(name) => name.to_ascii_lowercase(),
+            Err(_) => continue,
         };
         let plain = name.strip_prefix("-webkit-");
         let name = plain.filter(|p| is_in(PREFIXED, p)).unwrap_or(&name);
