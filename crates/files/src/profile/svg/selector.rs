@@ -24,6 +24,8 @@ use std::ptr::NonNull;
 
 /// Parentheses may be nested this deep.
 const MOST_NESTED: u8 = 16;
+/// Most parts of a selector: matching goes deeper with each.
+const MOST_PARTS: usize = 100;
 /// Most steps from element to element while selectors of one drawing are matched.
 const MOST_STEPS: u64 = 30_000_000;
 /// Pseudo-elements, such as `::selection`.
@@ -39,8 +41,21 @@ pub(super) type Selector = selectors::parser::Selector<Drawings>;
 pub(super) fn selectors(text: &str) -> Option<Vec<Selector>> {
     let mut input = Parser::new(text);
     input.set_nested_block_limit(MOST_NESTED);
-    let list = SelectorList::parse(&Drawings, &mut input, ParseRelative::No);
-    Some(list.ok()?.slice().to_vec())
+    let list = SelectorList::parse(&Drawings, &mut input, ParseRelative::No).ok()?;
+    let is_read = list.slice().iter().all(is_short);
+    is_read.then(|| list.slice().to_vec())
+}
+
+/// Returns true for a selector of few parts, those in parentheses too.
+fn is_short(selector: &Selector) -> bool {
+    let mut parts = selector.iter_raw_match_order();
+    selector.len() <= MOST_PARTS
+        && parts.all(|part| match part {
+            Component::Is(list) | Component::Where(list) | Component::Negation(list) => {
+                list.slice().iter().all(is_short)
+            }
+            _ => true,
+        })
 }
 
 /// What the last part of a selector asks for, so that few rules need be tried.
