@@ -207,9 +207,9 @@ pub(super) fn url(text: &str) -> Option<(Target, &str)> {
     let mut input = cssparser::Parser::new(text);
     let address = input.expect_url().ok()?;
     let (function, rest) = text.split_at(input.position().byte_index());
-    let target = match address.strip_prefix('#') {
+    let target = match address.trim().strip_prefix('#') {
         Some(id) => Ok(id.into()),
-        None => Err((*address).into()),
+        None => Err(address.trim().into()),
     };
     function.ends_with(')').then(|| (target, rest.trim()))
 }
@@ -251,6 +251,7 @@ mod tests {
         for (text, wanted) in [
             ("url(#a) red", Some((Ok("a".into()), "red"))),
             ("URL( '#a b' )", Some((Ok("a b".into()), ""))),
+            ("url(' #a ')", Some((Ok("a".into()), ""))),
             ("url(b.svg#a)", Some((Err("b.svg#a".into()), ""))),
             ("red", None),
             ("url(#a", None),
