@@ -1,8 +1,8 @@
 //! Lines of technical drawings beside a filled shape: named, and left out by one key.
 
-use image::{GrayImage, Luma};
+use crate::seeming::pictured;
 use revmap_files::ProfileAxis::{self, Center, Left};
-use revmap_files::{ProfileOptions, profile_from_bytes, raster};
+use revmap_files::{ProfileOptions, profile_from_bytes};
 
 /// A whole silhouette about x = 50 and its right half, from y = 20 to y = 80.
 const WHOLE: &str = "<path d='M40 20H60L54 45L70 80H30L46 45z'/>";
@@ -25,92 +25,49 @@ fn warnings(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Vec<String> {
     profile_from_bytes(bytes, options).unwrap().warnings
 }
 
-/// The drawing as a picture of `side` pixels.
-fn pictured(bytes: &[u8], side: u32) -> Vec<u8> {
-    let drawing = profile_from_bytes(bytes, Left).unwrap();
-    let half = raster::pictured(&drawing, side, side, 16).unwrap();
-    let coverage = half.raster.unwrap().coverage;
-    let picture = GrayImage::from_fn(side, side, |x, y| {
-        Luma([(255.0 * (1.0 - coverage[(y * side + x) as usize])).round() as u8])
-    });
-    let mut out = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
-    out.into_inner()
-}
-
-const FRAME: &str = "a frame";
-const CENTRE: &str = "a centre line";
 const DIMENSION: &str = "a dimension or extension line";
-const CURVE: &str = "a thin line";
 
 /// Shape, lines, and the kinds in the drawing and in its picture.
-type Case = (
-    &'static str,
-    &'static str,
-    &'static [&'static str],
-    &'static [&'static str],
-);
-const CASES: [Case; 14] = [
-    (
-        WHOLE,
-        "<rect x='4' y='4' width='92' height='92'/>",
-        &[FRAME],
-        &[FRAME],
-    ),
-    (
-        WHOLE,
-        "<path d='M4 4H96M96 4V96M96 96H4M4 96V4'/>",
-        &[FRAME],
-        &[FRAME],
-    ),
-    (HALF, "<path d='M0 4H96V96H0'/>", &[FRAME], &[FRAME]),
-    (
-        WHOLE,
-        "<path d='M50 5V95' stroke-dasharray='8 1.5 1 1.5'/>",
-        &[CENTRE],
-        &[CENTRE],
-    ),
-    (WHOLE, "<path d='M50 5V95'/>", &[CENTRE], &[CENTRE]),
-    (WHOLE, "<path d='M50 5V95M20 50H80'/>", &[CENTRE], &[CENTRE]),
-    (
-        HALF,
-        "<path d='M0 5V95' stroke-width='.8'/>",
-        &[CENTRE],
-        &[CENTRE],
-    ),
-    (
-        HALF,
-        "<path d='M10 20H45M20 80H45M42 20V80'/>",
-        &[DIMENSION],
-        &[DIMENSION],
-    ),
-    (
-        WHOLE,
-        "<path d='M60 20H95M70 80H95M92 20V80'/>",
-        &[DIMENSION],
-        &[DIMENSION],
-    ),
-    (
-        WHOLE,
-        "<path d='M30 80V95M70 80V95M30 92H70'/>",
-        &[DIMENSION],
-        &[DIMENSION],
-    ),
-    (WHOLE, "<path d='M60 20L80 10'/>", &[DIMENSION], &[]),
-    (WHOLE, "<path d='M70 30C80 30 90 40 90 50'/>", &[CURVE], &[]),
-    (
-        WHOLE,
-        "<rect x='4' y='4' width='92' height='92'/><path d='M50 10V90M70 20C74 20 74 30 70 30'/>",
-        &[FRAME, CENTRE, CURVE],
-        &[FRAME, CENTRE],
-    ),
-    (
-        HALF,
-        "<path d='M10 20H45M20 80H45M42 20V80M0 8V90'/>",
-        &[CENTRE, DIMENSION],
-        &[CENTRE, DIMENSION],
-    ),
-];
+const CASES: &str = "
+whole | <rect x='4' y='4' width='92' height='92'/> | a frame | a frame
+whole | <path d='M4 4H96M96 4V96M96 96H4M4 96V4'/> | a frame | a frame
+half | <path d='M0 4H96V96H0'/> | a frame | a frame
+whole | <path d='M50 5V95' stroke-dasharray='8 1.5 1 1.5'/> | a centre line | a centre line
+whole | <path d='M50 5V95'/> | a centre line | a centre line
+whole | <path d='M50 5V95M20 50H80'/> | a centre line | a centre line
+half | <path d='M0 5V95' stroke-width='.8'/> | a centre line | a centre line
+half | <path d='M10 20H45M20 80H45M42 20V80'/> | a dimension | a dimension
+whole | <path d='M60 20H95M70 80H95M92 20V80'/> | a dimension | a dimension
+whole | <path d='M30 80V95M70 80V95M30 92H70'/> | a dimension | a dimension
+whole | <path d='M60 20L80 10'/> | a dimension |
+whole | <path d='M70 30C80 30 90 40 90 50'/> | a thin line |
+whole | <rect x='4' y='4' width='92' height='92'/><path d='M50 10V90M70 20C74 20 74 30 70 30'/> | a frame, a centre line, a thin line | a frame, a centre line
+half | <path d='M10 20H45M20 80H45M42 20V80M0 8V90'/> | a centre line, a dimension | a centre line, a dimension";
+
+/// The cases, each kind by its whole name.
+fn cases() -> Vec<(&'static str, &'static str, [Vec<&'static str>; 2])> {
+    let kinds = |text: &'static str| -> Vec<&str> {
+        let names = text
+            .split(',')
+            .map(str::trim)
+            .filter(|name| !name.is_empty());
+        names
+            .map(|name| {
+                if name == "a dimension" {
+                    DIMENSION
+                } else {
+                    name
+                }
+            })
+            .collect()
+    };
+    let case = |line: &'static str| {
+        let parts: Vec<&str> = line.split('|').map(str::trim).collect();
+        let shape = if parts[0] == "half" { HALF } else { WHOLE };
+        (shape, parts[1], [kinds(parts[2]), kinds(parts[3])])
+    };
+    CASES.lines().skip(1).map(case).collect()
+}
 
 fn axis_of(shape: &str) -> ProfileAxis {
     if shape == HALF { Left } else { Center }
@@ -130,10 +87,10 @@ fn named(found: &[String], kinds: &[&str], words: &[&str]) {
 
 #[test]
 fn lines_beside_a_shape_are_named() {
-    for (shape, lines, kinds, _) in CASES {
+    for (shape, lines, [kinds, _]) in cases() {
         println!("{lines}");
         let found = warnings(&svg(shape, lines), axis_of(shape), 0.0);
-        named(&found, kinds, &["(line 3)", "profile_min_stroke = 0.00"]);
+        named(&found, &kinds, &["(line 3)", "profile_min_stroke = 0.00"]);
         let (_, rest) = found[0].split_once("min_stroke = ").unwrap();
         let min_stroke: f64 = rest.parse().unwrap();
         assert!(min_stroke > 0.004 && min_stroke < 0.01, "{min_stroke}");
@@ -151,7 +108,7 @@ fn lines_beside_a_shape_are_named() {
 
 #[test]
 fn lines_of_pictures_are_named() {
-    for (shape, lines, _, kinds) in CASES {
+    for (shape, lines, [_, kinds]) in cases() {
         for side in [300, 800] {
             println!("{side} {lines}");
             // Lines of a third of a pixel would not show.
@@ -168,7 +125,7 @@ fn lines_of_pictures_are_named() {
             if kinds.is_empty() {
                 continue;
             }
-            named(&found, kinds, &["erase it"]);
+            named(&found, &kinds, &["erase it"]);
         }
     }
 }

@@ -259,6 +259,14 @@ fn circles_and_depth_are_refused() {
             + &"</tspan>".repeat(100_000)
             + "</text>";
         assert!(drawn(&deep).is_err());
+        let chain = "rect + ".repeat(20_000) + "rect";
+        let siblings = rect.repeat(20_000);
+        for selector in [&chain, &format!(":is({chain})")] {
+            let long = drawn(&format!(
+                "<style>{selector} {{fill:#fff}}</style>{siblings}"
+            ));
+            assert!(long.unwrap_err().to_string().contains("rect + rect"));
+        }
         let nested = "<g opacity='.999'>".repeat(190) + rect + &"</g>".repeat(190);
         assert!(drawn(&nested).is_ok());
         let links: String = (0..100_000)

@@ -27,7 +27,7 @@ fn png(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
 }
 
 /// A drawing as a picture of `side` pixels: the colours of its body, black on white otherwise.
-fn pictured(bytes: &[u8], side: u32) -> Vec<u8> {
+pub fn pictured(bytes: &[u8], side: u32) -> Vec<u8> {
     let drawing = profile_from_bytes(bytes, Left).unwrap();
     let half = revmap_files::raster::pictured(&drawing, side, side, 64).unwrap();
     let coverage = half.raster.unwrap().coverage;

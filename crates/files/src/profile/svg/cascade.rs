@@ -5,7 +5,7 @@ use super::custom::{Custom, filled};
 use super::motion::OTHER_SHEET;
 use super::notes::Notes;
 use super::reader::{XHTML, is_svg};
-use super::selector::{Key, Places, Selector};
+use super::selector::{Key, Matcher};
 use super::value::Value;
 use super::value::attribute;
 use crate::content_fault;
@@ -14,14 +14,14 @@ use roxmltree::Node;
 use std::collections::HashMap;
 
 /// Importance, then attribute, rule or `style` attribute, then specificity.
-type Strength = (bool, u8, [u32; 3]);
+type Strength = (bool, u8, u32);
 
 /// All style sheets of a drawing.
 pub(super) struct Sheets {
     rules: Vec<Rule>,
     /// Places of rules by what the last part of a selector asks for.
     index: HashMap<Key, Vec<usize>>,
-    places: Places,
+    matcher: Matcher,
 }
 
 impl Sheets {
@@ -58,7 +58,7 @@ impl Sheets {
         }
         let mut index: HashMap<Key, Vec<usize>> = HashMap::new();
         for (i, rule) in rules.iter().enumerate() {
-            for key in rule.selectors.iter().map(Selector::key) {
+            for key in rule.selectors.iter().map(Key::of) {
                 index.entry(key).or_default().push(i);
             }
             if rule.selectors.is_empty() {
@@ -68,7 +68,7 @@ impl Sheets {
         Self {
             rules,
             index,
-            places: Places::of(document),
+            matcher: Matcher::default(),
         }
     }
 
@@ -83,8 +83,8 @@ impl Sheets {
             let matching = rule
                 .selectors
                 .iter()
-                .filter(|s| s.matches(node, &self.places));
-            let specificity = matching.map(|s| s.specificity).max();
+                .filter(|s| self.matcher.matches(s, node));
+            let specificity = matching.map(|s| s.specificity()).max();
             let declared = || rule.declarations.iter().map(|d| d.name.as_str());
             if let Some(unread) = &rule.unread {
                 let may_match = specificity.is_some() || rule.selectors.is_empty();
@@ -106,13 +106,13 @@ impl Sheets {
                 }
             }
         }
-        if self.places.is_spent() {
+        if self.matcher.is_spent() {
             return Err(content_fault(
                 "the drawing has selectors that take too long; write simpler ones",
             ));
         }
         for d in declarations(attribute(node, "style").unwrap_or_default()) {
-            found.push(((d.important, 2, [0; 3]), d));
+            found.push(((d.important, 2, 0), d));
         }
         // A stable sort keeps the order of the document among equals.
         found.sort_by_key(|(strength, _)| *strength);
@@ -162,7 +162,7 @@ fn attributes(node: Node) -> Vec<(Strength, Declaration)> {
             css: false,
         }
     };
-    own.map(|a| ((false, 0, [0; 3]), declaration(a))).collect()
+    own.map(|a| ((false, 0, 0), declaration(a))).collect()
 }
 
 /// The text of an element. Comments within it leave their line ends.

@@ -1,8 +1,7 @@
 //! Colours of CSS, as values of sRGB.
 
-use super::value::{Value, radians, split_number};
-use color::ColorSpaceTag as Tag;
-use std::str::FromStr;
+use super::value::Value;
+use ::color::{ColorSpaceTag, Srgb, parse_color};
 
 /// Red, green, blue and alpha from 0 to 1; not premultiplied.
 pub(super) type Color = [f32; 4];
@@ -18,145 +17,78 @@ const FUNCTIONS: [&str; 2] = [
     "rgb rgba hsl hsla hwb lab lch oklab oklch color",
     "color-mix light-dark device-cmyk contrast-color var env",
 ];
+/// Spaces of `color()` that are read.
+const SPACES: [&str; 3] = ["srgb", "srgb-linear", "display-p3"];
 const REMEDY: &str = "write the colour as #rrggbb";
 
 /// Reads a colour. `currentColor` is left to the caller.
 pub(super) fn color(text: &str) -> Value<Color> {
-    if let Some((head, _)) = split_at_word(text, &["icc-color(", "device-color("]) {
-        return match color(head) {
+    let small = text.to_ascii_lowercase();
+    let profile = ["icc-color(", "device-color("].iter();
+    if let Some(at) = profile
+        .filter_map(|word| small.find(word))
+        .min()
+        .filter(|at| *at > 0)
+    {
+        return match color(text[..at].trim()) {
             Value::Is(color) => Value::Near(color, "its sRGB colour counts, not the one after it"),
             other => other,
         };
     }
-    if let Some((name, arguments)) = text.split_once('(') {
-        let Some(arguments) = arguments.strip_suffix(')') else {
-            return Value::Wrong;
-        };
-        return function(&name.to_ascii_lowercase(), arguments);
-    }
-    match text.to_ascii_lowercase().as_str() {
-        "transparent" => return Value::Is([0.0; 4]),
-        "rebeccapurple" => return Value::Is([0.4, 0.2, 0.6, 1.0]),
-        "canvas" => return Value::Is([1.0; 4]),
-        "canvastext" => return Value::Is(BLACK),
-        name if SYSTEM.split(' ').any(|n| n == name) => return Value::Unread(REMEDY),
+    match (small.as_str(), small.split_once('(')) {
+        (_, Some((name, arguments))) => match function(name, arguments) {
+            Value::Is(()) => {}
+            Value::Unread(remedy) => return Value::Unread(remedy),
+            _ => return Value::Wrong,
+        },
+        ("canvas", _) => return Value::Is([1.0; 4]),
+        ("canvastext", _) => return Value::Is(BLACK),
+        (name, _) if SYSTEM.split(' ').any(|n| n == name) => return Value::Unread(REMEDY),
         _ => {}
     }
-    // `svgtypes` reads trailing letters of a bad hexadecimal number as an end.
-    let named = svgtypes::Color::from_str(text).ok();
-    Value::from_option(
-        named.map(|c| [c.red, c.green, c.blue, c.alpha].map(|v| f32::from(v) / 255.0)),
-    )
-}
-
-fn split_at_word<'a>(text: &'a str, words: &[&str]) -> Option<(&'a str, &'a str)> {
-    let small = text.to_ascii_lowercase();
-    let at = words.iter().filter_map(|w| small.find(w)).min()?;
-    (at > 0).then(|| (text[..at].trim(), &text[at..]))
-}
-
-/// One argument of a function: its number and its unit.
-#[derive(Clone, Copy)]
-struct Part<'a>(f64, &'a str);
-
-impl Part<'_> {
-    /// The value with percentages of `whole`.
-    fn of(self, whole: f64) -> Option<f64> {
-        match self.1 {
-            "" => Some(self.0),
-            "%" => Some(self.0 / 100.0 * whole),
-            _ => None,
-        }
+    let Ok(mut read) = parse_color(&small) else {
+        return Value::Wrong;
+    };
+    if read.cs == ColorSpaceTag::Hsl {
+        read.components[1] = read.components[1].min(100.0);
     }
-
-    fn degrees(self) -> Option<f64> {
-        match self.1 {
-            "" => Some(self.0),
-            "deg" => Some(self.0),
-            unit => radians(self.0, unit).map(f64::to_degrees),
-        }
-    }
+    let components = read.to_alpha_color::<Srgb>().components;
+    Value::Is(components.map(|v| v.clamp(0.0, 1.0)))
 }
 
-fn function(name: &str, arguments: &str) -> Value<Color> {
+/// Checks what `parse_color` is lax about.
+fn function(name: &str, arguments: &str) -> Value<()> {
+    let Some(arguments) = arguments.strip_suffix(')') else {
+        return Value::Wrong;
+    };
     let [read, known] = FUNCTIONS.map(|list| list.split(' ').any(|known| known == name));
-    let is_unread = arguments.contains('(') || arguments.trim_start().starts_with("from ");
+    let ends = |c: char| c.is_ascii_whitespace() || c == ',';
+    let space = arguments
+        .trim_start()
+        .split(ends)
+        .next()
+        .unwrap_or_default();
+    let is_unread = arguments.contains('(') || space == "from";
     match (read, known) {
         (true, _) if !is_unread => {}
         (false, false) => return Value::Wrong,
         _ => return Value::Unread(REMEDY),
     }
-    // Commas are of the older notation, which has no slash.
-    let older = arguments.contains(',');
-    let (body, alpha) = match arguments.split_once('/').filter(|_| !older) {
-        Some((body, alpha)) => (body, Some(alpha.trim())),
-        None => (arguments, None),
-    };
-    let mut words: Vec<&str> = match older {
-        true => body.split(',').map(str::trim).collect(),
-        false => body.split_ascii_whitespace().collect(),
-    };
-    let space = (name == "color" && !words.is_empty()).then(|| words.remove(0));
-    let has_commas = matches!(name, "rgb" | "rgba" | "hsl" | "hsla");
-    if (older && !has_commas) || (!older && words.len() != 3) {
-        return Value::Wrong;
+    if name == "color" && !SPACES.contains(&space) {
+        return Value::Unread(REMEDY);
     }
-    words.extend(alpha);
-    let parts: Option<Vec<Part>> = words
-        .iter()
-        .map(|w| match *w {
-            "none" if !older => Some(Part(0.0, "")),
-            w => split_number(w).map(|(v, unit)| Part(v, unit)),
-        })
+    // Commas are of the older notation.
+    let parts: Vec<bool> = arguments
+        .split(',')
+        .map(|part| part.trim().ends_with('%'))
         .collect();
-    let Some(&[a, b, c, ref alpha @ ..]) = parts.as_deref() else {
-        return Value::Wrong;
-    };
-    let even = match name.starts_with("rgb") {
-        true => a.1 == b.1 && b.1 == c.1,
-        false => b.1 == "%" && c.1 == "%",
-    };
-    if older && !even {
-        return Value::Wrong;
-    }
-    let alpha = match alpha {
-        [] => Some(1.0),
-        [alpha] => alpha.of(1.0),
+    Value::from_option(match parts[..] {
+        [_] => Some(()),
+        _ if arguments.contains("none") => None,
+        [a, b, c, ..] if name.starts_with("rgb") => (a == b && b == c).then_some(()),
+        [_, b, c, ..] => (b && c).then_some(()),
         _ => None,
-    };
-    let tag = match (name, space) {
-        (_, Some("srgb")) | ("rgb" | "rgba", _) => Tag::Srgb,
-        (_, Some("srgb-linear")) => Tag::LinearSrgb,
-        (_, Some("display-p3")) => Tag::DisplayP3,
-        (_, Some(_)) => return Value::Unread(REMEDY),
-        ("hsl" | "hsla", _) => Tag::Hsl,
-        ("hwb", _) => Tag::Hwb,
-        ("lab", _) => Tag::Lab,
-        ("lch", _) => Tag::Lch,
-        ("oklab", _) => Tag::Oklab,
-        ("oklch", _) => Tag::Oklch,
-        _ => return Value::Wrong,
-    };
-    // What a hundred percent are.
-    let read = match tag {
-        Tag::Hsl | Tag::Hwb => [a.degrees(), b.of(100.0), c.of(100.0)],
-        Tag::Lab => [a.of(100.0), b.of(125.0), c.of(125.0)],
-        Tag::Lch => [a.of(100.0), b.of(150.0), c.degrees()],
-        Tag::Oklab => [a.of(1.0), b.of(0.4), c.of(0.4)],
-        Tag::Oklch => [a.of(1.0), b.of(0.4), c.degrees()],
-        _ if space.is_none() => [a, b, c].map(|part| Some(part.of(255.0)? / 255.0)),
-        _ => [a, b, c].map(|part| part.of(1.0)),
-    };
-    let ([Some(a), Some(b), Some(c)], Some(alpha)) = (read, alpha) else {
-        return Value::Wrong;
-    };
-    let b = if tag == Tag::Hsl {
-        b.clamp(0.0, 100.0)
-    } else {
-        b
-    };
-    let [r, g, b] = tag.convert(Tag::Srgb, [a, b, c].map(|v| v as f32));
-    Value::Is([r, g, b, alpha as f32].map(|v| v.clamp(0.0, 1.0)))
+    })
 }
 
 #[cfg(test)]

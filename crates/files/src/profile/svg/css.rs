@@ -2,9 +2,8 @@
 
 use super::notes::{Notes, line_at, line_starts};
 use super::reader::SVG;
-use super::selector::Selector;
-use super::selector_reader::selectors;
-use super::value::unescaped;
+use super::selector::{Selector, selectors};
+use cssparser::{Parser, Token};
 
 /// Rules and `@media` may be nested this deep.
 const MOST_NESTED: usize = 32;
@@ -54,9 +53,12 @@ pub(super) fn declarations(text: &str) -> Vec<Declaration> {
         let Some((name, value)) = part.split_once(':') else {
             continue;
         };
-        let name = match unescaped(name.trim()) {
-            custom if custom.starts_with("--") => custom,
-            name => name.to_ascii_lowercase(),
+        let mut input = Parser::new(name);
+        let name = input.expect_ident_cloned();
+        let name = match name.and_then(|name| input.expect_exhausted().map(|()| name)) {
+            Ok(custom) if custom.starts_with("--") => custom.to_string(),
+            Ok(name) => name.to_ascii_lowercase(),
+            Err(_) => continue,
         };
         let plain = name.strip_prefix("-webkit-");
         let name = plain.filter(|p| is_in(PREFIXED, p)).unwrap_or(&name);
@@ -295,29 +297,21 @@ pub(super) fn one_line(text: &str) -> String {
 /// Splits at the first of `stops` outside of quotes and brackets: the text before it, the letter,
 /// the text after it.
 fn until<'a>(text: &'a str, stops: &[char]) -> (&'a str, Option<char>, &'a str) {
-    let (mut open, mut quote): (Vec<char>, Option<char>) = (Vec::new(), None);
-    let mut letters = text.char_indices();
-    while let Some((i, c)) = letters.next() {
-        if c == '\\' {
-            letters.next();
-        } else if let Some(q) = quote {
-            if c == q {
-                quote = None;
-            }
-        } else if open.is_empty() && stops.contains(&c) {
-            return (&text[..i], Some(c), &text[i + c.len_utf8()..]);
-        } else {
-            match c {
-                '"' | '\'' => quote = Some(c),
-                '(' => open.push(')'),
-                '[' => open.push(']'),
-                '{' => open.push('}'),
-                _ if open.last() == Some(&c) => drop(open.pop()),
-                _ => {}
-            }
+    let mut input = Parser::new(text);
+    loop {
+        let stop = match input.next_including_whitespace() {
+            Ok(Token::Semicolon) => ';',
+            Ok(Token::Comma) => ',',
+            Ok(Token::CurlyBracketBlock) => '{',
+            Ok(Token::CloseCurlyBracket) => '}',
+            Ok(_) => continue,
+            Err(_) => return (text, None, ""),
+        };
+        if stops.contains(&stop) {
+            let after = input.position().byte_index();
+            return (&text[..after - 1], Some(stop), &text[after..]);
         }
     }
-    (text, None, "")
 }
 
 /// Comments become blanks, their line ends stay.

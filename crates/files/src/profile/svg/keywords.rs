@@ -2,8 +2,7 @@
 
 use super::color::color;
 use super::style::{Paint, Target};
-use super::value::{Length, Value, list, unescaped, url};
-use std::rc::Rc;
+use super::value::{Length, Value, list, url};
 
 /// A reading of one of these words.
 pub(super) fn words<T: Clone>(list: &[(&'static str, T)]) -> impl Fn(&str, bool) -> Value<T> {
@@ -24,7 +23,6 @@ pub(super) fn positive(length: Value<Length>) -> Value<Length> {
 
 pub(super) fn paint(text: &str) -> Value<Paint> {
     if let Some((target, fallback)) = url(text) {
-        let target = address(target);
         if fallback.is_empty() {
             return Value::Is(Paint::Server(target, None));
         }
@@ -43,11 +41,6 @@ pub(super) fn paint(text: &str) -> Value<Paint> {
     }
 }
 
-fn address(target: std::result::Result<&str, &str>) -> Target {
-    let kept = |text: &str| Rc::from(unescaped(text));
-    target.map(kept).map_err(kept)
-}
-
 /// Returns true for words of `display` that show an element.
 pub(super) fn is_display(word: &str) -> bool {
     let plain = word.split(['-', ' ']).next().unwrap_or_default();
@@ -61,7 +54,7 @@ pub(super) fn target(text: &str, _: bool) -> Value<Option<Target>> {
         return Value::Is(None);
     }
     match url(text) {
-        Some((target, "")) => Value::Is(Some(address(target))),
+        Some((target, "")) => Value::Is(Some(target)),
         _ => Value::Wrong,
     }
 }

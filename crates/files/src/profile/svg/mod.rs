@@ -21,7 +21,6 @@ mod properties;
 mod reader;
 mod references;
 mod selector;
-mod selector_reader;
 mod shapes;
 mod strokes;
 mod style;

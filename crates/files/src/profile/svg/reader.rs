@@ -10,6 +10,7 @@ use super::tree::{Clip, Group, Node as Drawn, Path, bounds, is_painted};
 use super::value::attribute;
 use crate::content_fault;
 use kurbo::{Affine, BezPath, Shape};
+use percent_encoding::percent_decode_str;
 use revmap::error::Result;
 use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
@@ -108,7 +109,7 @@ impl<'a> Reader<'a> {
     }
 
     pub fn by_id(&self, id: &str) -> Option<Node<'a, 'a>> {
-        let plain = || self.ids.get(percent_decoded(id)?.as_str());
+        let plain = || self.ids.get(&*percent_decode_str(id).decode_utf8().ok()?);
         self.ids.get(id).or_else(plain).copied()
     }
 
@@ -429,19 +430,6 @@ impl<'a> Reader<'a> {
         let how = ", which is not in it and is ignored, as in browsers";
         self.notes.warn_at(node, &format!("a {name} \"{id}\""), how);
     }
-}
-
-/// Text with `%20` and alike decoded; `None` if nothing is.
-fn percent_decoded(text: &str) -> Option<String> {
-    let mut bytes = Vec::new();
-    let mut rest = text.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        let code = after.get(..2).filter(|_| first == b'%');
-        let code = code.and_then(|c| u8::from_str_radix(str::from_utf8(c).ok()?, 16).ok());
-        bytes.push(code.unwrap_or(first));
-        rest = code.map_or(after, |_| &after[2..]);
-    }
-    String::from_utf8(bytes).ok().filter(|t| t != text)
 }
 
 fn has_letters(node: Node) -> bool {

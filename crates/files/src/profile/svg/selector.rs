@@ -1,51 +1,61 @@
 //! Selectors of CSS: which elements a rule is for.
 
 use super::value::attribute;
-use roxmltree::{Node, NodeId};
-use std::cell::Cell;
-use std::collections::{HashMap, HashSet};
+use cssparser::{Parser, ToCss};
+use precomputed_hash::PrecomputedHash;
+use roxmltree::Node;
+use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};
+use selectors::bloom::BloomFilter;
+use selectors::context::{
+    MatchingContext, MatchingForInvalidation, MatchingMode, NeedsSelectorFlags, QuirksMode,
+    SelectorCaches,
+};
+use selectors::matching::{ElementSelectorFlags, matches_selector};
+use selectors::parser::{
+    Component, NonTSPseudoClass, ParseRelative, PseudoElement, SelectorImpl, SelectorList,
+    SelectorParseError, SelectorParseErrorKind,
+};
+use selectors::{Element, OpaqueElement};
+use std::borrow::Borrow;
+use std::cell::{Cell, RefCell};
+use std::fmt::{Result as Written, Write};
+use std::num::NonZeroUsize;
+use std::ptr::NonNull;
+
+/// Parentheses may be nested this deep.
+const MOST_NESTED: u8 = 16;
+/// Most parts of a selector: matching goes deeper with each.
+const MOST_PARTS: usize = 100;
+/// Most steps from element to element while selectors of one drawing are matched.
+const MOST_STEPS: u64 = 30_000_000;
+/// Pseudo-elements, such as `::selection`.
+const ELEMENTS: &str = "before after selection marker first-line first-letter";
+/// Pseudo-classes that no element of a still picture has.
+const NEVER: &str =
+    "hover active focus focus-visible focus-within visited target checked disabled enabled";
 
 /// A selector without commas.
-#[derive(Clone, Debug)]
-pub(super) struct Selector {
-    /// Each with what joins it to the one before it.
-    pub parts: Vec<(Combinator, Vec<Test>)>,
-    /// Number of ids, of classes and alike, of types.
-    pub specificity: [u32; 3],
+pub(super) type Selector = selectors::parser::Selector<Drawings>;
+
+/// Reads selectors that commas separate. `None` for one that is not read.
+pub(super) fn selectors(text: &str) -> Option<Vec<Selector>> {
+    let mut input = Parser::new(text);
+    input.set_nested_block_limit(MOST_NESTED);
+    let list = SelectorList::parse(&Drawings, &mut input, ParseRelative::No).ok()?;
+    let is_read = list.slice().iter().all(is_short);
+    is_read.then(|| list.slice().to_vec())
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Combinator {
-    Descendant,
-    Child,
-    Next,
-    Later,
-}
-
-#[derive(Clone, Debug)]
-pub(super) enum Test {
-    Type(String),
-    Id(String),
-    Class(String),
-    Attribute {
-        name: String,
-        how: char,
-        value: String,
-        any_case: bool,
-    },
-    /// `step * n + first` counts from the first or last among all siblings or those of one type.
-    Nth {
-        step: i64,
-        first: i64,
-        from_end: bool,
-        of_type: bool,
-    },
-    Root,
-    Empty,
-    Link,
-    Never,
-    AnyOf(Vec<Selector>),
-    NoneOf(Vec<Selector>),
+/// Returns true for a selector of few parts, those in parentheses too.
+fn is_short(selector: &Selector) -> bool {
+    let mut parts = selector.iter_raw_match_order();
+    selector.len() <= MOST_PARTS
+        && parts.all(|part| match part {
+            Component::Is(list) | Component::Where(list) | Component::Negation(list) => {
+                list.slice().iter().all(is_short)
+            }
+            _ => true,
+        })
 }
 
 /// What the last part of a selector asks for, so that few rules need be tried.
@@ -57,271 +67,318 @@ pub(super) enum Key {
     Any,
 }
 
-/// Most tries to match a part of a selector with an element, of one drawing.
-const MOST_TRIES: u64 = 30_000_000;
-
-/// The place of each element among its siblings.
-pub(super) struct Places {
-    places: HashMap<NodeId, Place>,
-    tries: Cell<u64>,
-}
-
-#[derive(Clone, Copy, Default)]
-struct Place {
-    /// From 1; among all siblings, then among those of the same type.
-    index: [i64; 2],
-    count: [i64; 2],
-}
-
-impl Places {
-    pub fn of(document: &roxmltree::Document) -> Self {
-        let mut places = HashMap::new();
-        for parent in document.descendants() {
-            let mut counts: HashMap<&str, i64> = HashMap::new();
-            let elements = || parent.children().filter(Node::is_element);
-            for (child, all) in elements().zip(1..) {
-                let same = counts.entry(child.tag_name().name()).or_default();
-                *same += 1;
-                let index = [all, *same];
-                places.insert(
-                    child.id(),
-                    Place {
-                        index,
-                        ..Place::default()
-                    },
-                );
-            }
-            let all = elements().count() as i64;
-            for child in elements() {
-                if let Some(place) = places.get_mut(&child.id()) {
-                    place.count = [all, counts[child.tag_name().name()]];
+impl Key {
+    /// What an element needs for the last part of a selector.
+    pub fn of(selector: &Selector) -> Self {
+        let mut key = Self::Any;
+        for part in selector.iter() {
+            match part {
+                Component::ID(id) => return Self::Id(id.0.clone()),
+                Component::Class(class) => key = Self::Class(class.0.clone()),
+                Component::LocalName(name) if key == Self::Any => {
+                    key = Self::Type(name.name.0.clone());
                 }
-            }
-        }
-        Self {
-            places,
-            tries: Cell::new(0),
-        }
-    }
-
-    /// Returns true after too many tries; then selectors match nothing.
-    pub fn is_spent(&self) -> bool {
-        self.tries.get() > MOST_TRIES
-    }
-}
-
-impl Selector {
-    /// What an element needs for the last part of the selector.
-    pub fn key(&self) -> Key {
-        let mut key = Key::Any;
-        for test in self.parts.last().map_or(&[][..], |(_, tests)| tests) {
-            match test {
-                Test::Id(id) => return Key::Id(id.clone()),
-                Test::Class(class) => key = Key::Class(class.clone()),
-                Test::Type(name) if key == Key::Any => key = Key::Type(name.clone()),
                 _ => {}
             }
         }
         key
     }
+}
 
-    /// Returns true if the selector is for this element.
-    pub fn matches(&self, node: Node, places: &Places) -> bool {
-        self.matches_to(self.parts.len(), node, places, &mut HashSet::new())
+/// Matches selectors with the elements of one drawing.
+#[derive(Default)]
+pub(super) struct Matcher {
+    caches: RefCell<SelectorCaches>,
+    steps: Cell<u64>,
+}
+
+impl Matcher {
+    /// Returns true after too many steps; then selectors match nothing more.
+    pub fn is_spent(&self) -> bool {
+        self.steps.get() > MOST_STEPS
     }
 
-    /// Matches the first `count` parts, the last of them with `node`. `failed` keeps the pairs that
-    /// were tried without success, so that no pair is tried twice.
-    fn matches_to(
+    /// Returns true if a selector is for this element.
+    pub fn matches(&self, selector: &Selector, node: Node) -> bool {
+        let mut caches = self.caches.borrow_mut();
+        let mut context = MatchingContext::new(
+            MatchingMode::Normal,
+            None,
+            &mut caches,
+            QuirksMode::NoQuirks,
+            NeedsSelectorFlags::No,
+            MatchingForInvalidation::No,
+        );
+        let matcher = self;
+        matches_selector(selector, 0, None, Tried { node, matcher }, &mut context)
+    }
+}
+
+/// The selectors of drawings: no namespaces but one.
+#[derive(Clone, Debug)]
+pub(super) struct Drawings;
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Name(String);
+
+impl From<&str> for Name {
+    fn from(text: &str) -> Self {
+        Self(text.to_owned())
+    }
+}
+
+impl AsRef<str> for Name {
+    fn as_ref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl Borrow<str> for Name {
+    fn borrow(&self) -> &str {
+        &self.0
+    }
+}
+
+impl PrecomputedHash for Name {
+    fn precomputed_hash(&self) -> u32 {
+        // For Bloom filters, which are not used.
+        0
+    }
+}
+
+/// Pseudo-classes other than those of places among siblings, and pseudo-elements.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Pseudo {
+    Always,
+    Link,
+    Never,
+}
+
+macro_rules! write_nothing {
+    ($($type:ty)*) => {$(
+        impl ToCss for $type {
+            fn to_css<W: Write>(&self, _: &mut W) -> Written {
+                Ok(())
+            }
+        }
+    )*};
+}
+write_nothing! { Name Pseudo }
+
+impl PseudoElement for Pseudo {}
+
+impl NonTSPseudoClass for Pseudo {
+    fn is_active_or_hover(&self) -> bool {
+        false
+    }
+
+    fn is_user_action_state(&self) -> bool {
+        false
+    }
+}
+
+impl SelectorImpl for Drawings {
+    type ExtraMatchingData<'a> = ();
+    type AttrValue = Name;
+    type Identifier = Name;
+    type LocalName = Name;
+    type NamespaceUrl = Name;
+    type NamespacePrefix = Name;
+    type BorrowedNamespaceUrl = str;
+    type BorrowedLocalName = str;
+    type NonTSPseudoClass = Pseudo;
+    type PseudoElement = Pseudo;
+}
+
+fn is_in(list: &str, name: &str) -> bool {
+    list.split(' ')
+        .any(|known| known.eq_ignore_ascii_case(name))
+}
+
+fn unread<T>() -> Result<T, SelectorParseError> {
+    Err(SelectorParseError::custom(
+        SelectorParseErrorKind::UnsupportedPseudoClassOrElement,
+    ))
+}
+
+impl selectors::Parser<'_> for Drawings {
+    type Impl = Self;
+    type Error = SelectorParseErrorKind;
+
+    fn parse_is_and_where(&self) -> bool {
+        true
+    }
+
+    fn is_is_alias(&self, name: &str) -> bool {
+        name.eq_ignore_ascii_case("matches")
+    }
+
+    fn allow_forgiving_selectors(&self) -> bool {
+        false
+    }
+
+    fn parse_non_ts_pseudo_class(&self, name: &str) -> Result<Pseudo, SelectorParseError> {
+        match name {
+            _ if is_in(NEVER, name) => Ok(Pseudo::Never),
+            _ if is_in("link any-link", name) => Ok(Pseudo::Link),
+            _ if is_in("defined", name) => Ok(Pseudo::Always),
+            _ => unread(),
+        }
+    }
+
+    fn parse_pseudo_element(&self, name: &str) -> Result<Pseudo, SelectorParseError> {
+        match is_in(ELEMENTS, name) || name.starts_with("-webkit-") {
+            true => Ok(Pseudo::Never),
+            // Others make the rule invalid.
+            false => unread(),
+        }
+    }
+
+    /// Every prefix is that of the drawing's namespace.
+    fn namespace_for_prefix(&self, _: &Name) -> Option<Name> {
+        Some("svg".into())
+    }
+}
+
+/// An element that selectors are tried with.
+#[derive(Clone, Copy)]
+struct Tried<'n> {
+    node: Node<'n, 'n>,
+    matcher: &'n Matcher,
+}
+
+impl std::fmt::Debug for Tried<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> Written {
+        self.node.fmt(f)
+    }
+}
+
+impl<'n> Tried<'n> {
+    /// The element one step away, unless there were too many steps.
+    fn at(self, node: Option<Node<'n, 'n>>) -> Option<Self> {
+        self.matcher.steps.set(self.matcher.steps.get() + 1);
+        let node = node.filter(|_| !self.matcher.is_spent())?;
+        Some(Self { node, ..self })
+    }
+}
+
+impl Element for Tried<'_> {
+    type Impl = Drawings;
+
+    fn opaque(&self) -> OpaqueElement {
+        let id = NonZeroUsize::MIN.saturating_add(self.node.id().get_usize());
+        OpaqueElement::from_ptr(NonNull::without_provenance(id))
+    }
+
+    fn parent_element(&self) -> Option<Self> {
+        self.at(self.node.parent_element())
+    }
+
+    fn prev_sibling_element(&self) -> Option<Self> {
+        self.at(self.node.prev_sibling_element())
+    }
+
+    fn next_sibling_element(&self) -> Option<Self> {
+        self.at(self.node.next_sibling_element())
+    }
+
+    fn first_element_child(&self) -> Option<Self> {
+        self.at(self.node.first_element_child())
+    }
+
+    fn has_local_name(&self, name: &str) -> bool {
+        self.node.tag_name().name() == name
+    }
+
+    fn has_namespace(&self, namespace: &str) -> bool {
+        !namespace.is_empty()
+    }
+
+    fn is_same_type(&self, other: &Self) -> bool {
+        self.has_local_name(other.node.tag_name().name())
+    }
+
+    fn attr_matches(
         &self,
-        count: usize,
-        node: Node,
-        places: &Places,
-        failed: &mut HashSet<(usize, NodeId)>,
+        _: &NamespaceConstraint<&Name>,
+        name: &Name,
+        operation: &AttrSelectorOperation<&Name>,
     ) -> bool {
-        let Some((combinator, tests)) = self.parts[..count].last() else {
-            return true;
-        };
-        places.tries.set(places.tries.get() + 1);
-        if places.is_spent() {
-            return false;
-        }
-        if !tests.iter().all(|t| t.matches(node, places)) {
-            return false;
-        }
-        if count == 1 {
-            return true;
-        }
-        if failed.contains(&(count, node.id())) {
-            return false;
-        }
-        let mut before = |n: Node| self.matches_to(count - 1, n, places, failed);
-        let found = match combinator {
-            Combinator::Child => node.parent_element().is_some_and(before),
-            Combinator::Next => node.prev_sibling_element().is_some_and(before),
-            Combinator::Descendant => {
-                let mut ancestors = node.ancestors().skip(1).filter(Node::is_element);
-                ancestors.any(&mut before)
-            }
-            Combinator::Later => {
-                let mut siblings = node.prev_siblings().skip(1).filter(Node::is_element);
-                siblings.any(&mut before)
-            }
-        };
-        if !found {
-            failed.insert((count, node.id()));
-        }
-        found
+        attribute(self.node, &name.0).is_some_and(|value| operation.eval_str(value))
     }
-}
 
-impl Test {
-    fn matches(&self, node: Node, places: &Places) -> bool {
-        match self {
-            Self::Type(name) => node.tag_name().name() == name,
-            Self::Id(id) => attribute(node, "id") == Some(id),
-            Self::Class(class) => attribute(node, "class")
-                .is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),
-            Self::Attribute {
-                name,
-                how,
-                value,
-                any_case,
-            } => {
-                let found = attribute(node, name);
-                found.is_some_and(|a| match any_case {
-                    true => compare(*how, &a.to_lowercase(), &value.to_lowercase()),
-                    false => compare(*how, a, value),
-                })
-            }
-            Self::Nth {
-                step,
-                first,
-                from_end,
-                of_type,
-            } => {
-                let place = places.places.get(&node.id()).copied().unwrap_or_default();
-                let kind = usize::from(*of_type);
-                let index = match from_end {
-                    true => place.count[kind] + 1 - place.index[kind],
-                    false => place.index[kind],
-                };
-                match (index.saturating_sub(*first), *step) {
-                    (away, 0) => away == 0,
-                    (away, step) => away % step == 0 && away / step >= 0,
-                }
-            }
-            Self::Root => node.parent_element().is_none(),
-            Self::Empty => node.children().all(|c| c.is_comment() || c.is_pi()),
-            Self::Link => {
-                node.tag_name().name() == "a" && node.attributes().any(|a| a.name() == "href")
-            }
-            Self::Never => false,
-            Self::AnyOf(list) => list.iter().any(|s| s.matches(node, places)),
-            Self::NoneOf(list) => !list.iter().any(|s| s.matches(node, places)),
-        }
+    fn match_non_ts_pseudo_class(&self, class: &Pseudo, _: &mut MatchingContext<Drawings>) -> bool {
+        *class == Pseudo::Always || (*class == Pseudo::Link && self.is_link())
     }
-}
 
-fn compare(how: char, found: &str, wanted: &str) -> bool {
-    match how {
-        '=' => found == wanted,
-        '~' => found.split_ascii_whitespace().any(|w| w == wanted),
-        '|' => found
-            .strip_prefix(wanted)
-            .is_some_and(|r| r.is_empty() || r.starts_with('-')),
-        '^' => !wanted.is_empty() && found.starts_with(wanted),
-        '$' => !wanted.is_empty() && found.ends_with(wanted),
-        '*' => !wanted.is_empty() && found.contains(wanted),
-        _ => true,
+    fn match_pseudo_element(&self, _: &Pseudo, _: &mut MatchingContext<Drawings>) -> bool {
+        false
+    }
+
+    fn is_link(&self) -> bool {
+        let mut attributes = self.node.attributes();
+        self.has_local_name("a") && attributes.any(|a| a.name() == "href")
+    }
+
+    fn has_id(&self, id: &Name, _: CaseSensitivity) -> bool {
+        attribute(self.node, "id") == Some(&id.0)
+    }
+
+    fn has_class(&self, name: &Name, _: CaseSensitivity) -> bool {
+        let classes = attribute(self.node, "class").unwrap_or_default();
+        classes
+            .split_ascii_whitespace()
+            .any(|class| class == name.0)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.node.children().all(|c| c.is_comment() || c.is_pi())
+    }
+
+    fn is_root(&self) -> bool {
+        self.node.parent_element().is_none()
+    }
+
+    // What only HTML has.
+
+    fn parent_node_is_shadow_root(&self) -> bool {
+        false
+    }
+
+    fn containing_shadow_host(&self) -> Option<Self> {
+        None
+    }
+
+    fn is_pseudo_element(&self) -> bool {
+        false
+    }
+
+    fn is_html_element_in_html_document(&self) -> bool {
+        false
+    }
+
+    fn is_html_slot_element(&self) -> bool {
+        false
+    }
+
+    fn has_custom_state(&self, _: &Name) -> bool {
+        false
+    }
+
+    fn imported_part(&self, _: &Name) -> Option<Name> {
+        None
+    }
+
+    fn is_part(&self, _: &Name) -> bool {
+        false
+    }
+
+    fn apply_selector_flags(&self, _: ElementSelectorFlags) {}
+
+    fn add_element_unique_hashes(&self, _: &mut BloomFilter) -> bool {
+        false
     }
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::super::selector_reader::selectors;
-    use super::*;
-
-    const TEXT: &str = "<svg><g id='a' class='x y'><rect/><circle/><circle fill='Red-1'/></g>\
-         <g id='b'><a href='#'><path/></a><circle id='c1'/></g><rect/></svg>";
-
-    /// The elements that a selector is for, by their places in the document.
-    fn found(selector: &str) -> Vec<usize> {
-        let document = roxmltree::Document::parse(TEXT).unwrap();
-        let (places, list) = (Places::of(&document), selectors(selector).unwrap());
-        let elements = document.descendants().filter(Node::is_element).enumerate();
-        elements
-            .filter(|(_, n)| list.iter().any(|s| s.matches(*n, &places)))
-            .map(|(i, _)| i)
-            .collect()
-    }
-
-    /// svg 0, g#a 1, rect 2, circle 3, circle 4, g#b 5, a 6, path 7, circle 8, rect 9.
-    const FOUND: &str = r"
-circle => 3 4 8
-* => 0 1 2 3 4 5 6 7 8 9
-svg|rect => 2 9
-.x.y > *, #c1 => 2 3 4 8
-.X => 
-g circle => 3 4 8
-svg > circle => 
-rect + circle => 3
-rect ~ circle => 3 4
-g ~ g path => 7
-circle:nth-child(3) => 4
-circle:nth-of-type(2n + 1) => 3 8
-#a > :nth-child(odd) => 2 4
-#a > :nth-child(-n+2) => 2 3
-#b > :nth-last-child(2) => 6
-g > :last-child => 4 8
-#b :only-child => 7
-#a :only-of-type => 2
-:root > :not(g) => 9
-g:is(#a, #z) > circle:first-of-type => 3
-[fill] => 4
-[fill^=Red] => 4
-[fill='red-1' i] => 4
-[fill|=Red] => 4
-[class~=y] => 1
-[href$='#'] => 6
-:link => 6
-circle:hover, rect::selection => 
-path:empty => 7
-#\63 1 => 8";
-
-    #[test]
-    fn selectors_match_as_in_browsers() {
-        for (selector, wanted) in FOUND.lines().filter_map(|line| line.split_once(" => ")) {
-            let wanted: Vec<usize> = wanted.split(' ').filter_map(|n| n.parse().ok()).collect();
-            assert_eq!(found(selector), wanted, "{selector}");
-        }
-    }
-
-    #[test]
-    fn the_rest_is_not_read() {
-        let deep = ":is(".repeat(1000) + "a" + &")".repeat(1000);
-        let texts = "g:has(rect)|&:hover|a >|> a||a,|:nth-child(2 of g)|a[b|a:first|a:root-child";
-        for text in texts.split('|').chain([&*deep]) {
-            let list = selectors(text);
-            assert!(list.is_none(), "{text}: {list:?}");
-        }
-    }
-
-    #[test]
-    fn specificity_counts() {
-        let of = |text| selectors(text).unwrap()[0].specificity;
-        assert_eq!(of("g#a.b[c]:hover rect"), [1, 3, 2]);
-        assert_eq!(of(":where(#a) :not(#b, c)"), [1, 0, 0]);
-    }
-
-    #[test]
-    fn many_descendants_take_no_time() {
-        let text = "<g>".repeat(200) + "<rect/>" + &"</g>".repeat(200);
-        let document = roxmltree::Document::parse(&text).unwrap();
-        let places = Places::of(&document);
-        let list = selectors(&("x ".to_owned() + &"g ".repeat(20) + "rect")).unwrap();
-        let rect = document.descendants().find(|n| n.has_tag_name("rect"));
-        assert!(!list[0].matches(rect.unwrap(), &places));
-    }
-}
+mod tests;

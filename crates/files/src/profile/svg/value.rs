@@ -1,5 +1,6 @@
 //! Values of attributes and of CSS properties: numbers, lengths, lists.
 
+use super::style::Target;
 use roxmltree::Node;
 
 /// The reading of a value.
@@ -201,58 +202,16 @@ pub(super) fn attribute<'n>(node: Node<'n, '_>, name: &str) -> Option<&'n str> {
     found.map(|a| a.value())
 }
 
-/// The letter that an escape of CSS stands for, and the length of the escape after its `\`.
-pub(super) fn escape(after: &str) -> (Option<char>, usize) {
-    let digits = after
-        .bytes()
-        .take(6)
-        .take_while(u8::is_ascii_hexdigit)
-        .count();
-    if digits == 0 {
-        let letter = after.chars().next();
-        return (letter, letter.map_or(0, char::len_utf8));
-    }
-    let code = u32::from_str_radix(&after[..digits], 16);
-    let blank = after[digits..].starts_with(|c: char| c.is_ascii_whitespace());
-    (
-        code.ok().and_then(char::from_u32),
-        digits + usize::from(blank),
-    )
-}
-
-/// Text with the escapes of CSS resolved.
-pub(super) fn unescaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once('\\') {
-        let (letter, length) = escape(after);
-        out.push_str(before);
-        out.extend(letter);
-        rest = &after[length..];
-    }
-    out.push_str(rest);
-    out
-}
-
-/// The target of `url(#name)` and the text after it: `Ok` for one in the drawing, `Err` for an
-/// address elsewhere.
-pub(super) fn url(text: &str) -> Option<(Result<&str, &str>, &str)> {
-    let head = text.get(..4)?;
-    if !head.eq_ignore_ascii_case("url(") {
-        return None;
-    }
-    let inner = text[4..].trim_start();
-    let quote = inner.chars().next().filter(|c| matches!(c, '"' | '\''));
-    let (address, rest) = match quote {
-        Some(q) => {
-            let (address, rest) = inner[1..].split_once(q)?;
-            (address, rest.trim_start().strip_prefix(')')?)
-        }
-        None => inner.split_once(')')?,
+/// The target of `url(#name)` and the text after it.
+pub(super) fn url(text: &str) -> Option<(Target, &str)> {
+    let mut input = cssparser::Parser::new(text);
+    let address = input.expect_url().ok()?;
+    let (function, rest) = text.split_at(input.position().byte_index());
+    let target = match address.trim().strip_prefix('#') {
+        Some(id) => Ok(id.into()),
+        None => Err(address.trim().into()),
     };
-    let address = address.trim();
-    let target = address.strip_prefix('#').ok_or(address);
-    Some((target, rest.trim()))
+    function.ends_with(')').then(|| (target, rest.trim()))
 }
 
 #[cfg(test)]
@@ -290,9 +249,10 @@ mod tests {
     fn lists_and_addresses() {
         assert_eq!(list("a, b(1, 2)  c"), ["a", "b(1, 2)", "c"]);
         for (text, wanted) in [
-            ("url(#a) red", Some((Ok("a"), "red"))),
-            ("URL( '#a b' )", Some((Ok("a b"), ""))),
-            ("url(b.svg#a)", Some((Err("b.svg#a"), ""))),
+            ("url(#a) red", Some((Ok("a".into()), "red"))),
+            ("URL( '#a b' )", Some((Ok("a b".into()), ""))),
+            ("url(' #a ')", Some((Ok("a".into()), ""))),
+            ("url(b.svg#a)", Some((Err("b.svg#a".into()), ""))),
             ("red", None),
             ("url(#a", None),
         ] {
