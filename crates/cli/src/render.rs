@@ -73,8 +73,16 @@ impl Render {
         self.outline.check(&self.scene)?;
         let begin = Instant::now();
         let mut file = SceneFile::open(&self.scene)?;
-        let mut scene = file.scene(&self.drawing.set)?;
-        self.surroundings.add_to(&mut scene)?;
+        let studio = self.surroundings.studio()?;
+        let sets = self.surroundings.sets(&file, &self.drawing.set);
+        let mut scene = file.scene(&sets)?;
+        if let Some(mut studio) = studio {
+            if file.chooses_camera(&sets) {
+                studio.frame(&[(scene.clone(), 0.0)], self.drawing.aspect());
+                studio.place_camera(&mut scene);
+            }
+            studio.furnish(&mut scene);
+        }
         output::spare(file.files(), &self.output, "--output")?;
         output::spare(file.files(), &self.levels, "--levels")?;
         let silent = self.drawing.quiet || self.json;
