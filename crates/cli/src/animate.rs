@@ -404,19 +404,50 @@ impl Animate {
                 format!(", {late} of them after the tenth"),
             ),
         };
-        let kept = match target {
+        let times = format!("median {median:.2} ms, slowest{after} {most:.2} ms");
+        if self.drawing.verbose {
+            output::note(&format!(
+                "{times} ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
+                most / median,
+            ));
+        }
+        let frames = match rows.len() {
+            1 => "1 frame".to_owned(),
+            count => format!("{count} frames"),
+        };
+        output::result(&match target {
             Some(Target::Moving(_, path)) => {
                 let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
-                format!("; {}: {bytes} bytes", path.display())
+                let (seconds, size) = (self.playing.seconds(self.frames), size(bytes));
+                format!(
+                    "{frames}, {seconds:.1} s{}, {size}: {}",
+                    self.round(),
+                    path.display()
+                )
             }
-            Some(Target::Folder(_)) => String::new(),
-            None => "; no pictures are kept (--output FILE.webp or DIR keeps them)".to_owned(),
-        };
-        output::result(&format!(
-            "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}{kept}",
-            rows.len(),
-            most / median,
-        ));
+            Some(Target::Folder(path)) => format!("{frames}: {}", path.display()),
+            None => format!(
+                "{frames}, {times}; no pictures are kept (--output FILE.webp or DIR keeps them)"
+            ),
+        });
+    }
+
+    /// What a film shows once, after its length.
+    fn round(&self) -> &'static str {
+        match self.turn {
+            Some(turn) if turn.abs() == 360.0 => " a turn",
+            _ if self.bounce => " there and back",
+            _ => "",
+        }
+    }
+}
+
+/// A file's size in words.
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..1000 => format!("{bytes} bytes"),
+        1000..1_000_000 => format!("{:.0} KB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
     }
 }
 

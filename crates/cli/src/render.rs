@@ -72,6 +72,10 @@ impl Render {
         output::check(&self.levels, "--levels", &["png"], &[])?;
         self.outline.check(&self.scene)?;
         let begin = Instant::now();
+        let progress = Progress::start(
+            &format!("reading {}", self.scene.display()),
+            self.drawing.quiet,
+        );
         let mut file = SceneFile::open(&self.scene)?;
         let studio = self.surroundings.studio()?;
         let sets = self.surroundings.sets(&file, &self.drawing.set);
@@ -83,6 +87,7 @@ impl Render {
             }
             studio.furnish(&mut scene);
         }
+        drop(progress);
         output::spare(file.files(), &self.output, "--output")?;
         output::spare(file.files(), &self.levels, "--levels")?;
         let silent = self.drawing.quiet || self.json;

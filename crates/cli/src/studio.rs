@@ -122,7 +122,7 @@ impl Studio {
         scene.lights = vec![
             // The key from the upper left, and the rim from behind.
             light([0.62, 0.5, -0.9], [0.76, 0.73, 0.68], 7.0),
-            light([-0.85, -0.75, -0.3], [0.96, 1.0, 1.06], 10.0),
+            light([-0.85, -0.75, -0.3], [1.0; 3], 10.0),
         ];
         scene.shadow = Shadow::Soft;
         scene.background = self.background;
