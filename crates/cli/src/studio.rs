@@ -66,19 +66,22 @@ impl Studio {
         let [ahead, right, up] = directions(&first.camera);
         let sight = (first.camera.target - first.camera.eye).normalize_or(ahead);
         let above = right.cross(sight);
-        let all = extents(first);
-        let middle = |axis| 0.5 * (farthest(&all, axis) - farthest(&all, -axis));
+        let all: Vec<_> = scenes
+            .iter()
+            .map(|(s, angle)| (extents(s), *angle))
+            .collect();
+        let middle = |axis| 0.5 * (farthest(&all[0].0, axis) - farthest(&all[0].0, -axis));
         let middle = DVec3::from(DVec3::AXES.map(middle));
         let high = FILLED * (0.5 * FOV_Y).to_radians().tan();
         // A plane through the eye, with this slope to the sight, is beyond all objects if the eye's
         // coordinate along its normal is at least theirs.
         let beyond = |side: DVec3, slope: f64| {
             let normal = side - slope * sight;
-            let reach = |(scene, angle): &(Scene, f64)| {
+            let reach = |(extents, angle): &(Vec<_>, f64)| {
                 let normal = DQuat::from_axis_angle(up, *angle) * normal;
-                farthest(&extents(scene), normal) - middle.dot(normal)
+                farthest(extents, normal) - middle.dot(normal)
             };
-            scenes.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
+            all.iter().map(reach).fold(f64::NEG_INFINITY, f64::max)
         };
         let wide = high * aspect;
         let [at_right, at_left] = [right, -right].map(|side| beyond(side, wide));

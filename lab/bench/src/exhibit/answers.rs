@@ -56,7 +56,7 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
                 Verdict::Even => "no difference resolved",
                 Verdict::Unresolved => "not resolved",
             };
-            let over = over_pictures(context, r.pairs.len());
+            let over = context.over_pictures(r.pairs.len());
             format!("{way}, {stage} stage: {time}{over}, {verdict}")
         });
         let told = told.collect::<Vec<_>>().join("; ");
@@ -75,14 +75,6 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
         all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
     }
     all
-}
-
-/// How many pictures a ratio is over, where a run has more than one.
-pub(super) fn over_pictures(context: &Context, pictures: usize) -> String {
-    match grouped(context.rows, |r| r.picture()).len() {
-        1 => String::new(),
-        _ => format!(" over {}", count(pictures, "picture")),
-    }
 }
 
 /// The largest time of the default over that of a mesh, and the mesh's name.
@@ -185,7 +177,7 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
             number(r.time.value, 3),
             context.styles.way(&r.settings),
             r.time.ends().map_or("interval unknown".to_owned(), range),
-            over_pictures(context, pictures),
+            context.over_pictures(pictures),
         )
     };
     ratios.iter().map(sentence).collect()

@@ -28,7 +28,7 @@ pub(super) fn answers(context: &Context, rows: &[&Row]) -> Vec<String> {
         format!(
             "{} stage: the default takes this part of the time of the mesh of equal silhouettes{}: {told}. {}",
             stage.name(),
-            super::answers::over_pictures(context, pictures),
+            context.over_pictures(pictures),
             verdict(&known)
         )
     };
