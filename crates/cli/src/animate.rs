@@ -6,6 +6,7 @@ use super::options::{Drawing, Samples, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
 use super::reading::ShownOutline;
+use super::studio::Studio;
 use super::vary::Vary;
 use clap::Args;
 use glam::{DQuat, DVec3};
@@ -71,6 +72,9 @@ pub struct Animate {
     drawing: Drawing,
 }
 
+/// Frames of a film by which the studio's camera is chosen.
+const FRAMED: u32 = 24;
+
 /// A line of the times.
 #[derive(Default)]
 struct Row {
@@ -83,6 +87,13 @@ struct Row {
 
 /// The number of a frame that shows nothing, and why.
 type Blank = (u32, String);
+
+/// What makes a frame of the file's scene.
+#[derive(Clone, Copy)]
+struct Film<'a> {
+    varied: &'a [Vary],
+    studio: Option<&'a Studio>,
+}
 
 /// Where pictures go.
 #[derive(Clone, Copy)]
@@ -121,7 +132,12 @@ impl Animate {
             .map(|text| Vary::parse(text))
             .collect::<Result<_>>()?;
         let mut file = SceneFile::open(&self.scene)?;
-        let first = self.scene_at(&mut file, &varied, 0)?;
+        let studio = self.studio(&mut file, &varied)?;
+        let film = Film {
+            varied: &varied,
+            studio: studio.as_ref(),
+        };
+        let first = self.scene_at(&mut file, film, 0)?;
         let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
         let mut old = Vec::new();
         match target {
@@ -140,7 +156,7 @@ impl Animate {
         }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
-        let drawn = self.draw(&device, &mut file, &varied, &first, target, &progress)?;
+        let drawn = self.draw(&device, &mut file, film, &first, target, &progress)?;
         let rows = &drawn.rows;
         device.check()?;
         kept.save(&device);
@@ -225,7 +241,7 @@ impl Animate {
         &self,
         device: &Device,
         file: &mut SceneFile,
-        varied: &[Vary],
+        film: Film,
         first: &Scene,
         target: Option<Target>,
         progress: &Progress,
@@ -241,7 +257,7 @@ impl Animate {
         let mut drawn = Drawn::default();
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
-            let scene = self.scene_at(file, varied, n)?;
+            let scene = self.scene_at(file, film, n)?;
             let mut row = Row {
                 gpu_ms: Some(0.0),
                 ..Row::default()
@@ -302,32 +318,68 @@ impl Animate {
         folder.join(format!("frame-{n:0width$}.png"))
     }
 
-    fn scene_at(&self, file: &mut SceneFile, varied: &[Vary], n: u32) -> Result<Scene> {
+    /// The studio, if there is one. Its camera sees what a profile becomes in all frames.
+    fn studio(&self, file: &mut SceneFile, varied: &[Vary]) -> Result<Option<Studio>> {
+        let Some(mut studio) = self.surroundings.studio()? else {
+            return Ok(None);
+        };
+        let keys = varied.iter().map(|v| v.at(0.0));
+        let sets: Vec<_> = self.drawing.set.iter().cloned().chain(keys).collect();
+        if file.chooses_camera(&sets) {
+            let step = self.frames.div_ceil(FRAMED);
+            let frames = (0..self.frames).step_by(step as usize);
+            let last = self.frames / if self.bounce { 2 } else { 1 };
+            let frames = frames.chain([last.min(self.frames - 1)]);
+            let mut scene = |n| self.scene_before_turn(file, varied, n);
+            let scenes: Vec<_> = frames.map(&mut scene).collect::<Result<_>>()?;
+            studio.frame(&scenes, self.drawing.aspect());
+        }
+        Ok(Some(studio))
+    }
+
+    /// The scene of frame `n`, and the angle by which it turns, radians.
+    fn scene_before_turn(
+        &self,
+        file: &mut SceneFile,
+        varied: &[Vary],
+        n: u32,
+    ) -> Result<(Scene, f64)> {
         // The last frame of a loop is one step before the first is repeated.
         let around = f64::from(n) / f64::from(self.frames);
         let part = match self.bounce {
             true => 1.0 - (1.0 - 2.0 * around).abs(),
             false => f64::from(n) / f64::from((self.frames - 1).max(1)),
         };
-        let mut sets = self.drawing.set.clone();
+        let mut sets = self.surroundings.sets(file, &self.drawing.set);
         sets.extend(varied.iter().map(|v| v.at(part)));
-        let mut scene = file.scene(&sets).map_err(|mut e| {
+        let scene = file.scene(&sets).map_err(|mut e| {
             let key = e.key.as_deref().filter(|_| e.kind == ErrorKind::Usage);
             if let Some(v) = varied.iter().find(|v| key == Some(&v.key)) {
                 e.key = Some(format!("--vary {}", v.key));
             }
             e
         })?;
-        if let Some(turn) = self.turn {
-            let returns = self.bounce && turn % 360.0 != 0.0;
-            let angle = (turn * if returns { part } else { around }).to_radians();
+        let turn = self.turn.unwrap_or(0.0);
+        let returns = self.bounce && turn % 360.0 != 0.0;
+        let angle = (turn * if returns { part } else { around }).to_radians();
+        Ok((scene, angle))
+    }
+
+    fn scene_at(&self, file: &mut SceneFile, film: Film, n: u32) -> Result<Scene> {
+        let (mut scene, angle) = self.scene_before_turn(file, film.varied, n)?;
+        if let Some(studio) = film.studio {
+            studio.place_camera(&mut scene);
+        }
+        if self.turn.is_some() {
             let about = turn_about_target(&mut scene.camera, angle);
             if self.turntable {
                 let lights = scene.lights.iter_mut();
                 lights.for_each(|light| light.direction = about * light.direction);
             }
         }
-        self.surroundings.add_to(&mut scene)?;
+        if let Some(studio) = film.studio {
+            studio.furnish(&mut scene);
+        }
         Ok(scene)
     }
 
@@ -352,19 +404,50 @@ impl Animate {
                 format!(", {late} of them after the tenth"),
             ),
         };
-        let kept = match target {
+        let times = format!("median {median:.2} ms, slowest{after} {most:.2} ms");
+        if self.drawing.verbose {
+            output::note(&format!(
+                "{times} ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
+                most / median,
+            ));
+        }
+        let frames = match rows.len() {
+            1 => "1 frame".to_owned(),
+            count => format!("{count} frames"),
+        };
+        output::result(&match target {
             Some(Target::Moving(_, path)) => {
                 let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
-                format!("; {}: {bytes} bytes", path.display())
+                let (seconds, size) = (self.playing.seconds(self.frames), size(bytes));
+                format!(
+                    "{frames}, {seconds:.1} s{}, {size}: {}",
+                    self.round(),
+                    path.display()
+                )
             }
-            Some(Target::Folder(_)) => String::new(),
-            None => "; no pictures are kept (--output FILE.webp or DIR keeps them)".to_owned(),
-        };
-        output::result(&format!(
-            "frames: {}; median {median:.2} ms, slowest{after} {most:.2} ms ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}{kept}",
-            rows.len(),
-            most / median,
-        ));
+            Some(Target::Folder(path)) => format!("{frames}: {}", path.display()),
+            None => format!(
+                "{frames}, {times}; no pictures are kept (--output FILE.webp or DIR keeps them)"
+            ),
+        });
+    }
+
+    /// What a film shows once, after its length.
+    fn round(&self) -> &'static str {
+        match self.turn {
+            Some(turn) if turn.abs() == 360.0 => " a turn",
+            _ if self.bounce => " there and back",
+            _ => "",
+        }
+    }
+}
+
+/// A file's size in words.
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..1000 => format!("{bytes} bytes"),
+        1000..1_000_000 => format!("{:.0} KB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
     }
 }
 

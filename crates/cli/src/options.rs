@@ -1,6 +1,7 @@
 //! Options of every drawing command.
 
 use super::output::usage;
+use super::studio::Studio;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::error::Result;
@@ -10,6 +11,7 @@ use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_bench::method::{Edges, Method, MethodSettings};
+use revmap_files::SceneFile;
 use revmap_offscreen::samples::averaged;
 use revmap_searches::{cache, folder};
 use std::path::PathBuf;
@@ -115,6 +117,11 @@ pub struct Drawing {
 }
 
 impl Drawing {
+    /// Width over height.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.size.0) / f64::from(self.size.1)
+    }
+
     /// The lab's settings. The reference uses only the size.
     pub fn settings(&self, planes: Planes) -> MethodSettings {
         MethodSettings {
@@ -166,22 +173,60 @@ impl Drawing {
     }
 }
 
-/// What a picture shows beside the scene
-#[derive(Args, Clone, Copy, Debug)]
+/// What a picture shows beside the scene, and plain colours
+#[derive(Args, Clone, Debug)]
 pub struct Surroundings {
-    /// Puts a ground below the objects, and replaces lights and background: soft light from the
-    /// upper left of the camera, and a plain light grey
+    /// Puts a ground below the objects that fades into a plain background, and replaces the lights:
+    /// a soft one from the upper left of the camera and one from behind. A profile fills four
+    /// fifths of the picture; a scene keeps its camera
     #[arg(long)]
     pub studio: bool,
+    /// Colour of the objects where no colour map covers it; as CSS writes it, such as orange,
+    /// "#e0a030" or "rgb(224 160 48)"
+    #[arg(long, value_name = "COLOR", value_parser = opaque_color)]
+    color: Option<[f32; 3]>,
+    /// Colour of the ground of --studio [default: that of --background, else a light grey]
+    #[arg(long, value_name = "COLOR", requires = "studio", value_parser = opaque_color)]
+    ground: Option<[f32; 3]>,
+    /// Colour of the background. There is no ground on one with transparency, such as transparent
+    #[arg(long, value_name = "COLOR", value_parser = css_color)]
+    background: Option<[f32; 4]>,
 }
 
 impl Surroundings {
-    /// Adds them to a scene.
-    pub fn add_to(self, scene: &mut Scene) -> Result<()> {
-        match self.studio {
-            true => super::studio::furnish(scene),
-            false => Ok(()),
+    /// Assignments to keys of the scene: those of these options, then `sets`.
+    pub fn sets(&self, file: &SceneFile, sets: &[String]) -> Vec<String> {
+        let color = self.color.into_iter().flat_map(|color| {
+            let set = move |n| format!("object.{n}.color={color:?}");
+            (0..file.objects()).map(set)
+        });
+        let background = self.background.map(|color| format!("background={color:?}"));
+        let own = color.chain(background);
+        own.chain(sets.iter().cloned()).collect()
+    }
+
+    /// The studio, if the options ask for one.
+    pub fn studio(&self) -> Result<Option<Studio>> {
+        let transparent = self.background.is_some_and(|[.., alpha]| alpha < 1.0);
+        if self.ground.is_some() && transparent {
+            let message = "has no background to fade into; give --background without transparency";
+            return Err(usage("--ground", message));
         }
+        let studio = || Studio::new(self.ground, self.background);
+        self.studio.then(studio).transpose()
+    }
+}
+
+/// A colour of CSS: linear RGB with alpha.
+fn css_color(text: &str) -> std::result::Result<[f32; 4], String> {
+    let wanted = "is no colour; write it as in orange, \"#e0a030\" or \"rgb(224 160 48)\"";
+    revmap_files::css_color(text).ok_or_else(|| wanted.to_owned())
+}
+
+fn opaque_color(text: &str) -> std::result::Result<[f32; 3], String> {
+    match css_color(text)? {
+        [r, g, b, 1.0] => Ok([r, g, b]),
+        _ => Err("is transparent; give a colour that is not".to_owned()),
     }
 }
 

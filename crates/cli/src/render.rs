@@ -72,9 +72,22 @@ impl Render {
         output::check(&self.levels, "--levels", &["png"], &[])?;
         self.outline.check(&self.scene)?;
         let begin = Instant::now();
+        let progress = Progress::start(
+            &format!("reading {}", self.scene.display()),
+            self.drawing.quiet,
+        );
         let mut file = SceneFile::open(&self.scene)?;
-        let mut scene = file.scene(&self.drawing.set)?;
-        self.surroundings.add_to(&mut scene)?;
+        let studio = self.surroundings.studio()?;
+        let sets = self.surroundings.sets(&file, &self.drawing.set);
+        let mut scene = file.scene(&sets)?;
+        if let Some(mut studio) = studio {
+            if file.chooses_camera(&sets) {
+                studio.frame(&[(scene.clone(), 0.0)], self.drawing.aspect());
+                studio.place_camera(&mut scene);
+            }
+            studio.furnish(&mut scene);
+        }
+        drop(progress);
         output::spare(file.files(), &self.output, "--output")?;
         output::spare(file.files(), &self.levels, "--levels")?;
         let silent = self.drawing.quiet || self.json;

@@ -64,7 +64,8 @@ pub use openexr::{read_exr, write_exr};
 pub use outline::{WrittenOutline, write_outline};
 pub use picture::{Picture, write_png};
 pub use profile::{
-    ProfileAxis, ProfileOptions, ProfileRead, Smooth, profile, profile_from_bytes, show_outline,
+    ProfileAxis, ProfileOptions, ProfileRead, Smooth, css_color, profile, profile_from_bytes,
+    show_outline,
 };
 pub use scene::{SceneFile, scene, warnings};
 pub use trace::trace;

@@ -145,6 +145,16 @@ impl Playing {
         Ok(Some(format))
     }
 
+    /// Frames a second.
+    fn fps(self) -> u16 {
+        self.fps.unwrap_or(25)
+    }
+
+    /// How long so many frames are shown, seconds.
+    pub fn seconds(self, frames: u32) -> f64 {
+        f64::from(frames) / f64::from(self.fps())
+    }
+
     /// Writes the file.
     pub fn write(self, format: Format, path: &Path, frames: &[Picture]) -> Result<()> {
         let Some(first) = frames.first() else {
@@ -154,7 +164,7 @@ impl Playing {
             width: first.width,
             height: first.height,
             frames,
-            fps: self.fps.unwrap_or(25),
+            fps: self.fps(),
             loops: self.loops.unwrap_or(0),
             quality: self.quality.unwrap_or(90),
         };

@@ -1,5 +1,6 @@
 //! Films in which nothing is seen to move, and what would move.
 
+use crate::studio::GROUND_NAME;
 use crate::vary::Vary;
 use revmap::scene::Scene;
 use revmap_files::Picture;
@@ -87,8 +88,8 @@ impl Motion<'_> {
         let (mut why, mut remedies) = (String::new(), Vec::new());
         if self.step != 0.0 {
             why.push_str(": a solid of revolution looks the same from all sides");
-            let objects = &self.scene.objects;
-            if objects.iter().all(|o| o.texturing.color_map.is_none()) {
+            let mut objects = self.scene.objects.iter().filter(|o| o.name != GROUND_NAME);
+            if objects.all(|o| o.texturing.color_map.is_none()) {
                 remedies.push("a colour map (--set object.0.color_map=FILE)");
             }
             if self.turntable && !self.scene.lights.is_empty() {

@@ -35,7 +35,19 @@ pub fn write_scene(
     let (before, after) = (assignments(first), assignments(shown));
     // Only changed values are written; the others stay as in the file.
     let changed = after.into_iter().filter(|one| !before.contains(one));
-    let text = file.text(&changed.collect::<Vec<_>>())?;
+    let mut changed: Vec<_> = changed.collect();
+    if file.text(&[])?.contains("stand = true") {
+        let objects = shown.objects.iter().zip(&first.objects).enumerate();
+        for (n, (object, _)) in objects.filter(|(_, (a, b))| a.placement != b.placement) {
+            // Its position is that of the box, as shown.
+            let at = object.placement.position.to_array();
+            changed.extend([
+                format!("object.{n}.position={at:?}"),
+                format!("object.{n}.stand=false"),
+            ]);
+        }
+    }
+    let text = file.text(&changed)?;
     write_bytes(&path, text.as_bytes())?;
     Ok(path)
 }

@@ -23,6 +23,7 @@ mod shaders_command;
 #[cfg(feature = "shaderc")]
 mod shading_command;
 mod stability_command;
+mod studio;
 mod submit_command;
 #[cfg(target_os = "linux")]
 mod system;

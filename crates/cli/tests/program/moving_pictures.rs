@@ -171,6 +171,44 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
     }
 }
 
+/// The last line is for who asked for the film; what it cost is said with `--verbose`.
+#[test]
+fn the_end_says_frames_length_and_size() {
+    let bench = Bench::new();
+    let opaque = "--set background=[1,1,1,1]";
+    let said = |options: &str| bench.said(&format!("{SMALL} {opaque} {options}"));
+    for (options, wanted) in [
+        ("--turn 360 -o a.webp", "6 frames, 0.2 s a turn, "),
+        ("--turn 90 --fps 2 -o a.webp", "6 frames, 3.0 s, "),
+        (
+            "--vary object.0.extend=0:0.1 --bounce --fps 10 -o a.webp",
+            "6 frames, 0.6 s there and back, ",
+        ),
+    ] {
+        let line = said(options);
+        let rest = line
+            .strip_prefix(wanted)
+            .unwrap_or_else(|| panic!("{line}"));
+        let (size, file) = rest.trim_end().split_once(": ").unwrap();
+        assert_eq!(file, "a.webp");
+        let bytes = bench.read("a.webp").len() as f64;
+        let told: f64 = match size.split_once(' ').unwrap() {
+            (n, "KB") => 1e3 * n.parse::<f64>().unwrap(),
+            (n, _) => n.parse().unwrap(),
+        };
+        assert!((told - bytes).abs() <= 500.0, "{size} for {bytes}");
+    }
+    assert_eq!(said("--turn 90 -o f"), "6 frames: f\n");
+    assert!(said("--turn 90").contains("6 frames, median "));
+    let costs = |options: &str| {
+        let output = bench.done(&format!("{SMALL} {opaque} --turn 90 -o a.webp {options}"));
+        lines(&output)
+            .iter()
+            .any(|l| l.contains("pipelines compiled: ") && l.contains("surfaces made: "))
+    };
+    assert!(costs("--verbose") && !costs(""));
+}
+
 /// The light of the studio stays with the camera, so no half of a turn is dark.
 #[test]
 fn a_turn_in_the_studio_is_evenly_bright() {

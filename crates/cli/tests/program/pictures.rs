@@ -61,30 +61,6 @@ fn maps_are_written_and_weighed() {
     );
 }
 
-/// The ground of `--studio` has the background's colour, so its border is not seen, and a shadow.
-#[test]
-fn a_studio_is_one_plain_colour_with_a_shadow() {
-    let bench = Bench::new();
-    let draw = |options: &str| {
-        bench.done(&format!(
-            "render @profiles/pawn.svg --studio -o a.png --size 96x72 --antialias off {options}"
-        ));
-        let picture = image::open(bench.path("a.png")).unwrap().into_rgba8();
-        // Rows beyond the pawn and its shadows: sky and ground above, ground alone below.
-        let beside = (picture.enumerate_pixels()).filter(|(_, y, _)| !(6..70).contains(y));
-        let beside: Vec<_> = beside.map(|(_, _, pixel)| pixel.0).collect();
-        let [low, high] = [beside.iter().min().unwrap(), beside.iter().max().unwrap()];
-        assert_eq!([low[3], high[3]], [255; 2]);
-        let shaded = picture.pixels().filter(|p| p.0[0] < low[0] - 20).count();
-        (high[0] - low[0], shaded)
-    };
-    for stage in ["fragment", "compute", "reference"] {
-        let (spread, shaded) = draw(&format!("--stage {stage}"));
-        assert!(spread <= 2, "{stage}: {spread}");
-        assert!((60..900).contains(&shaded), "{stage}: {shaded}");
-    }
-}
-
 #[test]
 fn silhouettes_are_smoothed_in_pictures_and_not_in_data() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
 //! What looks unintended is said in one line each, and changes no exit code.
 
-use crate::run::{Bench, SVG, lines};
+use crate::run::{Bench, CAMERA, SVG, lines};
 
 const RENDER: &str = "render scene.toml -o out.png --size 32x24";
 
@@ -45,6 +45,34 @@ fn scenes_that_look_unintended() {
         let arguments = format!("{RENDER} --set {set}");
         warned_once(&bench, &arguments, &[words]);
         assert!(lines(&bench.done(&format!("{arguments} --quiet"))).is_empty());
+    }
+}
+
+/// A drawing with a margin hovers over a table until it stands; so do its copies.
+#[test]
+fn what_hovers_stands_by_a_key() {
+    let bench = Bench::new();
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M30 5H70V97H30z'/></svg>";
+    bench.file("a.svg", svg);
+    bench.file(
+        "two.csv",
+        "0.5,0,0,0,0,0,1,1,1,1\n-0.5,0,0,0.1,0,0,0.995,1,1,2\n",
+    );
+    let table = "[[object]]\npolygon = [[0,0],[2,0],[2,1],[0,1]]\nposition = [0,0,-0.1]\nscale = [1,1,0.1]\n";
+    for copies in ["", "instances = \"two.csv\"\n"] {
+        let thing = format!("[[object]]\nprofile = \"a.svg\"\n{copies}");
+        let scene = |first: &str, own: &str| {
+            bench.file("scene.toml", format!("{first}{CAMERA}{table}{thing}{own}"));
+            warned(&bench, RENDER)
+        };
+        let found = scene("", "");
+        assert!(
+            found.len() == 1 && found[0].contains("object.1.stand = true"),
+            "{found:?}"
+        );
+        assert_eq!(scene("", "stand = true\n"), [""; 0]);
+        assert_eq!(scene("stand = true\n", ""), [""; 0]);
+        assert_eq!(scene("stand = true\n", "stand = false\n").len(), 1);
     }
 }
 

@@ -24,6 +24,7 @@ pub(crate) use gaps::hints as gap_hints;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions, ProfileRead};
 pub(crate) use photo::outline_over;
+pub use svg::css_color;
 
 use crate::Picture;
 use crate::pixels::is_picture;

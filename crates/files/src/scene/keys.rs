@@ -330,7 +330,7 @@ pub(super) const OBJECT: &str = "profile polygon profile_axis profile_read profi
     profile_smooth profile_min_stroke radius map_rows color color_map specular shininess roughness \
     metalness height_map bump bump_form \
     projection texture_repeat texture_offset extend bevel chamfer clip axis repeat mirror position \
-    turn rotation scale instances";
+    turn rotation scale instances stand";
 
 fn is_of_object(key: &str) -> bool {
     OBJECT.split_whitespace().any(|known| known == key)

@@ -4,6 +4,7 @@
 //! `profile` (or `polygon`) and the camera's `eye` and `target` has a default.
 //! `docs/scene-files.md` of the repository lists every key with its type, range and default.
 
+mod extent;
 mod instances;
 mod keys;
 mod overrides;
@@ -12,6 +13,7 @@ mod reader;
 mod spelling;
 mod warnings;
 
+pub use extent::Extent;
 pub use keys::decimal_comma;
 pub use warnings::{blank, warnings};
 
@@ -145,6 +147,21 @@ impl SceneFile {
         self.root.insert("camera".to_owned(), camera.into());
         self.chooses_camera = false;
         Ok(())
+    }
+
+    /// Returns true if a profile stands in place of the scene and none of `sets` is of the camera:
+    /// its camera is then chosen.
+    #[must_use]
+    pub fn chooses_camera(&self, sets: &[String]) -> bool {
+        let of_camera = |set: &String| set.trim_start().starts_with("camera");
+        self.reader.stands_for_scene() && !sets.iter().any(of_camera)
+    }
+
+    /// The number of objects that the file has.
+    #[must_use]
+    pub fn objects(&self) -> usize {
+        let objects = self.root.get("object").and_then(Value::as_array);
+        objects.map_or(0, Vec::len)
     }
 
     /// Every file that was read for its scenes.

@@ -1,8 +1,8 @@
 //! Tables of a scene file into a scene, with all files that they name.
 
-use super::instances;
 use super::keys::{Keys, OBJECT};
 use super::polygon;
+use super::{extent, instances};
 use crate::pixels::is_picture;
 use crate::profile::{gap_hints, outline_over, read_file};
 use crate::{
@@ -24,7 +24,7 @@ use std::sync::Arc;
 use toml::Table;
 
 /// Keys of the whole file.
-pub(super) const SCENE: &str = "background ambient shadow camera light object";
+pub(super) const SCENE: &str = "background ambient shadow stand camera light object";
 /// Keys of `[camera]`.
 pub(super) const CAMERA: &str = "eye target up fov_y";
 /// Keys of `[[light]]`.
@@ -129,9 +129,11 @@ impl Reader {
             let lights = tables.into_iter().enumerate();
             scene.lights = lights.map(light).collect::<Result<_>>()?;
         }
+        let mut stand = false;
+        keys.set("stand", &mut stand)?;
         let objects = keys.tables("object")?.unwrap_or_default();
         for (index, table) in objects.into_iter().enumerate() {
-            scene.objects.push(self.object(table, index)?);
+            scene.objects.push(self.object(table, index, stand)?);
         }
         if scene.objects.is_empty() {
             return Err(keys.fail(
@@ -142,7 +144,8 @@ impl Reader {
         Ok(scene)
     }
 
-    fn object(&mut self, table: &Table, index: usize) -> Result<Object> {
+    /// The object of a table; `stand` if the table does not say.
+    fn object(&mut self, table: &Table, index: usize, mut stand: bool) -> Result<Object> {
         let keys = Keys::new(table, format!("object.{index}"), OBJECT)?;
         let mut object = self.profile(&keys)?;
         keys.set("map_rows", &mut object.map_rows)?;
@@ -186,6 +189,12 @@ impl Reader {
             if !self.instances.contains(&file) {
                 self.instances.push(file);
             }
+        }
+        keys.set("stand", &mut stand)?;
+        if stand {
+            // Its values are checked first, so that a fault is named by its key.
+            object.check().map_err(|e| below(&keys, "stand", e))?;
+            extent::stand(&mut object);
         }
         Ok(object)
     }

@@ -1,5 +1,6 @@
 //! Warnings about a scene that is allowed but looks unintended.
 
+use super::Extent;
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene, Shadow};
@@ -11,13 +12,17 @@ const NARROW: f64 = 2.0;
 const BRIGHT: f32 = 16.0;
 /// More solids than this cast shadows slowly: 10,000 on 80 x 60 pixels took a minute and a half.
 const CROWD: usize = 1000;
+/// Parts of a solid's height by which it hovers by mistake.
+const HOVERS: std::ops::RangeInclusive<f64> = 0.002..=0.05;
+/// Copies of an object that are looked at for that.
+const LOOKED_AT: usize = 256;
 /// A background is stored with an error below this.
 const ROUNDING: f32 = 1.0 / 256.0;
 
 /// Warnings for a picture of `width x height` pixels, one sentence each, with the key. The
 /// causes are a field of view that looks like radians, colours above 1,
-/// [warnings](revmap::profile::Profile::warnings) of the profiles, shadows of a crowd, insets that
-/// leave nothing, and an empty view.
+/// [warnings](revmap::profile::Profile::warnings) of the profiles, shadows of a crowd, objects that
+/// hover, insets that leave nothing, and an empty view.
 #[must_use]
 pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     let mut found = Vec::new();
@@ -64,8 +69,47 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
             "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
         ));
     }
+    found.extend(hovering(scene));
     found.extend(unseen(scene, width, height));
     found
+}
+
+/// Objects of which a copy hovers a little above the flat top of another object, as a drawing with a
+/// margin below it does.
+fn hovering(scene: &Scene) -> Vec<String> {
+    let all: Vec<_> = scene.objects.iter().map(Extent::of).collect();
+    let places = |i: usize| scene.objects[i].placements().iter().take(LOOKED_AT);
+    let of_object = |i: usize, extent: &Extent| {
+        // Flat tops of other objects.
+        let others = (0..all.len()).filter(|other| *other != i);
+        let all = &all;
+        let tops = others.flat_map(|other| {
+            places(other).filter_map(move |place| Some((all[other].top(place)?, place.position)))
+        });
+        let tops: Vec<_> = tops.collect();
+        places(i).find_map(|place| {
+            let low = -extent.reach(place, -DVec3::Z);
+            let height = extent.reach(place, DVec3::Z) - low;
+            let below = tops.iter().filter(|([top, radius], middle)| {
+                (place.position - *middle).truncate().length() <= *radius
+                    && *top < low + 0.5 * height
+            });
+            let top = below
+                .map(|([top, _], _)| *top)
+                .fold(f64::NEG_INFINITY, f64::max);
+            let gap = (low - top) / height;
+            HOVERS.contains(&gap).then_some(gap)
+        })
+    };
+    let gaps = all.iter().enumerate();
+    let gaps = gaps.filter_map(|(i, extent)| Some((i, of_object(i, extent)?)));
+    gaps.map(|(i, gap)| {
+        format!(
+            "object.{i}: hovers {:.1} % of its height above the face below it; with object.{i}.stand = true its lowest point is at its position, whatever margin its drawing has",
+            100.0 * gap
+        )
+    })
+    .collect()
 }
 
 /// Insets that leave nothing, and an empty view.
@@ -234,6 +278,38 @@ mod tests {
         let mut small = scene();
         two(&mut small, -0.02);
         assert_eq!(warnings(&small, 80, 60), [""; 0]);
+    }
+
+    /// The cone's foot is 0.1 above its position, an eighth of its height.
+    #[test]
+    fn what_hovers_over_a_flat_face_is_named() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let table = Object::new("table", Arc::new(Profile::polygon(&square, 1.0).unwrap()));
+        let gap = |gap: f64, aside: f64| {
+            let mut scene = scene();
+            scene.objects.insert(0, table.clone());
+            scene.objects[0].placement.scale.z = 0.05;
+            let place = &mut scene.objects[1].placement.position;
+            (place.z, place.x) = (0.05 + 0.8 * gap - 0.1, aside);
+            warnings(&scene, 80, 60)
+        };
+        for (part, words) in [
+            (0.003, "object.1: hovers 0.3 %"),
+            (0.04, "object.1: hovers 4.0 %"),
+        ] {
+            let found = gap(part, 0.5);
+            assert!(found.len() == 1 && found[0].contains(words), "{found:?}");
+        }
+        // It stands, is in the table, is meant to float, or is beside the table.
+        for (part, aside) in [
+            (0.0, 0.0),
+            (0.001, 0.0),
+            (-0.03, 0.0),
+            (0.08, 0.0),
+            (0.03, 1.2),
+        ] {
+            assert_eq!(gap(part, aside), [""; 0], "{part} {aside}");
+        }
     }
 
     #[test]

@@ -56,10 +56,8 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
                 Verdict::Even => "no difference resolved",
                 Verdict::Unresolved => "not resolved",
             };
-            format!(
-                "{way}, {stage} stage: {time} over {}, {verdict}",
-                count(r.pairs.len(), "picture")
-            )
+            let over = context.over_pictures(r.pairs.len());
+            format!("{way}, {stage} stage: {time}{over}, {verdict}")
         });
         let told = told.collect::<Vec<_>>().join("; ");
         if !told.is_empty() {
@@ -69,9 +67,31 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
         }
     }
     all.extend(exactness(context));
-    let loses = rivals(context, context.rows);
-    all.extend(loses.map(|text| format!("Where it loses, if anywhere: {text}")));
+    let loses: Vec<_> = rivals(context, context.rows)
+        .into_iter()
+        .chain(meshes(context))
+        .collect();
+    if !loses.is_empty() {
+        all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
+    }
     all
+}
+
+/// The largest time of the default over that of a mesh, and the mesh's name.
+fn meshes(context: &Context) -> Option<String> {
+    let mut all = [Over::Opponent, Over::Mesh]
+        .map(|over| pairs(context, context.rows, over))
+        .concat();
+    all.retain(|(row, ..)| row.settings.method == Method::DEFAULT);
+    let (row, mesh, time) = worst(context, all.iter())?;
+    Some(format!(
+        "Against a mesh it takes at most {} of the time: {} at {} in the {} stage, against `{}`.",
+        Cell::Known(*time).shown(),
+        row.scene,
+        row.size(),
+        row.settings.stage.name(),
+        mesh.settings.method,
+    ))
 }
 
 /// The worst errors of the default, of the RBM baseline and of each mesh.
@@ -152,12 +172,12 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
             ),
         };
         format!(
-            "On {} compute takes {} of the fragment stage's time for `{}` ({}), over {}{spread}: {verdict}.",
+            "On {} compute takes {} of the fragment stage's time for `{}` ({}){}{spread}: {verdict}.",
             context.device,
             number(r.time.value, 3),
             context.styles.way(&r.settings),
             r.time.ends().map_or("interval unknown".to_owned(), range),
-            count(pictures, "picture"),
+            context.over_pictures(pictures),
         )
     };
     ratios.iter().map(sentence).collect()
@@ -172,7 +192,7 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
         Verdict::Even => "no difference resolved",
         Verdict::Unresolved => "not resolved",
     };
-    let over_pictures = |r: &Ratio| match r.pairs.len() {
+    let spread = |r: &Ratio| match r.pairs.len() {
         1 => Cell::Empty.shown(),
         _ => range(r.range),
     };
@@ -188,7 +208,7 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
             ("compute (ms)", &|r| {
                 mean(r.pairs.iter().map(|p| p.0).collect())
             }),
-            ("range over pictures", &over_pictures),
+            ("range over pictures", &spread),
             ("pictures", &|r| r.pairs.len().to_string()),
         ],
     )
@@ -197,9 +217,9 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
 /// A row of the default search, the fastest other search, and the ratio of their times.
 type Pair<'a> = (&'a Row, &'a Row, Interval);
 
-fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
+fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row], over: Over) -> Vec<Pair<'a>> {
     let pair = |row: &&'a Row| {
-        let other = Over::Rival.of(context.rows, row)?;
+        let other = over.of(context.rows, row)?;
         Some((*row, other, between(row, other)?))
     };
     rows.iter().filter_map(pair).collect()
@@ -218,7 +238,7 @@ where
 }
 
 fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
-    let all = pairs(context, rows);
+    let all = pairs(context, rows, Over::Rival);
     if all.is_empty() {
         return None;
     }
@@ -248,7 +268,7 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
 
 /// For each kind of shadows and size the largest ratio of each stage, and which picture it is of.
 pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
-    let mut groups = grouped(pairs(context, rows), |p| {
+    let mut groups = grouped(pairs(context, rows, Over::Rival), |p| {
         (p.0.shadow, p.0.settings.width, p.0.settings.height)
     });
     let place = |shadow: Shadow| Shadow::NAMES.iter().position(|n| n.1 == shadow);
@@ -333,7 +353,7 @@ mod tests {
             timed(Solver::Live.into(), Fragment, 0, &[10.0, 10.0, 10.0]),
         ];
         let (answers, records) = stages_of(&rows);
-        let wanted = "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5), over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster.";
+        let wanted = "On dev compute takes 0.5 of the fragment stage's time for `exact` (0.5 to 0.5) over 2 pictures, 0.5 to 0.5 in single pictures: compute is faster.";
         assert_eq!(answers, [wanted]);
         assert_eq!(records.len(), 1, "live was drawn in one stage");
         let [fragment, compute] = [&records[0][3], &records[0][4]];
@@ -348,7 +368,7 @@ mod tests {
         for (compute, wanted, faster) in [
             (
                 [9.9, 10.2, 10.1],
-                "over 1 picture: no difference is resolved.",
+                "): no difference is resolved.",
                 "no difference resolved",
             ),
             (
@@ -381,6 +401,20 @@ mod tests {
         let (answers, _) = stages_of(&[rows.to_vec(), vec![lies]].concat());
         assert_eq!(answers.len(), 1);
         assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
+    }
+
+    /// A mesh that takes half of the default's time is named, and one picture is not counted.
+    #[test]
+    fn the_mesh_that_is_faster_is_named() {
+        let mesh = timed(Method::OPPONENT, DrawStage::Fragment, 0, &[5.0, 5.1, 5.0]);
+        let rows = [
+            timed(Method::DEFAULT, DrawStage::Fragment, 0, &[10.0, 10.2, 10.0]),
+            mesh,
+        ];
+        let told = with_context(&rows, findings).join(" ");
+        let wanted = "Where it loses, if anywhere: Against a mesh it takes at most 2 (2 to 2) of the time: scene0 at 800x600 in the fragment stage, against `mesh:0.25px`.";
+        assert!(told.contains(wanted), "{told}");
+        assert!(!told.contains("1 picture"), "{told}");
     }
 
     /// The quadric search is faster in one picture; a wider interval with a larger ratio does not

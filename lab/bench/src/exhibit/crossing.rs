@@ -3,7 +3,7 @@
 use crate::measure::ratios::{Over, Ratio, over};
 use crate::measure::row::Row;
 use crate::method::Method;
-use crate::names::{count, number};
+use crate::names::number;
 use crate::plan::grouped;
 use crate::table::columns::Context;
 
@@ -26,9 +26,9 @@ pub(super) fn answers(context: &Context, rows: &[&Row]) -> Vec<String> {
         let known: Vec<(f64, f64)> = known.map(|(x, time)| (*x, time.value)).collect();
         let pictures = all.iter().map(|r| r.pairs.len()).max().unwrap_or(0);
         format!(
-            "{} stage: the default takes this part of the time of the mesh of equal silhouettes, over {}: {told}. {}",
+            "{} stage: the default takes this part of the time of the mesh of equal silhouettes{}: {told}. {}",
             stage.name(),
-            count(pictures, "picture"),
+            context.over_pictures(pictures),
             verdict(&known)
         )
     };
@@ -79,7 +79,7 @@ mod tests {
             }
         }
         let told = with_context(&rows, |context| answers(context, context.rows));
-        let wanted = "fragment stage: the default takes this part of the time of the mesh of equal silhouettes, over 1 picture: 0.5 at 0.1 pixels, 2 at 1.6 pixels. They take the same time at 0.4 pixels.";
+        let wanted = "fragment stage: the default takes this part of the time of the mesh of equal silhouettes: 0.5 at 0.1 pixels, 2 at 1.6 pixels. They take the same time at 0.4 pixels.";
         assert_eq!(told, [wanted]);
         assert_eq!(
             verdict(&[(0.1, 1.2), (0.2, 1.3)]),

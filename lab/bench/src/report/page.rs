@@ -17,6 +17,8 @@ pub struct Page {
     body: String,
     contents: Vec<(String, String)>,
     figures: usize,
+    /// The markup of the first figure.
+    first: String,
 }
 
 /// Text as wide as it reads well, charts side by side where there is room; tables that scroll by
@@ -32,6 +34,7 @@ impl Page {
             body: String::new(),
             contents: Vec::new(),
             figures: 0,
+            first: String::new(),
         }
     }
 
@@ -74,15 +77,20 @@ impl Page {
         });
     }
 
-    /// A chart with the sentence that explains it.
+    /// A chart with the sentence that explains it. The first one is at the top of the page, beside what
+    /// was found.
     pub fn figure(&mut self, figure: &Figure, caption: &str) {
         self.figures += 1;
-        self.add(html! {
+        let figure = html! {
             figure {
                 (PreEscaped(svg(figure)))
                 figcaption { b { "Figure " (self.figures) "." } " " (words(caption)) }
             }
-        });
+        };
+        match self.figures {
+            1 => self.first = figure.into_string(),
+            _ => self.add(figure),
+        }
     }
 
     /// A table, without the columns that have no value. Words are aligned left, and sentences wrap;
@@ -141,7 +149,10 @@ impl Page {
                 }
                 body {
                     h1 { (self.title) }
-                    @for text in &self.lead { p { (words(text)) } }
+                    div.top {
+                        (PreEscaped(&self.first))
+                        div { @for text in &self.lead { p { (words(text)) } } }
+                    }
                     nav { details { summary { "Contents" } ul { @for (id, name) in &self.contents {
                         li { a href=(format!("#{id}")) { (name) } }
                     } } } }
@@ -183,6 +194,8 @@ mod tests {
             assert!(html.contains(wanted), "{wanted}");
         }
         assert!(!html.contains("empty"), "a column without a value");
+        let first = html.find("<div class=\"top\">").zip(html.find("id=\"c1\""));
+        assert!(first.is_some_and(|(top, chapter)| top < chapter));
         for foreign in ["<script", "http://", "https://", "src=\"/", "@import"] {
             assert!(!html.contains(foreign), "{foreign}");
         }

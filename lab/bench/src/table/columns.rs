@@ -5,8 +5,8 @@ use crate::measure::machine::Machine;
 use crate::measure::ratios::{Over, above_floor, baseline_stage, between};
 use crate::measure::row::{Clocks, Row};
 use crate::method::{Edges, Method};
-use crate::names::{number, percent, range};
-use crate::plan::{Plan, RBM_BASELINE, is_rbm_baseline};
+use crate::names::{count, number, percent, range};
+use crate::plan::{Plan, RBM_BASELINE, grouped, is_rbm_baseline};
 use crate::stats::{self, Interval};
 use crate::table::{NO_VALUE, Table};
 use revmap::error::{Error, ErrorKind, Result};
@@ -346,6 +346,14 @@ impl<'a> Context<'a> {
             device: &machine.device,
             driver: &machine.driver,
             resolved,
+        }
+    }
+
+    /// How many pictures a ratio is over, in words; nothing where the run has one picture.
+    pub fn over_pictures(&self, pictures: usize) -> String {
+        match grouped(self.rows, |r| r.picture()).len() {
+            1 => String::new(),
+            _ => format!(" over {}", count(pictures, "picture")),
         }
     }
 

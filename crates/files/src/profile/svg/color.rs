@@ -2,6 +2,7 @@
 
 use super::value::Value;
 use ::color::{ColorSpaceTag, Srgb, parse_color};
+use revmap::frame::linear_from_srgb;
 
 /// Red, green, blue and alpha from 0 to 1; not premultiplied.
 pub(super) type Color = [f32; 4];
@@ -20,6 +21,22 @@ const FUNCTIONS: [&str; 2] = [
 /// Spaces of `color()` that are read.
 const SPACES: [&str; 3] = ["srgb", "srgb-linear", "display-p3"];
 const REMEDY: &str = "write the colour as #rrggbb";
+
+/// Reads a colour of CSS, such as `orange`, `#e0a030` or `rgb(224 160 48 / 50%)`, as linear red, green
+/// and blue, not premultiplied, and alpha. `None` for other text.
+///
+/// ```
+/// assert_eq!(revmap_files::css_color("lime"), Some([0.0, 1.0, 0.0, 1.0]));
+/// assert_eq!(revmap_files::css_color("greenish"), None);
+/// ```
+#[must_use]
+pub fn css_color(text: &str) -> Option<[f32; 4]> {
+    let Value::Is([r, g, b, alpha]) = color(text.trim()) else {
+        return None;
+    };
+    let [r, g, b] = [r, g, b].map(|v| linear_from_srgb(f64::from(v.clamp(0.0, 1.0))) as f32);
+    Some([r, g, b, alpha])
+}
 
 /// Reads a colour. `currentColor` is left to the caller.
 pub(super) fn color(text: &str) -> Value<Color> {

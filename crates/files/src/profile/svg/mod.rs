@@ -32,6 +32,8 @@ mod viewport;
 pub(super) use encoding::is_markup;
 pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
 
+pub use color::css_color;
+
 use crate::content_fault;
 use kurbo::{Rect, Shape};
 use paints::premultiplied;
