@@ -14,7 +14,8 @@ const BRIGHT: f32 = 16.0;
 const CROWD: usize = 1000;
 /// Parts of a solid's height by which it hovers by mistake.
 const HOVERS: std::ops::RangeInclusive<f64> = 0.002..=0.05;
-/// Copies of an object that are looked at for that.
+/// Copies of a scene, as many of each object, that are looked at for that: each is compared with all
+/// others.
 const LOOKED_AT: usize = 256;
 /// A background is stored with an error below this.
 const ROUNDING: f32 = 1.0 / 256.0;
@@ -74,42 +75,40 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     found
 }
 
-/// Objects of which a copy hovers a little above the flat top of another object, as a drawing with a
-/// margin below it does.
+/// Objects of which a copy hovers a little above the flat top of another object, as a drawing with
+/// a margin below it does.
 fn hovering(scene: &Scene) -> Vec<String> {
-    let all: Vec<_> = scene.objects.iter().map(Extent::of).collect();
-    let places = |i: usize| scene.objects[i].placements().iter().take(LOOKED_AT);
-    let of_object = |i: usize, extent: &Extent| {
-        // Flat tops of other objects.
-        let others = (0..all.len()).filter(|other| *other != i);
-        let all = &all;
-        let tops = others.flat_map(|other| {
-            places(other).filter_map(move |place| Some((all[other].top(place)?, place.position)))
+    let each = (LOOKED_AT / scene.objects.len().max(1)).max(1);
+    let objects = scene.objects.iter().enumerate();
+    let copies = objects.flat_map(|(i, object)| {
+        let some = object.placements().iter().take(each);
+        some.map(move |place| (i, place))
+    });
+    let copies: Vec<_> = copies.take(LOOKED_AT).collect();
+    let end = copies.last().map_or(0, |(i, _)| i + 1);
+    let extents: Vec<_> = scene.objects[..end].iter().map(Extent::of).collect();
+    let top = |&(i, place): &(usize, &Placement)| Some((i, extents[i].top(place)?, place.position));
+    let tops: Vec<_> = copies.iter().filter_map(top).collect();
+    let gap = |&(i, place): &(usize, &Placement)| {
+        let low = -extents[i].reach(place, -DVec3::Z);
+        let height = extents[i].reach(place, DVec3::Z) - low;
+        let below = tops.iter().filter(|(other, [top, radius], middle)| {
+            let aside = (place.position - *middle).truncate().length();
+            *other != i && aside <= *radius && *top < low + 0.5 * height
         });
-        let tops: Vec<_> = tops.collect();
-        places(i).find_map(|place| {
-            let low = -extent.reach(place, -DVec3::Z);
-            let height = extent.reach(place, DVec3::Z) - low;
-            let below = tops.iter().filter(|([top, radius], middle)| {
-                (place.position - *middle).truncate().length() <= *radius
-                    && *top < low + 0.5 * height
-            });
-            let top = below
-                .map(|([top, _], _)| *top)
-                .fold(f64::NEG_INFINITY, f64::max);
-            let gap = (low - top) / height;
-            HOVERS.contains(&gap).then_some(gap)
-        })
+        let top = below.map(|(_, [top, _], _)| *top);
+        let gap = (low - top.fold(f64::NEG_INFINITY, f64::max)) / height;
+        HOVERS.contains(&gap).then_some((i, gap))
     };
-    let gaps = all.iter().enumerate();
-    let gaps = gaps.filter_map(|(i, extent)| Some((i, of_object(i, extent)?)));
-    gaps.map(|(i, gap)| {
+    let mut all: Vec<_> = copies.iter().filter_map(gap).collect();
+    all.dedup_by_key(|(i, _)| *i);
+    let told = all.into_iter().map(|(i, gap)| {
         format!(
             "object.{i}: hovers {:.1} % of its height above the face below it; with object.{i}.stand = true its lowest point is at its position, whatever margin its drawing has",
             100.0 * gap
         )
-    })
-    .collect()
+    });
+    told.collect()
 }
 
 /// Insets that leave nothing, and an empty view.
