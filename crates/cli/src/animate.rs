@@ -7,6 +7,7 @@ use super::output::{self, usage};
 use super::progress::Progress;
 use super::reading::ShownOutline;
 use super::studio::Studio;
+use super::times::{self, Row};
 use super::vary::Vary;
 use clap::Args;
 use glam::{DQuat, DVec3};
@@ -74,16 +75,6 @@ pub struct Animate {
 
 /// Frames of a film by which the studio's camera is chosen.
 const FRAMED: u32 = 24;
-
-/// A line of the times.
-#[derive(Default)]
-struct Row {
-    prepare_ms: f64,
-    gpu_ms: Option<f64>,
-    frame_ms: f64,
-    compiled: u64,
-    rebuilt: u64,
-}
 
 /// The number of a frame that shows nothing, and why.
 type Blank = (u32, String);
@@ -166,7 +157,7 @@ impl Animate {
         }
         drop(progress);
         if let Some(path) = &self.times {
-            write_times(path, rows)?;
+            times::write(path, rows)?;
         }
         if !self.drawing.quiet {
             let warnings = self.warnings(&first, &varied, &drawn, target);
@@ -388,28 +379,9 @@ impl Animate {
             return;
         }
         output::device(device.report());
-        let whole = |r: &Row| r.prepare_ms + r.frame_ms;
-        let settled = &rows[rows.len().min(10)..];
-        let measured = if settled.is_empty() { rows } else { settled };
-        let mut all: Vec<f64> = measured.iter().map(whole).collect();
-        all.sort_by(f64::total_cmp);
-        let (median, most) = (all[all.len() / 2], all[all.len() - 1]);
-        let late: u64 = settled.iter().map(|r| r.compiled).sum();
-        let compiled = device.pipelines_compiled();
-        let rebuilt: u64 = rows.iter().map(|r| r.rebuilt).sum();
-        let (after, of_them) = match settled {
-            [] => ("", String::new()),
-            _ => (
-                " after the tenth",
-                format!(", {late} of them after the tenth"),
-            ),
-        };
-        let times = format!("median {median:.2} ms, slowest{after} {most:.2} ms");
+        let [times, costs] = times::told(rows, device.pipelines_compiled());
         if self.drawing.verbose {
-            output::note(&format!(
-                "{times} ({:.2} of the median); pipelines compiled: {compiled}{of_them}; surfaces made: {rebuilt}",
-                most / median,
-            ));
+            output::note(&format!("{times}{costs}"));
         }
         let frames = match rows.len() {
             1 => "1 frame".to_owned(),
@@ -456,17 +428,4 @@ pub fn turn_about_target(camera: &mut Camera, angle: f64) -> DQuat {
     let about = DQuat::from_axis_angle(camera.up.normalize_or(DVec3::Z), angle);
     camera.eye = camera.target + about * (camera.eye - camera.target);
     about
-}
-
-fn write_times(path: &Path, rows: &[Row]) -> Result<()> {
-    let mut text =
-        String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
-    for (n, row) in rows.iter().enumerate() {
-        let gpu = row.gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
-        text += &format!(
-            "{n},{:.4},{gpu},{:.4},{},{}\n",
-            row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
-        );
-    }
-    revmap_files::write_bytes(path, text.as_bytes())
 }

@@ -30,6 +30,7 @@ mod shell;
 mod stability;
 mod studio;
 mod submit;
+mod times;
 mod vary;
 #[cfg(feature = "viewer")]
 mod view;
