@@ -56,9 +56,9 @@ impl Studio {
         })
     }
 
-    /// Chooses a camera that looks the same way as that of the first scene, and in whose pictures of
-    /// `aspect` (width over height) the objects of all `scenes` are within [`FILLED`] of both sides.
-    /// Each scene is seen once the camera has turned about its target by an angle, radians.
+    /// Chooses a camera that looks the same way as that of the first scene, and in whose pictures
+    /// of `aspect` (width over height) the objects of all `scenes` are within [`FILLED`] of both
+    /// sides. Each scene is seen once the camera has turned about its target by an angle, radians.
     pub fn frame(&mut self, scenes: &[(Scene, f64)], aspect: f64) {
         let Some((first, _)) = scenes.first() else {
             return;
@@ -112,9 +112,9 @@ impl Studio {
         scene.camera = self.camera.unwrap_or(scene.camera);
     }
 
-    /// Replaces lights, shadows and background of a scene, and puts a ground below its objects. The
-    /// lights stay with the camera. The ground reflects as much light as reaches it from them, so it
-    /// has its own colour, and that of the background at its rim.
+    /// Replaces lights, shadows and background of a scene, and puts a ground below its objects.
+    /// The lights stay with the camera. The ground reflects as much light as reaches it from them,
+    /// so it has its own colour, and that of the background at its rim.
     pub fn furnish(&self, scene: &mut Scene) {
         let [ahead, right, up] = directions(&scene.camera);
         let light = |[x, y, z]: [f64; 3], color, radius| Light {

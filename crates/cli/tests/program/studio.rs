@@ -105,7 +105,8 @@ fn a_camera_of_ones_own_stays() {
     }
 }
 
-/// The ground fades into the background: no row of pixels beside the thing differs much from the next.
+/// The ground fades into the background: no row of pixels beside the thing differs much from the
+/// next.
 #[test]
 fn the_ground_has_a_soft_edge() {
     let bench = Bench::new();

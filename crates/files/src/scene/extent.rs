@@ -39,8 +39,8 @@ impl<'a> Extent<'a> {
         }
     }
 
-    /// The largest coordinate along `axis` of the copy at `place`, world units; minus infinity for a
-    /// solid of which nothing is left.
+    /// The largest coordinate along `axis` of the copy at `place`, world units; minus infinity for
+    /// a solid of which nothing is left.
     #[must_use]
     pub fn reach(&self, place: &Placement, axis: DVec3) -> f64 {
         let v = place.rotation.conjugate() * axis * place.scale;
@@ -68,8 +68,9 @@ impl<'a> Extent<'a> {
         place.position.dot(axis) + solid.min(of_box)
     }
 
-    /// Height of the flat face on top of an upright copy, and its radius about the object's axis, world
-    /// units. `None` for replicas, and for a copy that is turned over or has a round or pointed top.
+    /// Height of the flat face on top of an upright copy, and its radius about the object's axis,
+    /// world units. `None` for replicas, and for a copy that is turned over or has a round or
+    /// pointed top.
     pub(super) fn top(&self, place: &Placement) -> Option<[f64; 2]> {
         let upright = (place.rotation * DVec3::Z).z > 1.0 - 1e-9;
         let last = self

@@ -77,8 +77,8 @@ impl Page {
         });
     }
 
-    /// A chart with the sentence that explains it. The first one is at the top of the page, beside what
-    /// was found.
+    /// A chart with the sentence that explains it. The first one is at the top of the page, beside
+    /// what was found.
     pub fn figure(&mut self, figure: &Figure, caption: &str) {
         self.figures += 1;
         let figure = html! {

@@ -22,8 +22,8 @@ const FUNCTIONS: [&str; 2] = [
 const SPACES: [&str; 3] = ["srgb", "srgb-linear", "display-p3"];
 const REMEDY: &str = "write the colour as #rrggbb";
 
-/// Reads a colour of CSS, such as `orange`, `#e0a030` or `rgb(224 160 48 / 50%)`, as linear red, green
-/// and blue, not premultiplied, and alpha. `None` for other text.
+/// Reads a colour of CSS, such as `orange`, `#e0a030` or `rgb(224 160 48 / 50%)`, as linear red,
+/// green and blue, not premultiplied, and alpha. `None` for other text.
 ///
 /// ```
 /// assert_eq!(revmap_files::css_color("lime"), Some([0.0, 1.0, 0.0, 1.0]));
