@@ -16,10 +16,10 @@ fn main() {
 
 fn generate() -> Fallible<()> {
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
-    let module = |entry: &'static str| Module {
-        name: entry.to_owned(),
+    let module = |(entry, name, shadows): (&'static str, &str, bool)| Module {
+        name: name.to_owned(),
         entry,
-        macros: Vec::new(),
+        macros: shadows.then_some(("SHADOWS", "1")).into_iter().collect(),
         hook: None,
         optimized: false,
     };
@@ -27,9 +27,16 @@ fn generate() -> Fallible<()> {
         entries: &["shaders"],
         includes: &["shaders"],
         kept: "shaders/spirv",
-        all: ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"]
-            .map(module)
-            .into(),
+        all: [
+            ("mesh.vert", "mesh.vert", false),
+            ("mesh_color.frag", "mesh_color.frag", false),
+            ("mesh_planes.frag", "mesh_planes.frag", false),
+            ("mesh_color.frag", "shadowed_color.frag", true),
+            ("mesh_planes.frag", "shadowed_planes.frag", true),
+            ("caster.vert", "caster.vert", false),
+        ]
+        .map(module)
+        .into(),
     };
     let sources = files_in("shaders", &["vert", "frag", "glsl"])?;
     std::fs::write(out.join("mesh.rs"), mesh.embed(&sources)?)?;

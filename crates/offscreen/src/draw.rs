@@ -18,6 +18,12 @@ pub trait Guest {
     /// was drawn.
     unsafe fn prepare(&self, _cmd: vk::CommandBuffer) {}
 
+    /// Records passes that the draws need, such as shadow maps: once for each frame, within its times.
+    ///
+    /// # Safety
+    /// As [`Guest::prepare`].
+    unsafe fn record_before(&self, _cmd: vk::CommandBuffer) {}
+
     /// Records the guest's draws: once for each submission of a frame, which draws the rows of the
     /// scissor.
     ///
@@ -108,6 +114,10 @@ impl Offscreen {
                 unsafe { guest.prepare(cmd) };
             }
             commands.start_clock(cmd);
+            if let (Some(guest), true, false) = (guest, begins, compute) {
+                // SAFETY: as above.
+                unsafe { guest.record_before(cmd) };
+            }
             if begins {
                 target.clear(cmd, background, !whole || frame.reads_depths());
             } else {

@@ -14,7 +14,7 @@ const uint MAX_LIGHTS = 8u;
 const uint NEAR_LIGHTS = 2u; // lights that vertices hand over; fragments read the others
 
 struct Light {
-    vec4 towards; // unit, from the surface to the light
+    vec4 towards; // unit, from the surface to the light; w: tangent of its angular radius
     vec4 color;   // linear RGB
 };
 
@@ -39,6 +39,12 @@ layout(set = 0, binding = 1, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
+#ifdef CASTER
+layout(push_constant) uniform CasterBlock {
+    mat4 clip_from_world;
+    vec4 axis; // as in ObjectBlock
+} caster;
+#else
 layout(push_constant) uniform ObjectBlock {
     vec4 axis;     // x, y in object units from the middle of the box
     vec4 albedo;   // linear RGB; w: strength of the highlight
@@ -72,6 +78,7 @@ Instance instance_of(uint index)
     }
     return instances[index];
 }
+#endif
 
 vec3 rotate(vec4 q, vec3 v)
 {

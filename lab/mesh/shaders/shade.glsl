@@ -2,8 +2,11 @@
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "mesh.glsl"
-
+#ifdef SHADOWS
+#include "shadow.glsl"
+#else
 const float PI = 3.14159265358979;
+#endif
 
 struct Shaded {
     vec4 color;          // linear RGBA
@@ -30,6 +33,27 @@ vec2 coordinates(vec3 place)
     float xi = r > 0.0 ? (PI + atan(p.y, p.x)) / (2.0 * PI) : 0.5;
     float eta = PROJECTION == PROJECTION_SPHERICAL ? 1.0 - atan(r, p.z - 0.5) / PI : p.z;
     return vec2(xi, eta);
+}
+
+// What a pixel's shadows are found from, world axes.
+struct Place {
+    vec3 point;
+    vec3 normal;
+    float depth; // along the view
+};
+
+// The part of a light that is seen.
+float lit_part(uint n, Place place)
+{
+#ifdef SHADOWS
+    if (n < SHADOW_LIGHTS) {
+        vec4 towards = frame.lights[n].towards;
+        float facing = dot(place.normal, towards.xyz);
+        float slope = sqrt(max(1.0 - facing * facing, 0.0)) / max(facing, 0.05);
+        return facing > 0.0 ? seen_of_light(n, place.point, place.normal, slope, place.depth, towards.w) : 0.0;
+    }
+#endif
+    return 1.0;
 }
 
 // Of one light, in the turned space.
@@ -69,11 +93,13 @@ Shaded shade()
     vec3 lit = (dot(turned, view) < 0.0 ? -1.0 : 1.0) * turned;
     s.shading_normal = rotate(i.rotation, lit);
     vec3 color = s.albedo * ambient;
+    vec3 ray = frame.dir_00.xyz + float(pixel.x) * frame.dir_x.xyz + float(pixel.y) * frame.dir_y.xyz;
+    Place place = Place(frame.eye.xyz + t * ray, s.shading_normal, t);
     if (LIGHTS > 0u) {
-        color += blinn_phong(light_0.xyz, vec3(light_0.w, light_colors.xy), lit, view);
+        color += lit_part(0u, place) * blinn_phong(light_0.xyz, vec3(light_0.w, light_colors.xy), lit, view);
     }
     if (LIGHTS > 1u) {
-        color += blinn_phong(light_1.xyz, vec3(light_1.w, light_colors.zw), lit, view);
+        color += lit_part(1u, place) * blinn_phong(light_1.xyz, vec3(light_1.w, light_colors.zw), lit, view);
     }
     for (uint n = NEAR_LIGHTS; n < LIGHTS; ++n) {
         Light light = light_seen(i, n);

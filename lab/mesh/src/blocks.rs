@@ -35,7 +35,9 @@ impl FrameBlock {
         let mut lights = [LightBlock::default(); MAX_LIGHTS];
         for (block, light) in lights.iter_mut().zip(&lighting.lights) {
             let towards = -light.direction.normalize_or_zero().as_vec3();
-            block.towards = towards.extend(0.0).to_array();
+            let cosine = 1.0 - light.cap();
+            let spread = (1.0 - cosine * cosine).max(0.0).sqrt() / cosine.max(1e-3);
+            block.towards = towards.extend(spread as f32).to_array();
             block.color = [light.color[0], light.color[1], light.color[2], 0.0];
         }
         let vector = |v: DVec3| v.as_vec3().extend(0.0).to_array();
@@ -101,4 +103,22 @@ impl ObjectBlock {
             single: first.copied().unwrap_or_default(),
         }
     }
+}
+
+/// `CasterBlock`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(super) struct CasterBlock {
+    pub clip_from_world: [[f32; 4]; 4],
+    pub axis: [f32; 4],
+}
+
+/// `ShadowMap`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(super) struct MapBlock {
+    pub atlas_from_world: [[f32; 4]; 4],
+    pub square: [f32; 4],
+    pub facts: [f32; 4],
+    pub per_unit: [f32; 4],
 }

@@ -41,13 +41,20 @@ impl Fineness {
             Self::Pixels(_) => {
                 for copy in object.placements() {
                     if let Some(pixels) = sight.pixels_per_unit(object, shape, copy) {
-                        let level = (LEVELS * pixels.log2()).ceil() as i32;
-                        all.entry(level.clamp(0, FINEST)).or_default().push(*copy);
+                        all.entry(self.level(pixels)).or_default().push(*copy);
                     }
                 }
             }
         }
         all
+    }
+
+    /// The level at which an object unit takes so many pixels.
+    pub(super) fn level(self, pixels: f64) -> i32 {
+        match self {
+            Self::Quads { .. } => 0,
+            Self::Pixels(_) => ((LEVELS * pixels.log2()).ceil() as i32).clamp(0, FINEST),
+        }
     }
 
     /// The mesh of a level.

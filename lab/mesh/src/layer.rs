@@ -2,21 +2,23 @@
 #![allow(unsafe_code)]
 
 pub(super) mod pipelines;
+pub(super) mod shadows;
 
 pub use pipelines::MeshPipelines;
 
 use super::blocks::{FrameBlock, InstanceBlock, MAX_LIGHTS, ObjectBlock};
 use super::fineness::Fineness;
-use super::placed::{PlacedMesh, SceneMeshes};
+use super::placed::{Placed, SceneMeshes};
 use super::tessellation::Mesh;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use pipelines::PipelineKey;
 use revmap::error::Result;
 use revmap::gpu::{Buffer, Device, View, vulkan_error as vulkan};
-use revmap::scene::{CameraFrame, Scene};
+use revmap::scene::{CameraFrame, Scene, Shadow};
 use revmap::settings::{Planes, Settings};
 use revmap_offscreen::{Guest, Offscreen};
+use shadows::ShadowMaps;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -33,6 +35,9 @@ pub struct MeshLayer {
     instances: Buffer,
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
+    /// Made with the first scene that has shadows.
+    shadows: Option<ShadowMaps>,
+    shadow: Shadow,
     pass: vk::RenderPass,
     kind: PassKind,
     pipelines: Arc<MeshPipelines>,
@@ -78,6 +83,8 @@ impl MeshLayer {
             instances: instance_buffer(device, 1)?,
             pool: vk::DescriptorPool::null(),
             set: vk::DescriptorSet::null(),
+            shadows: None,
+            shadow: Shadow::Off,
             pass: offscreen.render_pass(),
             kind: PassKind {
                 samples: vk::SampleCountFlags::from_raw(samples),
@@ -85,17 +92,18 @@ impl MeshLayer {
             },
             pipelines: pipelines.clone(),
         };
-        let size = |kind| {
+        let size = |kind, count| {
             vk::DescriptorPoolSize::default()
                 .ty(kind)
-                .descriptor_count(1)
+                .descriptor_count(count)
         };
         let sizes = [
-            size(vk::DescriptorType::UNIFORM_BUFFER),
-            size(vk::DescriptorType::STORAGE_BUFFER),
+            size(vk::DescriptorType::UNIFORM_BUFFER, 2),
+            size(vk::DescriptorType::STORAGE_BUFFER, 1),
+            size(vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 2),
         ];
         let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(1)
+            .max_sets(2)
             .pool_sizes(&sizes);
         // SAFETY: a plain creation; Drop destroys the pool, and the set with it.
         layer.pool = unsafe { device.raw().create_descriptor_pool(&info, None) }
@@ -104,7 +112,7 @@ impl MeshLayer {
         let info = vk::DescriptorSetAllocateInfo::default()
             .descriptor_pool(layer.pool)
             .set_layouts(&layouts);
-        // SAFETY: the pool holds one set of this layout.
+        // SAFETY: the pool holds a set of this layout.
         let sets = unsafe { device.raw().allocate_descriptor_sets(&info) }
             .map_err(|code| vulkan("vkAllocateDescriptorSets", code))?;
         layer.set = sets.first().copied().unwrap_or_default();
@@ -120,11 +128,19 @@ impl MeshLayer {
         let placed = self.meshes.place(scene, &camera)?;
         let lighting = scene.lighting();
         let frame = FrameBlock::new(&view()?, &camera, &lighting);
-        self.take(&frame, lighting.lights.len(), &placed)
+        if scene.shadow != Shadow::Off && self.shadows.is_none() {
+            self.shadows = Some(ShadowMaps::new(&self.pipelines, self.pool)?);
+        }
+        self.take(&frame, (lighting.lights.len(), scene.shadow), &placed)
     }
 
     /// Takes over a frame's block and its objects in order. Nothing changes where it fails.
-    fn take(&mut self, frame: &FrameBlock, lights: usize, placed: &[PlacedMesh]) -> Result<()> {
+    fn take(
+        &mut self,
+        frame: &FrameBlock,
+        (lights, shadow): (usize, Shadow),
+        placed: &Placed,
+    ) -> Result<()> {
         let device = self.pipelines.device().clone();
         let mut staged: Vec<(Arc<DeviceMesh>, Buffer)> = Vec::new();
         let mut objects = Vec::new();
@@ -133,24 +149,26 @@ impl MeshLayer {
         let is_kept = |known: &Arc<DeviceMesh>| Arc::strong_count(&known.mesh) > 1;
         let mut on_device = self.on_device.clone();
         on_device.retain(is_kept);
-        for one in placed {
+        let mut of_mesh = |mesh: &Arc<Mesh>| -> Result<Arc<DeviceMesh>> {
             let mut known = on_device.iter();
-            let mesh = match known.find(|known| Arc::ptr_eq(&known.mesh, &one.mesh)) {
-                Some(mesh) => mesh.clone(),
-                None => {
-                    let (mesh, staging) = DeviceMesh::new(&device, &one.mesh)?;
-                    let mesh = Arc::new(mesh);
-                    staged.push((mesh.clone(), staging));
-                    on_device.push(mesh.clone());
-                    mesh
-                }
-            };
+            if let Some(known) = known.find(|known| Arc::ptr_eq(&known.mesh, mesh)) {
+                return Ok(known.clone());
+            }
+            let (mesh, staging) = DeviceMesh::new(&device, mesh)?;
+            let mesh = Arc::new(mesh);
+            staged.push((mesh.clone(), staging));
+            on_device.push(mesh.clone());
+            Ok(mesh)
+        };
+        for one in &placed.meshes {
+            let mesh = of_mesh(&one.mesh)?;
             let key = PipelineKey {
                 pass: self.kind,
                 lights: lights.min(MAX_LIGHTS) as u32,
                 single: one.instances.len() == 1,
                 projection: one.projection,
                 both_sides: one.both_sides,
+                shadow,
             };
             let first = instances.len() as u32;
             instances.extend(&one.instances);
@@ -162,6 +180,10 @@ impl MeshLayer {
                 start: one.start,
             });
         }
+        if let Some(shadows) = &mut self.shadows {
+            shadows.take(&placed.maps, &mut instances, of_mesh)?;
+        }
+        self.shadow = shadow;
         let bytes: &[u8] = bytemuck::cast_slice(&instances);
         if bytes.len() as u64 > self.instances.bytes {
             let mut larger = instance_buffer(&device, instances.len())?;
@@ -197,7 +219,7 @@ impl MeshLayer {
         let bytes = all
             .iter()
             .map(|mesh| mesh.vertices.bytes + mesh.indices.bytes);
-        bytes.sum()
+        bytes.sum::<u64>() + self.shadows.as_ref().map_or(0, ShadowMaps::bytes)
     }
 
     /// Points the set to the buffers.
@@ -251,11 +273,20 @@ impl Guest for MeshLayer {
         }
     }
 
+    unsafe fn record_before(&self, cmd: vk::CommandBuffer) {
+        if let Some(shadows) = self.shadows.as_ref().filter(|_| self.shadow != Shadow::Off) {
+            // SAFETY: `cmd` is recording outside of a pass.
+            unsafe { shadows.record(cmd, self.set) };
+        }
+    }
+
     unsafe fn record(&self, cmd: vk::CommandBuffer) {
         let raw = self.pipelines.device().raw();
         let layout = self.pipelines.layout;
         let point = vk::PipelineBindPoint::GRAPHICS;
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
+        let shadows = self.shadows.as_ref().map(|shadows| shadows.set);
+        let sets: Vec<_> = [self.set].into_iter().chain(shadows).collect();
         for object in &self.objects {
             let mesh = &object.mesh;
             let first = object.instances.start;
@@ -264,7 +295,7 @@ impl Guest for MeshLayer {
             // lives as long as `self`, and the buffers hold the indices and instances drawn.
             unsafe {
                 raw.cmd_bind_pipeline(cmd, point, object.pipeline);
-                raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[self.set], &[]);
+                raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &[]);
                 let block = bytemuck::bytes_of(&object.block);
                 raw.cmd_push_constants(cmd, layout, stages, 0, block);
                 raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);

@@ -5,10 +5,12 @@
 //! [`Guest`](revmap_offscreen::Guest). Nothing in [`revmap`] knows of it. Pass, depth buffer,
 //! timestamps and reading back are the renderer's, so that times compare.
 //!
-//! Meshes draw plain colours with the renderer's shading. They refuse what they do not draw:
-//! shadows, replicas, maps of colours and heights, and coordinates along the profile.
+//! Meshes draw plain colours with the renderer's shading, and shadows by shadow maps. They refuse
+//! what they do not draw: shadows of more than two lights, replicas, maps of colours and heights, and
+//! coordinates along the profile.
 
 mod blocks;
+mod cascades;
 mod fineness;
 mod layer;
 mod placed;

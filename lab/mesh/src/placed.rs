@@ -1,6 +1,7 @@
 //! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
 
 use super::blocks::{InstanceBlock, ObjectBlock};
+use super::cascades::{Ball, Cascade, SHADOW_LIGHTS, cascades};
 use super::fineness::Fineness;
 use super::sight::{Sight, eye_about_axis};
 use super::tessellation::{Mesh, extent_of};
@@ -26,6 +27,27 @@ pub(super) struct PlacedMesh {
     pub start: u32,
     /// Depth of the nearest instance, along the view.
     depth: f64,
+}
+
+/// The number of a copy's solid, the middle of its box from the axis, and its placement.
+type Copy = (usize, [f64; 2], Placement);
+
+/// Copies of one mesh in a shadow map.
+pub(super) struct PlacedCaster {
+    pub mesh: Arc<Mesh>,
+    pub axis: [f64; 2],
+    pub instances: Vec<InstanceBlock>,
+}
+
+/// A shadow map and what is drawn into it.
+pub(super) type PlacedMap = (Cascade, Vec<PlacedCaster>);
+
+/// What a frame draws.
+pub(super) struct Placed {
+    /// The nearest first.
+    pub meshes: Vec<PlacedMesh>,
+    /// Of each light, the nearest to the eye first; none without shadows.
+    pub maps: Vec<Vec<PlacedMap>>,
 }
 
 /// Makes and keeps the meshes of a scene; objects of one profile and offset share them.
@@ -70,8 +92,11 @@ impl SceneMeshes {
     ///
     /// # Errors
     /// [`ErrorKind::Content`] for what meshes do not draw, and for a profile without a contour.
-    pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Vec<PlacedMesh>> {
+    pub fn place(&mut self, scene: &Scene, camera: &CameraFrame) -> Result<Placed> {
         check_scene(scene)?;
+        let shaded = scene.shadow != Shadow::Off;
+        let mut balls = Vec::new();
+        let mut copies_of = Vec::new();
         self.solids.iter_mut().for_each(|solid| solid.used = false);
         let sight = Sight::new(camera, self.size);
         let mut placed = Vec::new();
@@ -87,6 +112,7 @@ impl SceneMeshes {
                     None => error,
                 }
             })?;
+            let number_of_solid = solid;
             let (solid, fineness) = (&mut self.solids[solid], self.fineness);
             check_box(object, solid.extent[0]).map_err(|(key, error)| error.at_key(under(key)))?;
             let shape = (&solid.contour, &solid.extent);
@@ -97,12 +123,66 @@ impl SceneMeshes {
                 });
                 placed.push(place(object, copies, &growth, mesh.clone(), camera));
             }
+            if shaded {
+                let all = object.placements();
+                balls.extend(all.iter().map(|p| sight.ball(object, &solid.extent, p)));
+                copies_of.extend(
+                    all.iter()
+                        .map(|p| (number_of_solid, object.axis_offset(), *p)),
+                );
+            }
         }
+        let maps = if shaded {
+            self.shadow_maps(scene, camera, (&balls, &copies_of))
+        } else {
+            Vec::new()
+        };
         self.solids.retain(|solid| solid.used);
         let (sources, solids) = (&mut self.sources, &self.solids);
         sources.retain(|(known, _)| solids.iter().any(|s| Arc::ptr_eq(&s.profile, known)));
         placed.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-        Ok(placed)
+        Ok(Placed {
+            meshes: placed,
+            maps,
+        })
+    }
+
+    /// The shadow maps of each light, and the meshes in them.
+    fn shadow_maps(
+        &mut self,
+        scene: &Scene,
+        camera: &CameraFrame,
+        (balls, copies): (&[Ball], &[Copy]),
+    ) -> Vec<Vec<PlacedMap>> {
+        let mut of_light = |towards| {
+            let mut all = Vec::new();
+            for map in cascades(balls, camera, self.size, towards) {
+                let mut casters: BTreeMap<(usize, i32, [u64; 2]), PlacedCaster> = BTreeMap::new();
+                for &n in &map.casters {
+                    let (number, axis, placement) = &copies[n];
+                    let (solid, fineness) = (&mut self.solids[*number], self.fineness);
+                    let level = map.level(fineness, &balls[n]);
+                    let mesh = solid.levels.entry(level).or_insert_with(|| {
+                        self.made_count += 1;
+                        Arc::new(fineness.mesh(&solid.contour, level))
+                    });
+                    let new = || PlacedCaster {
+                        mesh: mesh.clone(),
+                        axis: *axis,
+                        instances: Vec::new(),
+                    };
+                    let key = (*number, level, axis.map(f64::to_bits));
+                    let caster = casters.entry(key).or_insert_with(new);
+                    caster.instances.push(placement.into());
+                }
+                all.push((map, casters.into_values().collect()));
+            }
+            all
+        };
+        let lights = scene.lights.iter();
+        lights
+            .map(|light| of_light(-light.direction.normalize_or_zero()))
+            .collect()
     }
 
     /// The place of an object's solid among all.
@@ -176,11 +256,12 @@ fn refused(what: &str) -> Error {
 /// when it is made.
 ///
 /// # Errors
-/// [`ErrorKind::Content`] with the scene's key, for shadows, replicas, maps of colours and heights,
+/// [`ErrorKind::Content`] with the scene's key, for shadows of more lights, replicas, maps of colours and heights,
 /// and coordinates along the profile.
 pub fn check_scene(scene: &Scene) -> Result<()> {
-    if scene.shadow != Shadow::Off {
-        return Err(refused("casts no shadows; set \"off\"").at_key("shadow"));
+    if scene.shadow != Shadow::Off && scene.lights.len() > SHADOW_LIGHTS {
+        let what = format!("has shadow maps for {SHADOW_LIGHTS} lights; give fewer lights");
+        return Err(refused(&what).at_key("light"));
     }
     scene
         .objects

@@ -1,5 +1,6 @@
 //! How large a copy's silhouettes are seen.
 
+use super::cascades::Ball;
 use glam::{DQuat, DVec2, DVec3};
 use revmap::scene::{CameraFrame, Object, Placement};
 use revmap::surface::{Chain, Contour};
@@ -53,22 +54,41 @@ impl Sight {
         }
     }
 
+    /// The ball around a copy.
+    pub fn ball(&self, object: &Object, &[widest, low, high]: &[f64; 3], copy: &Placement) -> Ball {
+        let (turn, scale) = (copy.rotation.normalize(), copy.scale);
+        let axis = DVec2::from(object.axis_offset());
+        let middle = copy.position + turn * (scale * axis.extend(0.5 * (low + high)));
+        let radius = (DVec3::new(widest, widest, 0.5 * (high - low)) * scale).length();
+        let way = middle - self.eye;
+        let outside = |side: &DVec3| side.dot(way) < -radius;
+        Ball {
+            middle,
+            radius,
+            scale: scale.max_element(),
+            seen: way.dot(self.forward) >= -radius && !self.sides.iter().any(outside),
+        }
+    }
+
     /// The pixels that an object unit of a copy's silhouettes takes at most; `None` of a copy beside
     /// the picture or behind the eye.
     pub fn pixels_per_unit(
         &self,
         object: &Object,
-        (contour, &[widest, low, high]): Shape,
+        (contour, extent): Shape,
         copy: &Placement,
     ) -> Option<f64> {
         let (turn, scale) = (copy.rotation.normalize(), copy.scale);
         let axis = DVec2::from(object.axis_offset());
-        let middle = turn * (scale * axis.extend(0.5 * (low + high)));
-        let way = copy.position + middle - self.eye;
-        let radius = (DVec3::new(widest, widest, 0.5 * (high - low)) * scale).length();
+        let Ball {
+            middle,
+            radius,
+            seen,
+            ..
+        } = self.ball(object, extent, copy);
+        let way = middle - self.eye;
         let depth = way.dot(self.forward);
-        let outside = |side: &DVec3| side.dot(way) < -radius;
-        if depth < -radius || self.sides.iter().any(outside) {
+        if !seen {
             return None;
         }
         let seen = Seen {

@@ -3,14 +3,15 @@ use super::layer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
 use super::{Fineness, MeshLayer, MeshPipelines};
 use glam::{DVec3, Vec3};
+use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Object, Offset, Placement, Scene};
+use revmap::scene::{Camera, Light, Object, Offset, Placement, Scene, Shadow};
 use revmap::search::unpacked;
 use revmap::settings::Settings;
 use revmap::surface::{Contour, ContourSource};
 use revmap_compare::{CompareOptions, compare};
-use revmap_offscreen::Offscreen;
+use revmap_offscreen::{Offscreen, OffscreenOptions};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -222,6 +223,59 @@ fn meshes_and_searches_hide_each_other() {
     device.check().unwrap();
 }
 
+/// A torus over a plate, lit from the side: shadow maps put shadows where the reference has them, but
+/// for some pixels at their edges.
+#[test]
+fn shadow_maps_agree_with_rays() {
+    let device = Device::open_validated(None).unwrap();
+    let plate = [[0.0, 0.02], [0.9, 0.02], [0.9, 0.1], [0.0, 0.1]];
+    let solid = |points: &[[f64; 2]], radius: f64| {
+        Object::new("solid", Arc::new(Profile::polygon(points, radius).unwrap()))
+    };
+    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
+    scene.objects = vec![solid(&plate, 1.0), solid(&ring(256), 0.5)];
+    scene.lights = vec![Light {
+        direction: DVec3::new(0.5, 1.0, -0.8),
+        radius: 4.0,
+        ..Light::default()
+    }];
+    let own = Settings {
+        width: 320,
+        height: 240,
+        ..Settings::exact()
+    };
+    let options = OffscreenOptions {
+        guests_only: true,
+        ..OffscreenOptions::default()
+    };
+    let pipelines = MeshPipelines::new(&device).unwrap();
+    let drawn = |scene: &Scene| {
+        let mut offscreen = Offscreen::with(&device, scene, &own, options).unwrap();
+        let fineness = Fineness::Pixels(0.25);
+        let mut meshes = MeshLayer::new(&pipelines, &offscreen, fineness, &own, 1).unwrap();
+        meshes.update(scene, || Ok(*offscreen.view())).unwrap();
+        offscreen.draw_with(Some(&meshes)).unwrap();
+        let frame = offscreen.read().unwrap();
+        drop((meshes, offscreen));
+        device.check().unwrap();
+        frame
+    };
+    let unshaded = drawn(&scene);
+    for (shadow, most) in [(Shadow::Hard, 0.01), (Shadow::Soft, 0.02)] {
+        scene.shadow = shadow;
+        let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
+        // Pixels whose colours differ by more than a tenth of the light.
+        let wrong = |frame: &Frame| {
+            let pixels = truth.color.iter().zip(&frame.color);
+            let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.1);
+            pixels.filter(far).count() as f64 / truth.color.len() as f64
+        };
+        let [with, without] = [wrong(&drawn(&scene)), wrong(&unshaded)];
+        assert!(with < most, "{shadow:?}: {with}");
+        assert!(without > 0.04, "{shadow:?}: {without}");
+    }
+}
+
 /// Stored SPIR-V was made from today's sources; by the same compiler word for word.
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
@@ -231,7 +285,14 @@ fn kept_spirv_is_what_the_sources_give() {
     let [sources, compiler] = [g::SOURCES_HASH, g::COMPILER_HASH].map(|h| format!("{h:#018x}"));
     let hashes: Vec<&str> = hashes.lines().collect();
     assert_eq!(hashes[0], sources, "renew it as build.rs says");
-    let names = ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"];
+    let names = [
+        "mesh.vert",
+        "mesh_color.frag",
+        "mesh_planes.frag",
+        "shadowed_color.frag",
+        "shadowed_planes.frag",
+        "caster.vert",
+    ];
     for (n, name) in names.into_iter().enumerate() {
         let words = unpacked(&kept(&format!("{name}.spv.z")));
         assert!(

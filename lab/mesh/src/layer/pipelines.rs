@@ -1,12 +1,13 @@
 //! Pipelines of the mesh baseline: one per variant, made when first wanted and kept.
 
-use super::super::blocks::ObjectBlock;
+use super::super::blocks::{CasterBlock, ObjectBlock};
 use super::super::tessellation::Vertex;
 use super::PassKind;
 use ash::vk;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::{Device, vulkan_error as vulkan};
 use revmap::maps::Projection;
+use revmap::scene::Shadow;
 use revmap::search::unpacked;
 use revmap::settings::Planes;
 use std::collections::HashMap;
@@ -24,6 +25,11 @@ pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
     unpacked(generated::MODULES.get(n)?)
 }
 
+/// Number of shaders.
+const MODULES: usize = 6;
+/// The vertex shader of shadow maps among them.
+const CASTER: usize = 5;
+
 /// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct PipelineKey {
@@ -34,14 +40,22 @@ pub(in super::super) struct PipelineKey {
     pub projection: Projection,
     /// Whether backs of triangles are drawn.
     pub both_sides: bool,
+    pub shadow: Shadow,
 }
 
 /// The pipelines of one device, shared by all its mesh drawers.
 pub struct MeshPipelines {
     pub(super) set_layout: vk::DescriptorSetLayout,
     pub(super) layout: vk::PipelineLayout,
-    /// The shaders of `build.rs`: vertices, pixels of colour alone, pixels of all planes.
-    modules: [vk::ShaderModule; 3],
+    /// The pass, pipeline and layouts of shadow maps.
+    pub(super) shadow_pass: vk::RenderPass,
+    pub(super) caster: vk::Pipeline,
+    pub(super) caster_layout: vk::PipelineLayout,
+    pub(super) shadow_layout: vk::DescriptorSetLayout,
+    /// One that compares, and one that reads depths.
+    pub(super) samplers: [vk::Sampler; 2],
+    /// The shaders of `build.rs`, in its order.
+    modules: [vk::ShaderModule; MODULES],
     made: Mutex<HashMap<PipelineKey, vk::Pipeline>>,
     device: Device,
 }
@@ -52,36 +66,28 @@ impl MeshPipelines {
         let mut all = Self {
             set_layout: vk::DescriptorSetLayout::null(),
             layout: vk::PipelineLayout::null(),
-            modules: [vk::ShaderModule::null(); 3],
+            shadow_pass: vk::RenderPass::null(),
+            caster: vk::Pipeline::null(),
+            caster_layout: vk::PipelineLayout::null(),
+            shadow_layout: vk::DescriptorSetLayout::null(),
+            samplers: [vk::Sampler::null(); 2],
+            modules: [vk::ShaderModule::null(); MODULES],
             made: Mutex::default(),
             device: device.clone(),
         };
         let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
-        let binding = |binding, kind| {
-            vk::DescriptorSetLayoutBinding::default()
-                .binding(binding)
-                .descriptor_type(kind)
-                .descriptor_count(1)
-                .stage_flags(stages)
-        };
-        let bindings = [
-            binding(0, vk::DescriptorType::UNIFORM_BUFFER),
-            binding(1, vk::DescriptorType::STORAGE_BUFFER),
+        let [uniform, storage, sampled] = [
+            vk::DescriptorType::UNIFORM_BUFFER,
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         ];
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: a plain creation, destroyed in Drop.
-        all.set_layout = unsafe { device.raw().create_descriptor_set_layout(&info, None) }
-            .map_err(|code| vulkan("vkCreateDescriptorSetLayout", code))?;
-        let set_layouts = [all.set_layout];
-        let pushed = [vk::PushConstantRange::default()
-            .stage_flags(stages)
-            .size(const { size_of::<ObjectBlock>() as u32 })];
-        let info = vk::PipelineLayoutCreateInfo::default()
-            .set_layouts(&set_layouts)
-            .push_constant_ranges(&pushed);
-        // SAFETY: as above.
-        all.layout = unsafe { device.raw().create_pipeline_layout(&info, None) }
-            .map_err(|code| vulkan("vkCreatePipelineLayout", code))?;
+        all.set_layout = set_layout(device, stages, &[uniform, storage])?;
+        let fragment = vk::ShaderStageFlags::FRAGMENT;
+        all.shadow_layout = set_layout(device, fragment, &[uniform, sampled, sampled])?;
+        let sets = [all.set_layout, all.shadow_layout];
+        all.layout = layout(device, &sets, stages, size_of::<ObjectBlock>())?;
+        let vertex = vk::ShaderStageFlags::VERTEX;
+        all.caster_layout = layout(device, &sets[..1], vertex, size_of::<CasterBlock>())?;
         for (n, module) in all.modules.iter_mut().enumerate() {
             let broken = || Error::new(ErrorKind::Other, "the mesh shaders are broken");
             let words = shader(n).ok_or_else(broken)?;
@@ -90,7 +96,41 @@ impl MeshPipelines {
             *module = unsafe { device.raw().create_shader_module(&info, None) }
                 .map_err(|code| vulkan("vkCreateShaderModule", code))?;
         }
+        all.make_shadows()?;
         Ok(Arc::new(all))
+    }
+
+    /// Makes what shadow maps are drawn and read with.
+    fn make_shadows(&mut self) -> Result<()> {
+        let raw = self.device.raw();
+        self.shadow_pass = shadow_pass(&self.device)?;
+        for (n, sampler) in self.samplers.iter_mut().enumerate() {
+            let filter = [vk::Filter::LINEAR, vk::Filter::NEAREST][n];
+            let info = vk::SamplerCreateInfo::default()
+                .mag_filter(filter)
+                .min_filter(filter)
+                .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+                .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+                .compare_enable(n == 0)
+                .compare_op(vk::CompareOp::LESS_OR_EQUAL);
+            // SAFETY: a plain creation, destroyed in Drop.
+            *sampler = unsafe { raw.create_sampler(&info, None) }
+                .map_err(|code| vulkan("vkCreateSampler", code))?;
+        }
+        let stages = [vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::VERTEX)
+            .module(self.modules[CASTER])
+            .name(c"main")];
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .cull_mode(vk::CullModeFlags::BACK)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .depth_bias_enable(true)
+            .depth_bias_slope_factor(1.0)
+            .line_width(1.0);
+        let one = vk::SampleCountFlags::TYPE_1;
+        let of = (self.caster_layout, self.shadow_pass, one);
+        self.caster = self.compile(of, &stages, &raster, (0, false))?;
+        Ok(())
     }
 
     /// The device.
@@ -117,13 +157,14 @@ impl MeshPipelines {
                 .offset(4 * id)
                 .size(4)
         };
-        let entries = [entry(0), entry(1), entry(2)];
+        let entries = [0, 1, 2, 3].map(entry);
         let projection = match key.projection {
             Projection::Planar => 0,
             Projection::Spherical => 2,
             Projection::Cylindrical | Projection::Arc => 1,
         };
-        let values = [key.lights, u32::from(key.single), projection];
+        let soft = u32::from(key.shadow == Shadow::Soft);
+        let values = [key.lights, u32::from(key.single), projection, soft];
         let constants = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));
@@ -132,6 +173,7 @@ impl MeshPipelines {
             // An off-screen frame has at least colour.
             Planes::Color | Planes::Depth { .. } | Planes::List(_) => (1, 1),
         };
+        let fragment = fragment + if key.shadow == Shadow::Off { 0 } else { 2 };
         let stage = |stage, module: usize| {
             vk::PipelineShaderStageCreateInfo::default()
                 .stage(stage)
@@ -143,14 +185,25 @@ impl MeshPipelines {
             stage(vk::ShaderStageFlags::VERTEX, 0),
             stage(vk::ShaderStageFlags::FRAGMENT, fragment),
         ];
-        self.compile((key, pass), &stages, attachments)
+        let raster = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(if key.both_sides {
+                vk::CullModeFlags::NONE
+            } else {
+                vk::CullModeFlags::BACK
+            })
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .line_width(1.0);
+        let of = (self.layout, pass, key.pass.samples);
+        self.compile(of, &stages, &raster, (attachments, true))
     }
 
     fn compile(
         &self,
-        (key, pass): (PipelineKey, vk::RenderPass),
+        (layout, pass, samples): (vk::PipelineLayout, vk::RenderPass, vk::SampleCountFlags),
         stages: &[vk::PipelineShaderStageCreateInfo<'_>],
-        attachments: usize,
+        raster: &vk::PipelineRasterizationStateCreateInfo<'_>,
+        (attachments, normals): (usize, bool),
     ) -> Result<vk::Pipeline> {
         let bindings = [vk::VertexInputBindingDescription::default()
             .stride(const { size_of::<Vertex>() as u32 })];
@@ -168,23 +221,14 @@ impl MeshPipelines {
         ];
         let vertices = vk::PipelineVertexInputStateCreateInfo::default()
             .vertex_binding_descriptions(&bindings)
-            .vertex_attribute_descriptions(&attributes);
+            .vertex_attribute_descriptions(&attributes[..1 + usize::from(normals)]);
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
             .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);
-        let raster = vk::PipelineRasterizationStateCreateInfo::default()
-            .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(if key.both_sides {
-                vk::CullModeFlags::NONE
-            } else {
-                vk::CullModeFlags::BACK
-            })
-            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-            .line_width(1.0);
-        let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(key.pass.samples);
+        let samples =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(samples);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
@@ -200,12 +244,12 @@ impl MeshPipelines {
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
             .viewport_state(&viewport)
-            .rasterization_state(&raster)
+            .rasterization_state(raster)
             .multisample_state(&samples)
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(self.layout)
+            .layout(layout)
             .render_pass(pass);
         let none = vk::PipelineCache::null();
         // SAFETY: what `info` points to lives until the call returns, and so does the pass.
@@ -221,14 +265,100 @@ impl Drop for MeshPipelines {
         let made = self.made.get_mut().map(std::mem::take).unwrap_or_default();
         // SAFETY: all that draws holds `self` and waits for its frames; null handles are allowed.
         unsafe {
-            for pipeline in made.values() {
+            for pipeline in made.values().chain([&self.caster]) {
                 raw.destroy_pipeline(*pipeline, None);
+            }
+            for sampler in self.samplers {
+                raw.destroy_sampler(sampler, None);
             }
             for module in self.modules {
                 raw.destroy_shader_module(module, None);
             }
-            raw.destroy_pipeline_layout(self.layout, None);
-            raw.destroy_descriptor_set_layout(self.set_layout, None);
+            raw.destroy_render_pass(self.shadow_pass, None);
+            for layout in [self.layout, self.caster_layout] {
+                raw.destroy_pipeline_layout(layout, None);
+            }
+            for layout in [self.set_layout, self.shadow_layout] {
+                raw.destroy_descriptor_set_layout(layout, None);
+            }
         }
     }
+}
+
+/// A layout of one descriptor of each kind.
+fn set_layout(
+    device: &Device,
+    stages: vk::ShaderStageFlags,
+    kinds: &[vk::DescriptorType],
+) -> Result<vk::DescriptorSetLayout> {
+    let binding = |(binding, kind): (u32, &vk::DescriptorType)| {
+        vk::DescriptorSetLayoutBinding::default()
+            .binding(binding)
+            .descriptor_type(*kind)
+            .descriptor_count(1)
+            .stage_flags(stages)
+    };
+    let bindings: Vec<_> = (0..).zip(kinds).map(binding).collect();
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+    // SAFETY: a plain creation, destroyed in Drop.
+    unsafe { device.raw().create_descriptor_set_layout(&info, None) }
+        .map_err(|code| vulkan("vkCreateDescriptorSetLayout", code))
+}
+
+fn layout(
+    device: &Device,
+    sets: &[vk::DescriptorSetLayout],
+    stages: vk::ShaderStageFlags,
+    pushed: usize,
+) -> Result<vk::PipelineLayout> {
+    let pushed = [vk::PushConstantRange::default()
+        .stage_flags(stages)
+        .size(pushed as u32)];
+    let info = vk::PipelineLayoutCreateInfo::default()
+        .set_layouts(sets)
+        .push_constant_ranges(&pushed);
+    // SAFETY: a plain creation, destroyed in Drop.
+    unsafe { device.raw().create_pipeline_layout(&info, None) }
+        .map_err(|code| vulkan("vkCreatePipelineLayout", code))
+}
+
+/// The pass of shadow maps: fragments read them afterwards, and may have before.
+fn shadow_pass(device: &Device) -> Result<vk::RenderPass> {
+    let attachments = [vk::AttachmentDescription::default()
+        .format(vk::Format::D32_SFLOAT)
+        .samples(vk::SampleCountFlags::TYPE_1)
+        .load_op(vk::AttachmentLoadOp::CLEAR)
+        .store_op(vk::AttachmentStoreOp::STORE)
+        .final_layout(vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL)];
+    let depth = vk::AttachmentReference::default()
+        .layout(vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+    let subpasses = [vk::SubpassDescription::default()
+        .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+        .depth_stencil_attachment(&depth)];
+    let tests =
+        vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS;
+    let fragments = vk::PipelineStageFlags::FRAGMENT_SHADER;
+    let written = vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE;
+    let both = written | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ;
+    let dependencies = [
+        vk::SubpassDependency::default()
+            .src_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(fragments | tests)
+            .src_access_mask(written)
+            .dst_stage_mask(tests)
+            .dst_access_mask(both),
+        vk::SubpassDependency::default()
+            .dst_subpass(vk::SUBPASS_EXTERNAL)
+            .src_stage_mask(tests)
+            .src_access_mask(written)
+            .dst_stage_mask(fragments)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ),
+    ];
+    let info = vk::RenderPassCreateInfo::default()
+        .attachments(&attachments)
+        .subpasses(&subpasses)
+        .dependencies(&dependencies);
+    // SAFETY: a plain creation, destroyed in Drop.
+    unsafe { device.raw().create_render_pass(&info, None) }
+        .map_err(|code| vulkan("vkCreateRenderPass", code))
 }
