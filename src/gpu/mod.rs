@@ -18,7 +18,7 @@ mod renderer;
 mod resources;
 pub(crate) mod vk;
 
-pub use crate::plan::{DepthOrder, DrawPath, View, Viewport};
+pub use crate::plan::{DepthOrder, DrawPath, OpenPixels, View, Viewport};
 pub use content::objects::ObjectId;
 pub use device::budget::MemoryUse;
 pub use device::instance::VALIDATION_VARIABLE;

@@ -20,6 +20,7 @@ pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 pub(crate) use tiles::MOST_PIXELS;
+pub use tiles::OpenPixels;
 use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, FEW_PATCHES, RING_CORNERS};
@@ -87,12 +88,13 @@ pub(crate) enum Call {
 pub(crate) type IndexedDraw = [u32; 5];
 
 /// Plans a frame. `many_new`: true if many objects got a surface since the last frame, so that
-/// choosing a path may make many hulls.
+/// choosing a path may make many hulls. `open`: the pixels that compute draws; all if none.
 pub(crate) fn plan(
     view: &View,
     objects: &[PlanObject],
     with: &Conditions,
     many_new: bool,
+    open: Option<&OpenPixels>,
 ) -> FramePlan {
     let chosen = |of: &PlanObject| with.choose(of, view);
     let paths: Vec<Path> = if objects.len() < MANY && !many_new {
@@ -109,7 +111,7 @@ pub(crate) fn plan(
     };
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
-    plan.add_tiles(view, objects, (&paths, &variants), with);
+    plan.add_tiles(view, objects, (&paths, &variants), (with, open));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();

@@ -1,7 +1,7 @@
 //! Steps that draw tiles, in fragments or by dispatches.
 
 use super::path::{LIST_LENGTHS, is_flat};
-use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, TILE_PIXELS, Visible};
+use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, OpenPixels, TILE_PIXELS, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
 };
@@ -19,7 +19,7 @@ impl FramePlan {
         view: &View,
         objects: &[PlanObject],
         (paths, variants): (&[Path], &[Variant]),
-        with: &Conditions,
+        (with, open): (&Conditions, Option<&OpenPixels>),
     ) {
         let drawn = |n: &usize| paths[*n] == Path::Tiles;
         let numbers: Vec<usize> = (0..objects.len()).filter(drawn).collect();
@@ -60,7 +60,7 @@ impl FramePlan {
             if searches { least } else { usize::MAX }
         };
         let queues: Vec<usize> = layers.iter().map(least_queue).collect();
-        let mut tiles = visible.write(with.compute, &layer_of, &queues);
+        let mut tiles = visible.write((with.compute, open), &layer_of, &queues);
         leave_out_lists(view, objects, &layers, &mut tiles.layers, with);
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {

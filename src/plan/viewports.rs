@@ -87,7 +87,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
         occlusion_culling: true,
         ..Conditions::default()
     };
-    plan(view, &objects, &with, false)
+    plan(view, &objects, &with, false, None)
 }
 
 /// Ends of the pixels that a viewport may draw: left, top, right, bottom.

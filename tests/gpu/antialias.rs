@@ -1,13 +1,18 @@
-//! Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
+//! Adaptive rays come to the colours of 64. Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
 //! object and several, with colour only and with all planes.
 
 use crate::common::ways::STAGES;
-use crate::common::{draw, drawn_by, eye, scene_of, shapes};
+use crate::common::{device, draw, drawn_by, eye, scene_of, shapes};
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::scene::Scene;
+use revmap::profile::Profile;
+use revmap::scene::{Camera, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use revmap_offscreen::Offscreen;
+use revmap_offscreen::adaptive::{Adaptive, Refined};
 use revmap_offscreen::antialias::silhouettes;
+use revmap_offscreen::samples::averaged;
+use std::sync::Arc;
 
 fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {
     Settings {
@@ -57,4 +62,104 @@ fn check(name: &str, scene: &Scene, stage: DrawStage) {
     assert!(off * 50 <= changed, "{name}: {off} of {changed} differ");
     let off = different(&draw(scene, &settings(stage, Planes::Color, false)), &plain);
     assert_eq!(off, 0, "{name}: not asked for");
+}
+
+/// A frame of a stage with adaptive rays.
+fn refined(scene: &Scene, stage: DrawStage) -> (Frame, Refined) {
+    let settings = settings(stage, Planes::Color, false);
+    let mut frame = draw(scene, &settings);
+    let mut adaptive = Adaptive::new(device(), scene, &settings).unwrap();
+    let refined = adaptive.refine(scene, &mut frame).unwrap();
+    drop(adaptive);
+    device().check().unwrap();
+    (frame, refined)
+}
+
+/// Solids that shade each other, and a rim thinner than a pixel.
+#[test]
+fn adaptive_rays_come_to_the_colours_of_many() {
+    let mut scene = scene_of(shapes::vase(), eye(25.0, 2.6));
+    let thin = Profile::polygon(&[[0.0, 0.3], [0.49, 0.3], [0.49, 0.302], [0.0, 0.302]], 0.5);
+    scene
+        .objects
+        .push(Object::new("thin", Arc::new(thin.unwrap())));
+    scene.lights = vec![Light {
+        direction: DVec3::new(0.6, 1.0, -0.8),
+        radius: 3.0,
+        ..Light::default()
+    }];
+    scene.shadow = Shadow::Soft;
+    for stage in STAGES {
+        let settings = settings(stage, Planes::Color, false);
+        let mut offscreen = Offscreen::new(device(), &scene, &settings).unwrap();
+        let truth = averaged(64, &scene, |scene| {
+            offscreen.update(scene)?;
+            offscreen.draw()?;
+            offscreen.read()
+        });
+        let truth = truth.unwrap();
+        drop(offscreen);
+        let (frame, rays) = refined(&scene, stage);
+        let one = draw(&scene, &settings);
+        let count = frame.pixels();
+        let [off, before] = [&frame, &one].map(|of| different(of, &truth));
+        assert!(off * 500 <= count, "{stage:?}: {off} of {count}");
+        assert!(
+            before > 20 * off.max(20),
+            "{stage:?}: {before} with one ray"
+        );
+        assert!(rays.mean() < 16.0, "{stage:?}: {} rays", rays.mean());
+        let is_known = |rays: &u8| [0, 4, 16, 64].contains(rays);
+        assert!(rays.rays.iter().all(is_known) && rays.rays.contains(&0));
+    }
+}
+
+/// A pixel of an inner corner is covered little more or less when the camera moves by a tenth of it.
+#[test]
+fn corners_do_not_crawl() {
+    let points = [
+        [0.0, 0.0],
+        [0.35, 0.0],
+        [0.1, 0.2],
+        [0.1, 0.5],
+        [0.3, 0.7],
+        [0.08, 0.72],
+        [0.2, 0.95],
+        [0.0, 1.0],
+    ];
+    let solid = Object::new("solid", Arc::new(Profile::polygon(&points, 0.5).unwrap()));
+    let at = |d: f64| {
+        let mut scene = Scene::new(Camera::new(
+            DVec3::new(3.0, d, 0.8),
+            DVec3::new(0.0, d, 0.5),
+        ));
+        scene.objects.push(solid.clone());
+        scene
+    };
+    let settings = settings(DrawStage::Fragment, Planes::Color, false);
+    let mut adaptive = Adaptive::new(device(), &at(0.0), &settings).unwrap();
+    let frame = |adaptive: Option<&mut Adaptive>, step: u32| {
+        let scene = at(0.001456 * f64::from(step));
+        let mut frame = draw(&scene, &settings);
+        if let Some(adaptive) = adaptive {
+            adaptive.refine(&scene, &mut frame).unwrap();
+        }
+        frame
+    };
+    let largest = |a: &Frame, b: &Frame| {
+        let pairs = a.color.iter().zip(&b.color);
+        pairs.map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max)
+    };
+    let (mut plain, mut smooth) = (frame(None, 0), frame(Some(&mut adaptive), 0));
+    let (mut jumps, mut steps) = (0.0f32, 0.0f32);
+    for step in 1..=8 {
+        let next = [frame(None, step), frame(Some(&mut adaptive), step)];
+        (jumps, steps) = (
+            jumps.max(largest(&plain, &next[0])),
+            steps.max(largest(&smooth, &next[1])),
+        );
+        [plain, smooth] = next;
+    }
+    assert!(steps <= 0.3, "{steps}");
+    assert!(jumps > 0.9, "{jumps}");
 }

@@ -2,7 +2,7 @@
 //! the time of every frame.
 
 use super::moving::{ENDINGS, Format, Motion, Playing, Stillness, claim, frames_in};
-use super::options::{Drawing, Samples, Surroundings, Tracing};
+use super::options::{Drawing, Rays, Samples, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
 use super::reading::ShownOutline;
@@ -198,7 +198,7 @@ impl Animate {
     ) -> Vec<String> {
         let blanks = &drawn.blanks;
         let mut warnings = self.drawing.warnings(first);
-        if self.samples.count > 1 && self.output.is_none() {
+        if self.samples.rays != Rays::Each(1) && self.output.is_none() {
             warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
         }
         let turn = self.turn.unwrap_or(0.0);
@@ -245,6 +245,8 @@ impl Animate {
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.offscreen.prewarm()?;
+        let adaptive = target.map(|_| self.samples.adaptive(device, first, &settings));
+        let mut adaptive = adaptive.transpose()?.flatten();
         let mut drawn = Drawn::default();
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
@@ -265,10 +267,16 @@ impl Animate {
             };
             match target {
                 Some(target) => {
-                    let frame = self.samples.draw(&scene, |scene| {
+                    let mut frame = self.samples.draw(&scene, |scene| {
                         draw(&mut renderer, scene)?;
                         renderer.read()
                     })?;
+                    if let Some(adaptive) = &mut adaptive {
+                        let times = adaptive.refine(&scene, &mut frame)?.times;
+                        row.prepare_ms += times.prepare_ms;
+                        row.gpu_ms = row.gpu_ms.zip(times.gpu_ms).map(|(a, b)| a + b);
+                        row.frame_ms += times.frame_ms;
+                    }
                     let picture = match target {
                         Target::Folder(_) => Picture::of(&frame)?,
                         Target::Moving(format, _) => format.picture(&frame)?,

@@ -1,6 +1,6 @@
 //! `revmap render`: one frame, off screen.
 
-use super::options::{self, Drawing, Samples, Surroundings, Tracing};
+use super::options::{self, Drawing, Rays, Samples, Surroundings, Tracing};
 use super::progress::Progress;
 use super::reading::ShownOutline;
 use super::{levels, output};
@@ -40,6 +40,9 @@ pub struct Render {
     /// red the coarsest
     #[arg(long, value_name = "FILE.png")]
     levels: Option<PathBuf>,
+    /// Also writes a picture of the rays of --samples adaptive: black pixels have one, white ones 65
+    #[arg(long, value_name = "FILE.png")]
+    show_rays: Option<PathBuf>,
     /// Print one JSON object on standard output in place of text: all that --verbose prints
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
@@ -57,6 +60,8 @@ struct Picture {
     /// `None` for the reference.
     device: Option<DeviceReport>,
     times: Times,
+    /// Mean number of adaptive rays of a pixel beside the first.
+    extra_rays: Option<f64>,
     map_bytes: [u64; 2],
     notes: Vec<String>,
     costs: Vec<ObjectCost>,
@@ -70,6 +75,15 @@ impl Render {
         let pictures = self.output.iter().chain(&self.levels);
         output::check(pictures, "--levels", &["png", "exr"], &[&self.scene])?;
         output::check(&self.levels, "--levels", &["png"], &[])?;
+        output::check(&self.show_rays, "--show-rays", &["png"], &[&self.scene])?;
+        self.samples
+            .check(self.drawing.stage == Tracing::Reference)?;
+        if self.show_rays.is_some() && self.samples.rays != Rays::Adaptive {
+            return Err(output::usage(
+                "--show-rays",
+                "all pixels have as many rays; add --samples adaptive",
+            ));
+        }
         self.outline.check(&self.scene)?;
         let begin = Instant::now();
         let progress = Progress::start(
@@ -158,16 +172,25 @@ impl Render {
     ) -> Result<Picture> {
         let method_device = MethodDevice::new(device.clone())?;
         let mut renderer = method_device.renderer(scene, settings)?;
-        let all = 1 + self.samples.count as usize;
+        let all = 1 + self.samples.count() as usize;
         renderer.draw()?;
         progress.report(1, all);
         let mut times = Vec::new();
-        let frame = self.samples.draw(scene, |scene| {
+        let mut frame = self.samples.draw(scene, |scene| {
             renderer.update(scene)?;
             times.push(renderer.draw()?);
             progress.report(1 + times.len(), all);
             renderer.read()
         })?;
+        let mut extra_rays = None;
+        if let Some(mut adaptive) = self.samples.adaptive(device, scene, settings)? {
+            let refined = adaptive.refine(scene, &mut frame)?;
+            times.push(refined.times);
+            extra_rays = Some(refined.mean());
+            if let Some(file) = &self.show_rays {
+                revmap_files::write_png(&refined.picture(&frame), file)?;
+            }
+        }
         let costs = renderer.offscreen.renderer().object_costs();
         let device_bytes = renderer.device_bytes();
         if let Some(file) = &self.levels {
@@ -186,6 +209,7 @@ impl Render {
         Ok(Picture {
             frame,
             device: Some(device.report().clone()),
+            extra_rays,
             times: Times {
                 prepare_ms: times.iter().map(|t| t.prepare_ms).sum(),
                 gpu_ms: times.iter().map(|t| t.gpu_ms).sum(),
@@ -215,6 +239,7 @@ impl Render {
         Ok(Picture {
             frame,
             device: None,
+            extra_rays: None,
             times: Times {
                 frame_ms: milliseconds(begin),
                 ..Times::default()
@@ -253,9 +278,10 @@ impl Render {
                 (format!("{stage}, {}", settings.method), cost)
             }
         };
-        let rays = match self.samples.count {
-            1 => String::new(),
-            count => format!("{count} rays per pixel, "),
+        let rays = match (picture.extra_rays, self.samples.count()) {
+            (Some(extra), _) => format!("{:.1} rays per pixel, ", 1.0 + extra),
+            (None, 1) => String::new(),
+            (None, count) => format!("{count} rays per pixel, "),
         };
         for file in &self.output {
             let (name, width, height) = (file.display(), settings.width, settings.height);
@@ -338,7 +364,7 @@ impl Render {
             "height": settings.height,
             "stage": name_of(&options::STAGES, &self.drawing.stage),
             "solver": device.map(|_| settings.method.to_string()),
-            "samples": self.samples.count,
+            "samples": picture.extra_rays.map_or(json!(self.samples.count()), |extra| json!(1.0 + extra)),
             "antialias": settings.edges == Edges::Silhouettes,
             "device": device.map(|d| json!({ "name": d.name, "kind": d.kind, "driver": d.driver })),
             "gpu_ms": picture.times.gpu_ms,

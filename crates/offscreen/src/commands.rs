@@ -21,6 +21,19 @@ pub struct Times {
     pub submissions: u32,
 }
 
+impl Times {
+    /// Adds those of another frame.
+    pub fn add(&mut self, other: Self) {
+        self.gpu_ms = match self.submissions {
+            0 => other.gpu_ms,
+            _ => self.gpu_ms.zip(other.gpu_ms).map(|(a, b)| a + b),
+        };
+        self.prepare_ms += other.prepare_ms;
+        self.frame_ms += other.frame_ms;
+        self.submissions += other.submissions;
+    }
+}
+
 /// A command buffer, the fence that signals its end, and the queries of its timestamps.
 pub(crate) struct Commands {
     pool: vk::CommandPool,

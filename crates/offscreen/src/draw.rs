@@ -79,13 +79,10 @@ impl Offscreen {
             // The clock of the device leaves out the work of others.
             let ms = times.gpu_ms.unwrap_or(times.frame_ms);
             self.bands.record(&rows, ms, row == size[1]);
-            all.prepare_ms += times.prepare_ms;
-            all.frame_ms += times.frame_ms;
-            all.gpu_ms = match (rows.start, all.gpu_ms) {
-                (0, _) => times.gpu_ms,
-                (_, sum) => sum.zip(times.gpu_ms).map(|(sum, ms)| sum + ms),
-            };
-            all.submissions += 1;
+            all.add(Times {
+                submissions: 1,
+                ..times
+            });
         }
         if all.submissions > 1 {
             // Draw paths and costs are those of the whole frame.

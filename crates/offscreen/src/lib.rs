@@ -17,6 +17,7 @@
 //! # Ok::<(), revmap::Error>(())
 //! ```
 
+pub mod adaptive;
 pub mod antialias;
 mod bands;
 #[allow(unsafe_code)]

@@ -8,7 +8,7 @@ use crate::target::{DEPTH, Target, color_formats};
 use ash::vk;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::{Frame, pixel_count};
-use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use revmap::gpu::{Device, ObjectId, OpenPixels, Output, PassFormats, PassKind, Renderer, View};
 use revmap::host_memory;
 use revmap::scene::{CameraFrame, Object, Scene};
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
@@ -200,6 +200,24 @@ impl Offscreen {
         self.renderer.plan(&view)?;
         self.view = view;
         self.scene.clone_from(scene);
+        Ok(())
+    }
+
+    /// Chooses the pixels that the next frames draw, row 0 on top; `None` for all. Others hold the
+    /// background, or what is found on the way. In the compute stage nothing is traced for tiles
+    /// without chosen pixels.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for another number of pixels, and in the fragment stage.
+    pub fn open(&mut self, pixels: Option<&[bool]>) -> Result<()> {
+        let size = (self.settings.width, self.settings.height);
+        let fits = pixels.is_none_or(|all| all.len() == pixel_count(size.0, size.1).unwrap_or(0));
+        if !fits || self.settings.stage != DrawStage::Compute {
+            let message = "a choice of pixels has one for each, in the stage compute";
+            return Err(Error::new(ErrorKind::Usage, message));
+        }
+        let open = pixels.map(|all| OpenPixels::new(size.0, all));
+        self.renderer.set_open_pixels(open);
         Ok(())
     }
 

@@ -79,17 +79,17 @@ pub(crate) fn smoothed(
 }
 
 /// Linear values of all 8-bit values.
-struct Linear([f32; 256]);
+pub(crate) struct Linear([f32; 256]);
 
 impl Linear {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self(std::array::from_fn(|byte| {
             linear_from_srgb(byte as f64 / 255.0) as f32
         }))
     }
 
     /// The linear colour of a pixel.
-    fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
+    pub fn color(&self, &[r, g, b, a]: &[u8; 4]) -> [f32; 4] {
         let [r, g, b] = [r, g, b].map(|byte| self.0[usize::from(byte)]);
         [r, g, b, f32::from(a) / 255.0]
     }

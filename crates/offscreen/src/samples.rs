@@ -28,22 +28,28 @@ pub fn averaged(
             }
         }
     }
-    for (color, [r, g, b, a]) in frame.color.iter_mut().zip(sums) {
-        let weight = if a > 0.0 { a.recip() } else { 0.0 };
-        *color = [r * weight, g * weight, b * weight, a / count as f32];
+    for (color, sum) in frame.color.iter_mut().zip(sums) {
+        *color = weighted(sum, count);
     }
     Ok(frame)
 }
 
-/// Point `i` of `n`, as pixels from the middle: a Hammersley set. Each of `n` columns and, `n`
-/// being a power of two, each of `n` rows holds one point.
-fn point(i: u32, n: u32) -> [f64; 2] {
-    let inverse = f64::from(i.reverse_bits()) / 2f64.powi(32);
-    let half = 0.5 / f64::from(n);
-    [
-        f64::from(i) / f64::from(n) + half - 0.5,
-        inverse + half - 0.5,
-    ]
+/// The mean of so many colours, from their sum weighted by alpha.
+pub(crate) fn weighted([r, g, b, a]: [f32; 4], count: u32) -> [f32; 4] {
+    let weight = if a > 0.0 { a.recip() } else { 0.0 };
+    [r * weight, g * weight, b * weight, a / count as f32]
+}
+
+/// Point `i` of `n`, a power of two, as pixels from the middle, in the order of Sobol (1967). Each of
+/// `n` columns and each of `n` rows holds one point, and so it is for the first 4, 16, ... of them.
+pub(crate) fn point(i: u32, n: u32) -> [f64; 2] {
+    // The direction numbers of the second coordinate: those of the polynomial x + 1.
+    let (mut y, mut direction) = (0u32, 1u32 << 31);
+    for bit in 0..32 {
+        y ^= if i >> bit & 1 == 1 { direction } else { 0 };
+        direction ^= direction >> 1;
+    }
+    [i.reverse_bits(), y].map(|v| f64::from(v) / 2f64.powi(32) + 0.5 / f64::from(n) - 0.5)
 }
 
 #[cfg(test)]
@@ -63,5 +69,18 @@ mod tests {
             }
         }
         assert_eq!(point(0, 1), [0.0, 0.0]);
+    }
+
+    /// Each of 4 x 4 parts of a pixel holds one of the first 16 points, and 4 of 64.
+    #[test]
+    fn parts_of_a_pixel_hold_equal_numbers_of_points() {
+        for (n, each) in [(16, 1), (64, 4)] {
+            let mut counts = [0; 16];
+            for i in 0..n {
+                let [x, y] = point(i, 64).map(|v| ((v + 0.5) * 4.0) as usize);
+                counts[4 * y + x] += 1;
+            }
+            assert_eq!(counts, [each; 16], "{n}");
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
-use crate::plan::{Conditions, FramePlan, View, plan};
+use crate::plan::{Conditions, FramePlan, OpenPixels, View, plan};
 use crate::scene::{Lighting, Shadow};
 use crate::settings::{Planes, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
@@ -37,6 +37,8 @@ pub(super) struct Content {
     pub snapshot: Arc<Snapshot>,
     /// The plan of the last view.
     pub plan: Option<Arc<ViewPlan>>,
+    /// The pixels that compute draws; all if none.
+    pub open: Option<Arc<OpenPixels>>,
     pub textures: Textures,
     pub geometry: Arc<Mutex<Geometry>>,
     pub rebuilds: u64,
@@ -66,6 +68,7 @@ impl Content {
             target: None,
             snapshot: Arc::default(),
             plan: None,
+            open: None,
             textures: Textures::new(device, settings.map_format, host_shades)?,
             geometry,
             rebuilds: 0,
@@ -132,7 +135,9 @@ impl Content {
         let snapshot = self.refresh()?;
         let with = self.conditions();
         let is_same = |p: &&Arc<ViewPlan>| {
-            Arc::ptr_eq(&p.snapshot, &snapshot) && (p.view, p.with) == (*view, with)
+            let opens_same =
+                p.open.as_ref().map(Arc::as_ptr) == self.open.as_ref().map(Arc::as_ptr);
+            Arc::ptr_eq(&p.snapshot, &snapshot) && opens_same && (p.view, p.with) == (*view, with)
         };
         let mut plans = self.plan.iter().chain(known);
         let found = plans.find(is_same).cloned();
@@ -160,7 +165,13 @@ impl Content {
         let objects = rules.planned(view, &snapshot, &mut new)?;
         self.make_surfaces(&mut new);
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
-        let frame = plan(view, &inputs, &with, new.len() > MANY_NEW);
+        let frame = plan(
+            view,
+            &inputs,
+            &with,
+            new.len() > MANY_NEW,
+            self.open.as_deref(),
+        );
         if !new.is_empty() {
             make_vectors(&objects, &frame);
         }
@@ -179,6 +190,7 @@ impl Content {
             view: *view,
             snapshot,
             with,
+            open: self.open.clone(),
             frame,
             hierarchy,
             objects,

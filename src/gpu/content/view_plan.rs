@@ -5,7 +5,7 @@ use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
-use crate::plan::{Conditions, FramePlan, PlanObject, View, shape_of};
+use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
 use crate::solid::offset_surface::{OffsetSurface, Part};
@@ -18,6 +18,7 @@ pub(crate) struct ViewPlan {
     pub view: View,
     pub snapshot: Arc<Snapshot>,
     pub with: Conditions,
+    pub open: Option<Arc<OpenPixels>>,
     pub frame: FramePlan,
     /// Objects that the view's mask shows, in order.
     pub objects: Vec<PlannedObject>,

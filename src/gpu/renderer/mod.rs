@@ -21,7 +21,7 @@ use crate::gpu::open::Device;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::vk::output::{ComputeTarget, HostShading, Output};
 use crate::gpu::vk::pipelines::Owner;
-use crate::plan::DrawPath;
+use crate::plan::{DrawPath, OpenPixels};
 use crate::scene::Lighting;
 use crate::settings::SearchSettings;
 use ash::vk;
@@ -213,6 +213,13 @@ impl Renderer {
     pub fn pipeline_layout(&self) -> Result<vk::PipelineLayout> {
         let shared = self.device.pipelines.layout;
         Ok(self.owner.shading.as_ref().map_or(shared, |own| own.layout))
+    }
+
+    /// Chooses the pixels that the compute stage draws in the next prepared frames; all if `None`.
+    /// Tiles without them are left out, and in others some pixels may still be drawn. For rays where
+    /// a picture needs more of them.
+    pub fn set_open_pixels(&mut self, open: Option<OpenPixels>) {
+        self.content.open = open.map(Arc::new);
     }
 
     /// Sets the memory that compute writes to, from the next prepared frame on.

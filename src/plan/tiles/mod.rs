@@ -20,11 +20,13 @@
 
 mod bounds;
 mod cover;
+mod open_pixels;
 mod outer;
 mod strip;
 mod tile_writer;
 
 pub(crate) use bounds::{Cylinder, MOST_PIXELS, Projector};
+pub use open_pixels::OpenPixels;
 pub(crate) use tile_writer::{LEAST_QUEUE, LayerTiles, TILE_PIXELS};
 
 use super::view::View;
@@ -35,7 +37,7 @@ use bounds::ScreenBounds;
 use rayon::prelude::*;
 use std::ops::Range;
 use strip::{Item, Opened, Strip};
-use tile_writer::{LayeredTiles, TileWriter, join};
+use tile_writer::{LayeredTiles, TileCopy, TileWriter, join};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
@@ -198,10 +200,17 @@ impl<'a> Visible<'a> {
     /// Distributes the visible copies to tiles, of work groups (`compute`) or fragments.
     /// `layer_of`: the layer of each batch. `queues`: for each layer, the least copies of a tile
     /// whose queue fragments search.
-    pub fn write(&self, compute: bool, layer_of: &[u32], queues: &[usize]) -> LayeredTiles {
+    /// `open`: the pixels that are drawn; all if none.
+    pub fn write(
+        &self,
+        (compute, open): (bool, Option<&OpenPixels>),
+        layer_of: &[u32],
+        queues: &[usize],
+    ) -> LayeredTiles {
         let lists = |b| compute && self.lists_patches(b);
         let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
-        let single = |batch: &Batch| batch.object.placements().len() == 1;
+        // Open pixels of a single copy, too, share work groups with those of other tiles.
+        let single = |batch: &Batch| open.is_none() && batch.object.placements().len() == 1;
         let single: Vec<bool> = self.batches.iter().map(single).collect();
         let writer = TileWriter {
             compute,
@@ -220,7 +229,15 @@ impl<'a> Visible<'a> {
                 let row = move |y| columns.clone().map(move |x| [x, y]);
                 rows.clone().flat_map(row)
             });
-            let copies = |[x, y]: [u32; 2]| self.strips[(x / self.wide) as usize].tile(x, y);
+            let copies = |at: [u32; 2]| {
+                let pixels = open.map_or(u64::MAX, |open| open.of(at));
+                let opened = move |copy: TileCopy| TileCopy {
+                    pixels: copy.pixels & pixels,
+                    ..copy
+                };
+                let all = self.strips[(at[0] / self.wide) as usize].tile(at[0], at[1]);
+                all.map(opened).filter(|copy| copy.pixels != 0)
+            };
             writer.write(tiles.map(|at| (at, copies(at))))
         };
         let bands: Vec<u32> = (0..down).step_by(BLOCK as usize).collect();

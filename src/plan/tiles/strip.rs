@@ -281,8 +281,8 @@ mod tests {
             let (plain, all) = Visible::in_rounds(&projector, &batches, usize::MAX);
             assert_eq!(found.copies(), plain.copies(), "{eye:?}");
             for compute in [false, true] {
-                let [found, plain] =
-                    [&found, &plain].map(|v| v.write(compute, &[0, 1, 0], &[6, usize::MAX]));
+                let [found, plain] = [&found, &plain]
+                    .map(|v| v.write((compute, None), &[0, 1, 0], &[6, usize::MAX]));
                 assert!(!plain.words.is_empty());
                 assert!(found == plain, "{eye:?}");
             }
