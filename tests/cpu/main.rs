@@ -12,7 +12,7 @@ mod hull_rays;
 mod imports;
 mod surface;
 
-/// The smallest scene and the smallest program stand in the documents as they are.
+/// The smallest scene, the smallest program and the first host stand in the documents as they are.
 #[test]
 fn documents_show_what_is_there() {
     let shown = |page: &str, text: &str| assert!(page.contains(text.trim()), "{text}");
@@ -22,4 +22,7 @@ fn documents_show_what_is_there() {
         .split_once('\n')
         .unwrap();
     shown(include_str!("../../docs/embedding.md"), program);
+    let host = include_str!("../../examples/first_host.rs");
+    let host = host.splitn(3, '\n').nth(2).unwrap();
+    shown(include_str!("../../docs/first-host.md"), host);
 }
