@@ -15,6 +15,7 @@ mod calls;
 mod clip;
 #[allow(unsafe_code)]
 mod commands;
+mod coplanar;
 mod crowds;
 mod deferred_host;
 mod embedding;

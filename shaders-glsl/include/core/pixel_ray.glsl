@@ -64,6 +64,19 @@ float pixel_width(float t)
     return ORTHO != 0u ? frame.pixel_size : frame.pixel_size * t;
 }
 
+// Returns depth_constant and depth_factor of a copy with this lag.
+vec2 lagging_depth(float lag)
+{
+    return vec2(frame.depth_constant, frame.depth_factor) + lag * frame_block.lag_depth;
+}
+
+// Sets depth_constant and depth_factor of the depths that follow.
+void take_depth(vec2 terms)
+{
+    frame.depth_constant = terms.x;
+    frame.depth_factor = terms.y;
+}
+
 // Returns the depth of `t` in clip space, 0 to 1.
 float clip_depth_of(float t)
 {

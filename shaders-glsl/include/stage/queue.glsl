@@ -33,6 +33,7 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
     bool exhausted = false;
     uint end = tile.first + (tile.count + QUEUE_BLOCK - 1u) / QUEUE_BLOCK;
     float sense = frame.depth_sense;
+    vec2 without_lag = lagging_depth(0.0);
     uint block = tile.first; // the next one
     uint marks = 0u;
     index = 0u;
@@ -48,6 +49,8 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
         uint n = uint(findLSB(marks));
         marks &= marks - 1u;
         QueuedCopy copy = queue_blocks[block - 1u].copies[n];
+        // Copies that follow may lag less.
+        take_depth(without_lag);
         if (sense * queue_depth_of(max(copy.near, 1e-30)) >= depth) {
             break;
         }
@@ -58,6 +61,7 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
         bool met = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
+        take_depth(lagging_depth(i.lag));
         float met_at = sense * queue_depth_of(rays.base + hit.t);
         if (met && met_at < depth) {
             found = true;

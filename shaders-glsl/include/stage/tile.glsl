@@ -35,9 +35,10 @@ uvec2 tile_corner()
     return square_corner(tile.square);
 }
 
-// Computes look and rays from the instance and its object.
+// Computes look, rays and depths from the instance and its object.
 void begin_tile()
 {
+    take_depth(lagging_depth(tile_instance.lag));
     tile_look = look_of(tile_instance, instance_number());
     tile_rays = pixel_rays(tile_instance);
 }
