@@ -9,8 +9,6 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::textures::{BoundTextures, ObjectImages, ShadowMaps, Textures};
 use crate::maps::{MapFormat, Projection};
-use crate::plan::precedence::{Body, Precedence};
-use crate::plan::shape_of;
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::generated::MAX_SHADOW_MAPS;
@@ -28,7 +26,6 @@ pub(in crate::gpu) struct Snapshot {
     /// In the order in which they were added.
     pub objects: Vec<Arc<PreparedObject>>,
     pub facts: SceneFacts,
-    pub precedence: Precedence,
     /// Number of instances, with free ones.
     pub instances: u32,
     /// One more than the largest number that an object has had.
@@ -243,30 +240,12 @@ impl Snapshot {
             prepared.push(object);
         }
         Ok(Self {
-            precedence: precedence(&prepared),
             objects: prepared,
             facts,
             instances: objects.instances(),
             number_count: objects.number_count(),
         })
     }
-}
-
-/// The order of copies whose faces may coincide: that of the scene.
-fn precedence(objects: &[Arc<PreparedObject>]) -> Precedence {
-    let count = objects.iter().map(|of| of.drawn().placements().len()).sum();
-    Precedence::new(count, || {
-        let bodies = objects.iter().flat_map(|of| {
-            let (object, bounds) = (of.drawn(), of.derived.facts.bounds);
-            let grow = object.offset.largest_width().max(0.0);
-            let [low, high] = [bounds.z_min - grow, bounds.z_max + grow];
-            let [radius, side] = [bounds.r_max + grow, object.profile.radius];
-            let shape = shape_of(object, [side, radius, low.max(0.0), high.min(1.0)]);
-            let copies = (of.instances.start..).zip(object.placements());
-            copies.map(move |(instance, place)| Body::new(instance, place, &shape))
-        });
-        bodies.collect()
-    })
 }
 
 /// Finds or bakes the shape map of an object, if its search reads one.
