@@ -7,7 +7,9 @@
 
 use crate::common::host::{self, borrow, open, order, viewport};
 use crate::common::ways::STAGES;
-use crate::common::{device, draw, drawn_by, eye, from_boxes, offset, placement, shapes};
+use crate::common::{
+    device, draw, drawn_by, eye, from_boxes, offset, placement, reference, shapes,
+};
 use crate::embedding::{self, options};
 use crate::random::Random;
 use glam::{DQuat, DVec3};
@@ -436,6 +438,17 @@ fn the_first_copy_is_seen_of_random_groups() {
         failures.is_empty() && shared > 100_000,
         "{shared} {failures:#?}"
     );
+}
+
+/// The reference tells such points as shaders do.
+#[test]
+fn the_reference_sees_the_first_copy() {
+    let settings = drawn_by(SIZE, STAGES[0], Solver::Exact);
+    for scene in [inlay(1), tilted(copies()), tilted(plates())] {
+        let [shared, wrong] = speckles(&scene, |scene| reference(scene, &settings).into());
+        println!("{wrong} of {shared}");
+        assert!(wrong == 0 && shared > 500, "{wrong} of {shared}");
+    }
 }
 
 /// A host's views of both orders of depths, without a far plane and with one.

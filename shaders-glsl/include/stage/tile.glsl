@@ -35,17 +35,16 @@ uvec2 tile_corner()
     return square_corner(tile.square);
 }
 
-// Computes look, rays and depths from the instance and its object.
+// Computes look and rays from the instance and its object.
 void begin_tile()
 {
-    take_depth(lagging_depth(tile_instance.lag));
     tile_look = look_of(tile_instance, instance_number());
     tile_rays = pixel_rays(tile_instance);
 }
 
 void store_tile(uvec2 pixel, bool found, Hit hit)
 {
-    float depth = depth_of(tile_rays.base + hit.t);
+    float depth = depth_of(tile_rays.base + hit.t, lagging_terms(tile_instance.lag));
     if (all(lessThan(pixel, frame.size))) {
         count_steps(pixel, hit);
         if (found && (DEPTHS == 0u || depth < drawn_depth(pixel))) {
