@@ -1,16 +1,22 @@
 //! One winner where faces of several copies coincide: the first copy in the scene.
 //!
-//! Two copies compute the depth of a shared point with different roundings. A copy that may share faces
+//! Two copies compute the depth of a shared point with different roundings. A copy that shares faces
 //! with an earlier one therefore **lags**: its depths are compared and written a little farther away
 //! than they are, by more than these roundings. It is one tier farther than each such copy before it.
-//! Nothing else of a hit changes. A copy that overlaps none has no lag.
+//! Nothing else of a hit changes. Other copies have no lag.
+//!
+//! Surfaces of revolution coincide over an area only if they are planes, or if their axes meet. So
+//! two copies share faces if they overlap and have flats in one plane or axes that meet. Solids
+//! under an offset, replicas and solids that their box cuts have flats that are not looked for: they
+//! share faces with all that they overlap.
 
 use super::tiles::Cylinder;
 use super::view::View;
-use crate::scene::Placement;
+use crate::scene::{Object, Offset, Placement};
 use crate::shader::InstanceBlock;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Most copies of a scene of which some may lag. Pairs are compared, so the time grows with the square.
 const MOST_COPIES: usize = 256;
@@ -28,22 +34,54 @@ const AT_MIDDLE: f64 = 8.0;
 const BESIDE: f64 = 4.0;
 /// Roundings of the depth buffer for each rounding of a lag.
 const BUFFER: f64 = 0.25;
+/// Planes and axes this near to each other, as a part of the larger solid, are one. It is also the
+/// largest slope of a flat.
+const TOGETHER: f64 = 1e-5;
 /// The largest lag of a tier, as a part of the depth.
 const MOST_LAG: f64 = 1e-5;
+
+/// Heights of the flats of an object, in order, object units; `None` if they are not known.
+pub(crate) type Flats = Option<Arc<[f64]>>;
+
+/// Finds the flats of an object.
+pub(crate) fn flats(object: &Object) -> Flats {
+    let (outline, side) = (&object.profile.outline, object.profile.radius);
+    let bounds = outline.bounds()?;
+    let beside = DVec2::from(object.axis_offset()).abs().max_element();
+    let is_cut =
+        bounds.r_max + beside > side * (1.0 + 1e-9) || bounds.z_min < 0.0 || bounds.z_max > 1.0;
+    if is_cut || object.offset != Offset::default() || object.repeat != [1; 3] {
+        return None;
+    }
+    let mut heights = Vec::new();
+    for points in &outline.loops {
+        let next = points.iter().cycle().skip(1);
+        let sides = points.iter().zip(next).map(|(a, b)| (a, (*b - *a).abs()));
+        let flat = sides.filter(|(_, way)| way.y <= TOGETHER * way.x && way.x > 0.0);
+        heights.extend(flat.map(|(a, _)| a.y));
+    }
+    heights.sort_unstable_by(f64::total_cmp);
+    heights.dedup();
+    Some(heights.into())
+}
 
 /// A copy of a solid in the world.
 pub(crate) struct Body {
     instance: u32,
+    flats: Flats,
+    /// The middle of the box's lower face, and the length of an object unit along the axis.
+    floor: DVec3,
+    height: f64,
     middle: DVec3,
     /// Two radii at right angles, and half of the length along the axis.
     ways: [DVec3; 3],
 }
 
-/// The place of a copy in the order of those that it overlaps.
+/// The place of a copy in the order of those that it shares faces with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rank {
     tier: u8,
-    /// The largest radius of a ball around the copy or an earlier one that it overlaps, world units.
+    /// The largest radius of a ball around the copy or an earlier one that it yields to, world units.
     size: f64,
 }
 
@@ -53,13 +91,16 @@ pub(crate) struct Precedence(HashMap<u32, Rank>);
 
 impl Body {
     /// The copy of a solid at a placement.
-    pub fn new(instance: u32, placement: &Placement, solid: &Cylinder) -> Self {
+    pub fn new(instance: u32, placement: &Placement, solid: &Cylinder, flats: &Flats) -> Self {
         let turn = DMat3::from_quat(placement.rotation.normalize());
         let local = solid.axis.extend(0.5 * (solid.low + solid.high));
         let half = DVec3::new(solid.radius, solid.radius, 0.5 * (solid.high - solid.low));
         let size = half * placement.scale;
         Self {
             instance,
+            flats: flats.clone(),
+            floor: placement.position,
+            height: placement.scale.z,
             middle: placement.position + turn * (placement.scale * local),
             ways: [
                 turn.x_axis * size.x,
@@ -81,11 +122,41 @@ impl Body {
         x.max(y).hypot(z)
     }
 
+    fn axis(&self) -> DVec3 {
+        self.ways[2].normalize_or_zero()
+    }
+
+    /// True if faces of two copies that overlap may coincide.
+    fn shares_faces(&self, other: &Self) -> bool {
+        let (Some(flats), Some(others)) = (&self.flats, &other.flats) else {
+            return true;
+        };
+        let (a, b) = (self.axis(), other.axis());
+        let near = TOGETHER * self.size().max(other.size());
+        let between = other.middle - self.middle;
+        let normal = a.cross(b);
+        if normal.length() > TOGETHER {
+            return between.dot(normal).abs() <= near * normal.length();
+        }
+        if between.cross(a).length() <= near {
+            return true;
+        }
+        // Heights in the other copy's units.
+        let unit = other.height * a.dot(b).signum();
+        let up = (self.floor - other.floor).dot(a);
+        flats.iter().any(|flat| {
+            let there = (up + self.height * flat) / unit;
+            let [low, high] = [-1.0, 1.0].map(|sense| there + sense * near / other.height);
+            let first = others.partition_point(|height| *height < low);
+            others.get(first).is_some_and(|height| *height <= high)
+        })
+    }
+
     /// False if a plane is known to separate two copies: at right angles to an axis, to the line
     /// between the middles, or to the part of that line across an axis.
     fn overlaps(&self, other: &Self) -> bool {
         let between = other.middle - self.middle;
-        let axes = [self, other].map(|body| body.ways[2].normalize_or_zero());
+        let axes = [self, other].map(Self::axis);
         let across = axes.map(|axis| between - between.dot(axis) * axis);
         let apart = |along: DVec3| {
             let [a, b] = [self, other].map(|body| body.half(along));
@@ -108,7 +179,7 @@ impl Precedence {
         for body in &bodies {
             let (mut tier, mut size) = (0, body.size());
             for (earlier, at) in bodies.iter().zip(&tiers) {
-                if body.overlaps(earlier) {
+                if body.overlaps(earlier) && body.shares_faces(earlier) {
                     tier = MOST_TIERS.min(at + 1).max(tier);
                     size = earlier.size().max(size);
                 }
@@ -159,8 +230,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plan::{DepthOrder, Viewport};
+    use crate::profile::Profile;
     use crate::scene::Camera;
-    use glam::{DMat4, DQuat, DVec2, DVec4};
+    use glam::{DMat4, DQuat, DVec4};
 
     fn disc(radius: f64, low: f64, high: f64) -> Cylinder {
         Cylinder {
@@ -190,12 +262,10 @@ mod tests {
                 rotation: turn * p.rotation,
                 scale: 1e3 * p.scale,
             };
-            let bodies = (0..).zip(copies);
-            let bodies = || {
-                bodies
-                    .map(|(n, (p, of))| Body::new(n, &placed(p), of))
-                    .collect()
+            let body = |(n, (p, of)): (u32, &(Placement, Cylinder))| {
+                Body::new(n, &placed(p), of, &Some([of.low, of.high].into()))
             };
+            let bodies = || (0..).zip(copies).map(body).collect();
             let all = Precedence::new(copies.len(), bodies);
             let numbers = 0..copies.len() as u32;
             let tier = |n| all.0.get(&n).map_or(0, |rank| rank.tier);
@@ -206,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_lag_behind_those_that_they_overlap() {
+    fn copies_lag_behind_those_that_they_share_faces_with() {
         let of = |x, solid| (at([x, 0.0, 0.0]), solid);
         let table = of(0.0, disc(5.0, 0.0, 1.0));
         let inlay = |x| of(x, disc(0.5, 0.9, 1.0));
@@ -230,7 +300,7 @@ mod tests {
         assert_eq!(pair(at([0.6, 0.8, 0.0])), [0, 0]);
         assert_eq!(pair(at([0.59, 0.8, 0.0])), [0, 1]);
         assert_eq!(pair(at([0.1, 0.2, 0.3])), [0, 0]);
-        assert_eq!(pair(at([0.1, 0.2, 0.2999])), [0, 1]);
+        assert_eq!(pair(at([0.1, 0.2, 0.3 - 2e-6])), [0, 1]);
         let wide = Placement {
             scale: DVec3::new(3.0, 1.0, 1.0),
             ..at([1.9, 0.0, 0.0])
@@ -241,6 +311,50 @@ mod tests {
             ..at([0.0, 0.95, 0.0])
         };
         assert_eq!(pair(upright), [0, 0]);
+    }
+
+    /// Flats in one plane and axes that meet count; flats of other heights or slopes do not.
+    #[test]
+    fn copies_that_overlap_may_share_no_face() {
+        let table = (at([0.0; 3]), disc(5.0, 0.0, 1.0));
+        let pair = |b: Placement| tiers(&[table, (b, disc(0.5, 0.5, 1.0))]);
+        assert_eq!(pair(at([2.0, 0.0, 0.0])), [0, 1]);
+        assert_eq!(pair(at([2.0, 0.0, 1e-5])), [0, 1]);
+        assert_eq!(pair(at([2.0, 0.0, 1e-3])), [0, 0]);
+        assert_eq!(pair(at([0.0, 0.0, 1e-3])), [0, 1]);
+        let turned = |angle: f64, position: [f64; 3]| Placement {
+            rotation: DQuat::from_rotation_x(angle),
+            ..at(position)
+        };
+        assert_eq!(pair(turned(0.001, [2.0, 0.0, 0.0])), [0, 0]);
+        assert_eq!(pair(turned(0.001, [0.0, 1.0, 0.0])), [0, 1]);
+        // Upside down, with its lower flat in the plane of the table's top.
+        assert_eq!(pair(turned(std::f64::consts::PI, [2.0, 0.0, 1.5])), [0, 1]);
+        assert_eq!(pair(turned(std::f64::consts::PI, [2.0, 0.0, 1.4])), [0, 0]);
+    }
+
+    #[test]
+    fn flats_are_found_or_not_known() {
+        let points = [
+            [0.0, 0.1],
+            [0.4, 0.1],
+            [0.4, 0.3],
+            [0.2, 0.3],
+            [0.1, 0.7],
+            [0.0, 0.8],
+        ];
+        let profile = Profile::polygon(&points, 0.5).unwrap();
+        let object = Object::new("a foot", profile.into());
+        assert_eq!(flats(&object).unwrap()[..], [0.1, 0.3]);
+        let changed = |change: fn(&mut Object)| {
+            let mut object = object.clone();
+            change(&mut object);
+            flats(&object)
+        };
+        assert!(changed(|o| o.axis = [0.55, 0.5]).is_some());
+        assert!(changed(|o| o.axis = [0.65, 0.5]).is_none());
+        assert!(changed(|o| o.offset.extend = 0.01).is_none());
+        assert!(changed(|o| o.repeat = [1, 2, 1]).is_none());
     }
 
     #[test]
@@ -283,7 +397,7 @@ mod tests {
             host(0.01, 0.0, DVec4::W, DepthOrder::Normal),
             host(-0.01, 1.0, DVec4::W, DepthOrder::Reversed),
         ];
-        let body = |n| Body::new(n, &at([0.0; 3]), &disc(0.5, 0.0, 1.0));
+        let body = |n| Body::new(n, &at([0.0; 3]), &disc(0.5, 0.0, 1.0), &None);
         let all = Precedence::new(2, || vec![body(0), body(1)]);
         for view in views {
             let copy = InstanceBlock {

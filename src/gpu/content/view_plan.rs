@@ -5,7 +5,7 @@ use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
-use crate::plan::precedence::{Body, Precedence};
+use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::{Conditions, FramePlan, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
@@ -168,9 +168,9 @@ pub(super) fn precedence(objects: &[PlannedObject]) -> Precedence {
             let grow = object.offset.largest_width().max(0.0);
             let [low, high] = [bounds.z_min - grow, bounds.z_max + grow];
             let ends = [side, bounds.r_max + grow, low.max(0.0), high.min(1.0)];
-            let shape = shape_of(object, ends);
+            let (shape, flats) = (shape_of(object, ends), flats(object));
             let copies = (prepared.instances.start..).zip(object.placements());
-            copies.map(move |(instance, place)| Body::new(instance, place, &shape))
+            copies.map(move |(instance, place)| Body::new(instance, place, &shape, &flats))
         });
         bodies.collect()
     })
