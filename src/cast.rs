@@ -81,9 +81,9 @@ impl RayCaster {
         })
     }
 
-    /// The first hit at `t >= 0` of a ray of the world; where copies coincide, that of the first one.
-    /// A ray that starts in a copy hits the point where it leaves that copy. A ray with a number that is not finite, or without a direction,
-    /// hits nothing.
+    /// The first hit at `t >= 0` of a ray of the world; where copies coincide, that of the first
+    /// one. A ray that starts in a copy hits the point where it leaves that copy. A ray with a
+    /// number that is not finite, or without a direction, hits nothing.
     #[must_use]
     pub fn cast(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
         let valid = origin.is_finite() && direction.length_squared().is_normal();

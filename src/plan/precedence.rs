@@ -1,14 +1,14 @@
 //! One winner where faces of several copies coincide: the first copy in the scene.
 //!
-//! Two copies compute the depth of a shared point with different roundings. A copy that shares faces
-//! with an earlier one therefore **lags**: its depths are compared and written a little farther away
-//! than they are, by more than these roundings. It is one tier farther than each such copy before it.
-//! Nothing else of a hit changes. Other copies have no lag.
+//! Two copies compute the depth of a shared point with different roundings. A copy that shares
+//! faces with an earlier one therefore **lags**: its depths are compared and written a little
+//! farther away than they are, by more than these roundings. It is one tier farther than each such
+//! copy before it. Nothing else of a hit changes. Other copies have no lag.
 //!
 //! Surfaces of revolution coincide over an area only if they are planes, or if their axes meet. So
-//! two copies share faces if they overlap and have flats in one plane or axes that meet. Solids
-//! under an offset, replicas and solids that their box cuts have flats that are not looked for: they
-//! share faces with all that they overlap.
+//! two copies share faces if they overlap and have flats in one plane or axes that meet. The flats
+//! of solids under an offset, of replicas and of solids that their box cuts are not found: these
+//! copies share faces with all that they overlap.
 
 use super::tiles::Cylinder;
 use super::view::View;
@@ -18,18 +18,20 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Most copies of a scene of which some may lag. Pairs are compared, so the time grows with the square.
+/// Most copies of a scene of which some may lag. Pairs are compared, so the time grows with the
+/// square.
 const MOST_COPIES: usize = 256;
 /// The highest tier. Copies that would be above share it, and rounding decides between these.
-const MOST_TIERS: u8 = 15;
-/// Solids that overlap by less than this part of the smaller one only touch: no faces coincide there
-/// that look the same way.
+const HIGHEST_TIER: u8 = 15;
+/// Solids that overlap by less than this part of the smaller one only touch: no faces coincide
+/// there that look the same way.
 const TOUCHING: f64 = 1e-6;
 /// Largest rounding of a 32-bit number, as a part of it.
 const ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
-/// The lag of a tier, roundings. The first part is for depths, the second for rays: it grows with the
-/// lengths that they are computed from, over the depth. A quarter of the first and half of the second
-/// leave no pixel of the tests' scenes undecided.
+/// The lag of a tier, roundings. The first part is for depths, the second for rays: it grows with
+/// the lengths that they are computed from, over the depth. Half of the first and half of the
+/// second leave no pixel of the tests' scenes undecided; a quarter of the first does, behind a
+/// ball.
 const AT_MIDDLE: f64 = 8.0;
 const BESIDE: f64 = 4.0;
 /// Roundings of the depth buffer for each rounding of a lag.
@@ -81,7 +83,7 @@ pub(crate) struct Body {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rank {
     tier: u8,
-    /// The largest radius of a ball around the copy or an earlier one that it yields to, world units.
+    /// The largest radius of a ball around the copy or an earlier one before it, world units.
     size: f64,
 }
 
@@ -180,7 +182,7 @@ impl Precedence {
             let (mut tier, mut size) = (0, body.size());
             for (earlier, at) in bodies.iter().zip(&tiers) {
                 if body.overlaps(earlier) && body.shares_faces(earlier) {
-                    tier = MOST_TIERS.min(at + 1).max(tier);
+                    tier = HIGHEST_TIER.min(at + 1).max(tier);
                     size = earlier.size().max(size);
                 }
             }
@@ -362,7 +364,7 @@ mod tests {
         let solid = disc(0.5, 0.0, 1.0);
         let row = |count: u32| (0..count).map(|n| (at([0.3 * f64::from(n), 0.0, 0.0]), solid));
         let found = tiers(&row(40).collect::<Vec<_>>());
-        let wanted: Vec<u8> = (0..40).map(|n| n.min(MOST_TIERS)).collect();
+        let wanted: Vec<u8> = (0..40).map(|n| n.min(HIGHEST_TIER)).collect();
         assert_eq!(found, wanted);
         let most = MOST_COPIES as u32;
         assert!(tiers(&row(most).collect::<Vec<_>>())[1] == 1);

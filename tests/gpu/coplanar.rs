@@ -1,8 +1,5 @@
 //! Faces of several copies in one plane: the copy that comes first in the scene is seen over all of
 //! the part that they share, whatever draws them.
-//!
-//! Each copy is also drawn alone. Those pictures give the copies that share a point, and the look of
-//! the first one. Pixels beside a contour are left out.
 #![allow(unsafe_code)]
 
 use crate::common::host::{self, borrow, open, order, viewport};
@@ -12,8 +9,8 @@ use crate::common::{
 };
 use crate::embedding::{self, options};
 use crate::random::Random;
+use crate::speckles::{Picture, speckles};
 use glam::{DQuat, DVec3};
-use revmap::frame::Frame;
 use revmap::gpu::{DrawPath, View};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Placement, Scene, Shadow};
@@ -21,9 +18,7 @@ use revmap::settings::{Settings, Solver, Tolerance};
 use revmap_searches::SECANT;
 use std::sync::Arc;
 
-const SIZE: (u32, u32) = (240, 180);
-/// Distances of one point differ by less than this: a part of them, and world units.
-const TOGETHER: [f32; 2] = [2e-7, 1e-4];
+pub const SIZE: (u32, u32) = (240, 180);
 
 /// A plate of this radius between two heights.
 fn plate(radius: f64, low: f64, high: f64) -> Arc<Profile> {
@@ -52,7 +47,7 @@ fn scene(eye: DVec3, objects: Vec<Object>) -> Scene {
 }
 
 /// A disc inlaid in a plate. `first`: 0 if the plate is the first object, 1 if the disc is.
-fn inlay(first: usize) -> Scene {
+pub fn inlay(first: usize) -> Scene {
     let both = [plate(0.5, 0.0, 0.5), plate(0.25, 0.2, 0.5)];
     let objects = [0, 1].map(|n| object(n, both[(n + first) % 2].clone(), at(0.0, 0.0, 0.0)));
     scene(DVec3::new(2.0, -1.4, 1.8), objects.into())
@@ -142,93 +137,9 @@ fn behind_a_ball(mut scene: Scene) -> Scene {
     scene
 }
 
-fn changed(mut scene: Scene, change: impl FnOnce(&mut Scene)) -> Scene {
+pub fn changed(mut scene: Scene, change: impl FnOnce(&mut Scene)) -> Scene {
     change(&mut scene);
     scene
-}
-
-/// A picture: what the ray of each pixel meets.
-struct Picture {
-    /// Infinite without a hit.
-    distances: Vec<f32>,
-    looks: Vec<[f32; 5]>,
-}
-
-impl From<Frame> for Picture {
-    /// The look is colour and texture coordinates.
-    fn from(frame: Frame) -> Self {
-        let looks = frame.albedo.iter().zip(&frame.uv);
-        Self {
-            looks: looks
-                .map(|([r, g, b], [u, v])| [*r, *g, *b, *u, *v])
-                .collect(),
-            distances: frame.distance,
-        }
-    }
-}
-
-impl Picture {
-    /// True if both show the same at a pixel, as far as the look tells. Texture coordinates of 0 and 1
-    /// are the same.
-    fn shows(&self, other: &Self, pixel: usize) -> bool {
-        let pairs = self.looks[pixel].iter().zip(&other.looks[pixel]);
-        let apart = pairs.map(|(a, b)| a - b);
-        apart.map(|d| (d - d.round()).abs()).all(|d| d < 2e-3)
-    }
-}
-
-/// The scene with one copy only, for each copy.
-fn alone(all: &Scene) -> Vec<Scene> {
-    let of = |object: &Object| {
-        let copies = object.placements().iter().map(|placement| Object {
-            placement: *placement,
-            instances: Vec::new().into(),
-            ..object.clone()
-        });
-        copies.collect::<Vec<_>>()
-    };
-    let with = |object: Object| changed(all.clone(), |one| one.objects = vec![object]);
-    all.objects.iter().flat_map(of).map(with).collect()
-}
-
-/// The copies that share the nearest point of a pixel, as bits.
-fn nearest(all: &[Picture], pixel: usize) -> u128 {
-    let distance = |one: &Picture| one.distances[pixel];
-    let least = all.iter().map(distance).fold(f32::INFINITY, f32::min);
-    let most = least * (1.0 + TOGETHER[0]) + TOGETHER[1];
-    let shares = |one: &Picture| distance(one) <= most && least.is_finite();
-    (0..)
-        .zip(all)
-        .map(|(k, one)| u128::from(shares(one)) << k)
-        .sum()
-}
-
-/// Pixels of shared parts that tell two copies apart, and how many of them do not show the first copy.
-fn speckles(scene: &Scene, drawn: impl Fn(&Scene) -> Picture) -> [usize; 2] {
-    let picture = drawn(scene);
-    let all: Vec<Picture> = alone(scene).iter().map(drawn).collect();
-    let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
-    let sets: Vec<u128> = (0..width * height).map(|p| nearest(&all, p)).collect();
-    let is_inside = |p: usize| {
-        let (x, y) = (p % width, p / width);
-        let inner = (1..width - 1).contains(&x) && (1..height - 1).contains(&y);
-        let row = |p: usize| sets[p - 1..=p + 1].iter().all(|set| *set == sets[p]);
-        inner
-            && [p - width, p, p + width]
-                .into_iter()
-                .all(|q| sets[q] == sets[p] && row(q))
-    };
-    let shared = (0..width * height).filter(|p| sets[*p].count_ones() > 1 && is_inside(*p));
-    let mut counts = [0; 2];
-    for pixel in shared {
-        let first = &all[sets[pixel].trailing_zeros() as usize];
-        let differs = |k: usize| sets[pixel] >> k & 1 == 1 && !all[k].shows(first, pixel);
-        if (0..all.len()).any(differs) {
-            counts[0] += 1;
-            counts[1] += usize::from(!picture.shows(first, pixel));
-        }
-    }
-    counts
 }
 
 /// Settings that draw by cells or lists of patches, by boxes, and by what is chosen.

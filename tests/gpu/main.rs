@@ -56,6 +56,7 @@ mod shadows;
 mod short_edges;
 mod small_copies;
 mod small_device;
+mod speckles;
 mod spirv;
 mod submissions;
 mod texturing;

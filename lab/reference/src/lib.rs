@@ -67,8 +67,8 @@ fn is_ray(origin: DVec3, direction: DVec3) -> bool {
     origin.is_finite() && direction.length_squared().is_normal()
 }
 
-/// Hits whose `t` differ by less than this part are of one point: more than their roundings, and less
-/// than the lag by which shaders tell such hits apart.
+/// Hits whose `t` differ by less than this part are of one point: more than their roundings, and
+/// less than the lag by which shaders tell such hits apart.
 const AT_ONCE: f64 = 1e-9;
 
 /// The first boundary point along a ray.
