@@ -50,6 +50,8 @@ pub struct RayCaster {
 /// Crossings this near to a border of a cell count as the border, units of length of the ray in
 /// object space.
 const SKIN: f64 = 1e-10;
+/// Hits whose `t` differ by less than this part are of one point.
+const AT_ONCE: f64 = 1e-9;
 /// A root this far beyond its row, as a part of the ray, still counts in it.
 const MARGIN: f64 = 1e-6;
 
@@ -79,9 +81,9 @@ impl RayCaster {
         })
     }
 
-    /// The first hit at `t >= 0` of a ray of the world. A ray that starts in a copy hits the point
-    /// where it leaves that copy. A ray with a number that is not finite, or without a direction,
-    /// hits nothing.
+    /// The first hit at `t >= 0` of a ray of the world; where copies coincide, that of the first
+    /// one. A ray that starts in a copy hits the point where it leaves that copy. A ray with a
+    /// number that is not finite, or without a direction, hits nothing.
     #[must_use]
     pub fn cast(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
         let valid = origin.is_finite() && direction.length_squared().is_normal();
@@ -89,7 +91,11 @@ impl RayCaster {
         let mut most = f64::INFINITY;
         let mut try_copy = |copy: usize, placement: &Placement| {
             if let Some(hit) = self.cast_copy(placement, origin, direction, most) {
-                (best, most) = (Some(RayHit { copy, ..hit }), hit.t);
+                let is_first = |b: RayHit| copy < b.copy || hit.t * (1.0 + AT_ONCE) < b.t;
+                if best.is_none_or(is_first) {
+                    best = Some(RayHit { copy, ..hit });
+                }
+                most = most.min(hit.t * (1.0 + AT_ONCE));
             }
             most
         };

@@ -8,6 +8,7 @@
 pub(crate) mod casters;
 pub(crate) mod levels;
 mod path;
+pub(crate) mod precedence;
 pub(crate) mod proxy;
 mod tile_steps;
 pub(crate) mod tiles;

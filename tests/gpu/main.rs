@@ -15,6 +15,7 @@ mod calls;
 mod clip;
 #[allow(unsafe_code)]
 mod commands;
+mod coplanar;
 mod crowds;
 mod deferred_host;
 mod embedding;
@@ -55,6 +56,7 @@ mod shadows;
 mod short_edges;
 mod small_copies;
 mod small_device;
+mod speckles;
 mod spirv;
 mod submissions;
 mod texturing;

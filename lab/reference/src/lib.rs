@@ -67,6 +67,10 @@ fn is_ray(origin: DVec3, direction: DVec3) -> bool {
     origin.is_finite() && direction.length_squared().is_normal()
 }
 
+/// Hits whose `t` differ by less than this part are of one point: more than their roundings, and
+/// less than the lag by which shaders tell such hits apart.
+const AT_ONCE: f64 = 1e-9;
+
 /// The first boundary point along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -90,7 +94,7 @@ pub struct Hit {
 /// The result of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trace {
-    /// The first hit at `t >= 0`.
+    /// The first hit at `t >= 0`; that of the first copy in the scene where several coincide.
     pub hit: Option<Hit>,
     /// True if the ray touches a surface or an edge so closely that a change in the last digits
     /// could give another result.
@@ -153,6 +157,7 @@ impl Reference {
     #[must_use]
     pub fn trace(&self, ray: Ray) -> Trace {
         let mut all = Trace::default();
+        let mut nearest = f64::INFINITY;
         if !is_ray(ray.origin, ray.direction) {
             return all;
         }
@@ -165,10 +170,12 @@ impl Reference {
             };
             (hit.object, hit.instance) = (part.object, part.instance);
             // If two are hit at once, the first in the scene is used, independent of the order in
-            // the tree.
-            let place = |hit: &Hit| (hit.object, hit.instance);
-            let is_first =
-                |best: Hit| hit.t < best.t || (hit.t == best.t && place(&hit) < place(&best));
+            // the tree and of the last digits.
+            let is_first = |best: Hit| match (hit.t - best.t).abs() <= AT_ONCE * best.t {
+                true => (hit.object, hit.instance) < (best.object, best.instance),
+                false => hit.t < best.t,
+            };
+            nearest = nearest.min(hit.t);
             if all.hit.is_none_or(is_first) {
                 let Placement {
                     rotation, scale, ..
@@ -176,7 +183,7 @@ impl Reference {
                 hit.normal = (rotation * (hit.normal / scale)).normalize_or_zero();
                 all.hit = Some(hit);
             }
-            hit.t
+            nearest * (1.0 + AT_ONCE)
         });
         all
     }

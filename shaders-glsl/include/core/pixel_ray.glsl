@@ -64,10 +64,27 @@ float pixel_width(float t)
     return ORTHO != 0u ? frame.pixel_size : frame.pixel_size * t;
 }
 
+// The two terms of depths in clip space: depth_constant and depth_factor.
+vec2 depth_terms()
+{
+    return vec2(frame.depth_constant, frame.depth_factor);
+}
+
+// Returns the terms of a copy with this lag.
+vec2 lagging_terms(float lag)
+{
+    return depth_terms() + lag * frame_block.lag_depth;
+}
+
 // Returns the depth of `t` in clip space, 0 to 1.
+float clip_depth_of(float t, vec2 terms)
+{
+    return clamp(terms.x + (ORTHO != 0u ? terms.y * t : terms.y / t), 0.0, 1.0);
+}
+
 float clip_depth_of(float t)
 {
-    return clamp(frame.depth_constant + (ORTHO != 0u ? frame.depth_factor * t : frame.depth_factor / t), 0.0, 1.0);
+    return clip_depth_of(t, depth_terms());
 }
 
 // Returns the depth buffer value of a depth in clip space: in the depth range of the viewport. At the far plane and
@@ -79,9 +96,14 @@ float buffer_depth_of(float clip)
 }
 
 // Returns the depth buffer value of `t`.
+float depth_of(float t, vec2 terms)
+{
+    return buffer_depth_of(clip_depth_of(t, terms));
+}
+
 float depth_of(float t)
 {
-    return buffer_depth_of(clip_depth_of(t));
+    return depth_of(t, depth_terms());
 }
 
 #endif

@@ -54,7 +54,7 @@ struct FrameData {
     float ray_width; // width of the part of a pixel that a ray stands for: 1, or less if a pixel has several rays
     float ray_start; // depth at which rays from the eye begin: that of a host's near plane, 0 in a scene's view
     float unused;
-    vec2 unused_too;
+    vec2 lag_depth; // change of depth_constant and depth_factor for a lag of 1
     Light lights[MAX_LIGHTS];
 };
 
@@ -71,7 +71,7 @@ struct Instance {
     uint object; // index of its object
     uint listed; // first vector of its table of listed patches
     uint table; // first vector of its table
-    uint unused;
+    float lag; // part of a hit's depth by which the hit is farther in comparisons (src/plan/precedence.rs)
 };
 
 // Where a copy was in the last frame. It has the size of an Instance: both are in one buffer.

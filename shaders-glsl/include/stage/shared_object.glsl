@@ -47,7 +47,7 @@ void load_shared()
         vec4 position_depth = shared_floats(0u), scale_clip = shared_floats(1u), origin_clip = shared_floats(3u);
         uvec4 places = shared_vector(4u);
         tile_instance = Instance(position_depth.xyz, position_depth.w, scale_clip.xyz, scale_clip.w, shared_floats(2u),
-                                 origin_clip.xyz, origin_clip.w, places.x, places.y, places.z, 0u);
+                                 origin_clip.xyz, origin_clip.w, places.x, places.y, places.z, uintBitsToFloat(places.w));
     }
     if (ONE_OBJECT == 0u) {
         vec4 map = shared_floats(5u), clip = shared_floats(6u), offset = shared_floats(7u);

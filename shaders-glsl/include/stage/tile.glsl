@@ -44,7 +44,7 @@ void begin_tile()
 
 void store_tile(uvec2 pixel, bool found, Hit hit)
 {
-    float depth = depth_of(tile_rays.base + hit.t);
+    float depth = depth_of(tile_rays.base + hit.t, lagging_terms(tile_instance.lag));
     if (all(lessThan(pixel, frame.size))) {
         count_steps(pixel, hit);
         if (found && (DEPTHS == 0u || depth < drawn_depth(pixel))) {

@@ -11,8 +11,8 @@
 
 layout(location = 1) flat VARYING vec4 ray_origin_base;
 layout(location = 2) flat VARYING vec4 ray_dir_00; // w: pixel_size of the frame; for cells depth_sense
-layout(location = 3) flat VARYING vec4 ray_dir_x;  // w: depth_constant
-layout(location = 4) flat VARYING vec4 ray_dir_y; // w: depth_factor
+layout(location = 3) flat VARYING vec4 ray_dir_x;  // w: depth_constant, with the copy's lag
+layout(location = 4) flat VARYING vec4 ray_dir_y; // w: depth_factor, with the copy's lag
 layout(location = 0) flat VARYING vec4 look_rotation;
 layout(location = 5) flat VARYING vec4 look_scale_shininess;
 layout(location = 6) flat VARYING vec4 look_albedo_strength;

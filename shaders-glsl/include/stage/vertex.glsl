@@ -23,8 +23,9 @@ void hand_over(Instance i, float scale)
     PixelRays rays = pixel_rays(i);
     ray_origin_base = vec4(rays.origin, rays.base);
     ray_dir_00 = vec4(rays.dir_00, scale);
-    ray_dir_x = vec4(rays.dir_x, frame.depth_constant);
-    ray_dir_y = vec4(rays.dir_y, frame.depth_factor);
+    vec2 terms = lagging_terms(i.lag);
+    ray_dir_x = vec4(rays.dir_x, terms.x);
+    ray_dir_y = vec4(rays.dir_y, terms.y);
     Look look = look_of(i, instance_number);
     look_rotation = look.rotation;
     look_scale_shininess = look.scale_shininess;

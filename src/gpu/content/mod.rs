@@ -25,7 +25,7 @@ use objects::Objects;
 use rayon::prelude::*;
 use snapshot::{Demands, Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
-use view_plan::{LevelRules, PlannedObject, ViewPlan, hierarchy};
+use view_plan::{LevelRules, PlannedObject, ViewPlan, hierarchy, precedence};
 
 /// Objects and lights as set, the last snapshot of all objects, and the last plan. One owner has them,
 /// because a failed step must leave all of them as they were.
@@ -179,10 +179,11 @@ impl Content {
         // Without shadows levels differ, and with them all objects have one level.
         let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
         let known = self.plan.as_ref().filter(|known| {
-            Arc::ptr_eq(&known.snapshot, &snapshot)
-                && known.view.mask == view.mask
-                && level(&known.objects) == level(&objects)
+            Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
         });
+        let order = known.map(|known| known.precedence.clone());
+        let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
+        let known = known.filter(|known| level(&known.objects) == level(&objects));
         let known = known.and_then(|known| known.hierarchy.clone());
         let hierarchy = || known.unwrap_or_else(|| Arc::new(hierarchy(&objects, &inputs)));
         let hierarchy = shadowed.then(hierarchy);
@@ -192,6 +193,7 @@ impl Content {
             with,
             open: self.open.clone(),
             frame,
+            precedence,
             hierarchy,
             objects,
         })

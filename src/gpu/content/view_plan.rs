@@ -5,6 +5,7 @@ use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
+use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
@@ -22,6 +23,8 @@ pub(crate) struct ViewPlan {
     pub frame: FramePlan,
     /// Objects that the view's mask shows, in order.
     pub objects: Vec<PlannedObject>,
+    /// Those of their copies that lag behind others.
+    pub precedence: Arc<Precedence>,
     /// Their copies that cast shadows; `None` if nothing is shaded in shadow.
     pub hierarchy: Option<Arc<Hierarchy>>,
 }
@@ -153,6 +156,25 @@ impl LevelRules {
         let many = object.instances.len() > self.most_proxies && object.repeat == [1; 3];
         many && !self.casts && !self.parallel
     }
+}
+
+/// The order of these objects' copies whose faces may coincide: that of the scene.
+pub(super) fn precedence(objects: &[PlannedObject]) -> Precedence {
+    let drawn = objects.iter().map(|planned| planned.object.drawn());
+    let count = drawn.map(|object| object.placements().len()).sum();
+    Precedence::new(count, || {
+        let bodies = objects.iter().flat_map(|planned| {
+            let (prepared, object) = (&planned.object, planned.object.drawn());
+            let (bounds, side) = (prepared.derived.facts.bounds, object.profile.radius);
+            let grow = object.offset.largest_width().max(0.0);
+            let [low, high] = [bounds.z_min - grow, bounds.z_max + grow];
+            let ends = [side, bounds.r_max + grow, low.max(0.0), high.min(1.0)];
+            let (shape, flats) = (shape_of(object, ends), flats(object));
+            let copies = (prepared.instances.start..).zip(object.placements());
+            copies.map(move |(instance, place)| Body::new(instance, place, &shape, &flats))
+        });
+        bodies.collect()
+    })
 }
 
 /// The hierarchy over the copies of these objects.

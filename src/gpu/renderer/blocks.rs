@@ -5,6 +5,7 @@ use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::vk::output::Output;
 use crate::plan::View;
 use crate::plan::casters::Hierarchy;
+use crate::plan::precedence::lag_depth;
 use crate::scene::{Lighting, Object, Placement};
 use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT};
 use crate::shader::{
@@ -200,6 +201,7 @@ pub(super) fn frame_block(
         far_depth: 1.0 - near_depth,
         ray_width: (view.ray_width * output.ray_width()) as f32,
         ray_start: view.start as f32,
+        lag_depth: lag_depth(view).map(|part| part as f32),
         lights,
         ..FrameBlock::default()
     }

@@ -243,6 +243,7 @@ impl Renderer {
             to.write_instances(first, &shown, |copy| {
                 let placement = &placements[copy as usize];
                 let mut block = instance_block(drawn, placement, number, view);
+                block.lag = plan.precedence.lag(first + copy, &block, view);
                 let starts = starts.get(planned.surface_of(&block));
                 [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
                 block
