@@ -2,10 +2,12 @@
 //! the layers.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod change;
 mod drawing;
 pub mod host;
 pub mod outlines;
 pub mod passing;
+pub mod prelude;
 mod scenes;
 pub mod shapes;
 pub mod ways;

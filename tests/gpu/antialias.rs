@@ -1,12 +1,7 @@
 //! Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
 //! object and several, with colour only and with all planes.
 
-use crate::common::ways::STAGES;
-use crate::common::{draw, drawn_by, eye, scene_of, shapes};
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
+use crate::common::prelude::*;
 use revmap_offscreen::antialias::silhouettes;
 
 fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {

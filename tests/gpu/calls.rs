@@ -1,7 +1,9 @@
 //! A test layer between the renderer and Vulkan. It can make calls of a borrowed device fail, and
 //! can report a poorer physical device than the real one. The renderer is unaware of it.
 
+use crate::common::host::{Host, borrow_through};
 use ash::vk;
+use revmap::gpu::Device;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
@@ -222,6 +224,14 @@ impl Layer {
     ) -> ash::Instance {
         *MASK.lock().unwrap() = mask;
         planted_instance(entry, instance, queries)
+    }
+
+    /// The host's device, with less than it has.
+    pub fn poorer(&self, host: &Host, change: impl FnOnce(&mut Mask)) -> revmap::Result<Device> {
+        let mut mask = Mask::default();
+        change(&mut mask);
+        let instance = self.instance(&host.entry, &host.instance, mask);
+        borrow_through(host, &instance, &host.device)
     }
 }
 

@@ -3,15 +3,9 @@
 
 use crate::calls::{above, planted_device};
 use crate::common::host::{HostBuffer, assert_silent, barrier, borrow_through, once, open};
-use crate::common::{placement, scene_of, shapes};
-use ash::vk;
-use glam::DVec3;
-use revmap::gpu::Device;
-use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Planes, Settings, Tolerance};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use std::ffi::c_void;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 /// Counts calls of commands and passes them on.
 macro_rules! counted {

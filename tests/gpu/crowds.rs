@@ -1,16 +1,8 @@
 //! Crowds: copies proven hidden are left out, and no pixel changes.
 
-use crate::common::ways::{STAGES, apart};
-use crate::common::{device, next_frame, shapes, updated};
-use glam::{DQuat, DVec3};
-use revmap::frame::Frame;
-use revmap::gpu::DrawPath;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Copies, Light, Object, Placement, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
+use crate::common::ways::apart;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Positions that are irregular but evenly distributed.
 fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
@@ -75,10 +67,7 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
 
 /// The same settings without lists of patches.
 pub fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
-    Settings {
-        solver: Solver::Quadric,
-        ..settings(stage, occlusion_culling)
-    }
+    settings(stage, occlusion_culling).with(|s| s.solver = Solver::Quadric)
 }
 
 pub fn draw(scene: &Scene, settings: &Settings) -> Frame {

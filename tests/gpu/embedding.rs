@@ -2,14 +2,9 @@
 //! that of `examples/host`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
-use crate::common::{eye, next_frame, scene_of, shapes, sized};
-use glam::{DMat4, DVec2, DVec3, Vec3};
-use revmap::gpu::{Device, Renderer, View};
-use revmap::scene::{Camera, CameraFrame, Clip, Lighting, Object, Placement, Scene, Shadow};
-use revmap::settings::{Planes, SearchSettings, Settings};
+use crate::common::host::{Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
+use crate::common::prelude::*;
 use revmap_files::Picture;
-use revmap_offscreen::Offscreen;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
@@ -124,10 +119,7 @@ fn alone_it_draws_the_off_screen_frame() {
     let host = open();
     let device = borrow(&host);
     let scene = three();
-    let settings = Settings {
-        planes: Planes::Color,
-        ..sized(options().width, options().height)
-    };
+    let settings = sized(options().width, options().height).with(|s| s.planes = Planes::Color);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     let wanted = Picture::of(&next_frame(&mut offscreen))
         .unwrap()
@@ -135,10 +127,7 @@ fn alone_it_draws_the_off_screen_frame() {
         .concat();
     let view = *offscreen.view();
     for dynamic in [true, false] {
-        let options = Options {
-            dynamic,
-            ..options()
-        };
+        let options = options().with(|o| o.dynamic = dynamic);
         let one = drawn(&host, &device, options, &scene, &view).0;
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
         // All four samples use the ray through the pixel's centre, so pixels away from silhouettes
@@ -172,11 +161,7 @@ fn meshes_meet_solids_where_they_should() {
     let (middle, radius, wide) = (DVec3::new(0.35, -0.1, 0.45), 0.3, 0.3);
     let mut object = Object::new("cylinder", shapes::column_of(wide).into());
     object.color = [1.0, 0.0, 0.0];
-    let lighting = Lighting {
-        ambient: [1.0; 3],
-        lights: Vec::new(),
-        ..Lighting::default()
-    };
+    let lighting = Lighting::default().with(|l| (l.ambient, l.lights) = ([1.0; 3], Vec::new()));
     let (from, to) = (DVec3::new(2.6, 0.9, 1.6), DVec3::new(0.0, 0.0, 0.45));
     for (reversed, dynamic, inside) in [
         (false, true, false),
@@ -186,11 +171,7 @@ fn meshes_meet_solids_where_they_should() {
         // An eye within the solid: drawn by the box.
         (true, true, true),
     ] {
-        let options = Options {
-            dynamic,
-            reversed,
-            ..options()
-        };
+        let options = options().with(|o| (o.dynamic, o.reversed) = (dynamic, reversed));
         let (from, to) = match inside {
             true => (DVec3::new(-0.1, 0.0, 0.5), DVec3::new(0.3, -0.6, 0.5)),
             false => (from, to),

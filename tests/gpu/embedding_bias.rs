@@ -1,12 +1,9 @@
 //! Biases of depths, for shadow maps: constant, and by the slope of the surface.
 
-use crate::common::host::{self, borrow, color_pass, open, viewport};
+use crate::common::host::{borrow, color_pass, open, viewport};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, depths, parallel, seen};
-use glam::{DMat4, DVec4};
-use revmap::error::ErrorKind;
-use revmap::gpu::{DepthOrder, Output, PassFormats, Renderer, SlopeBias, View};
-use revmap::settings::SearchSettings;
 
 /// A bias shifts the depth of every hit, and nothing else.
 #[test]
@@ -83,10 +80,7 @@ fn a_bias_follows_slopes() {
             };
             let light = View::from_matrices(view, seen_by, viewport(&options()), order).unwrap();
             let settings = by_proxies_of(least);
-            let pass = PassFormats {
-                depth: order,
-                ..depth_only(is_parallel)
-            };
+            let pass = depth_only(is_parallel).with(|p| p.depth = order);
             let sloped = PassFormats {
                 slope_bias: SlopeBias::new(factor, limit).unwrap(),
                 ..pass.clone()

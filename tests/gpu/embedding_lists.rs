@@ -2,21 +2,10 @@
 //! into the last frame.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    self, Attachments, Host, Options, borrow, dynamic, open, view_of, viewport,
-};
-use crate::common::{draw, shapes, sized};
+use crate::common::host::{Attachments, Host, Options, borrow, dynamic, open, view_of, viewport};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use revmap::cast::RayCaster;
-use revmap::error::ErrorKind;
-use revmap::frame::Frame;
-use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, Renderer, View};
-use revmap::maps::MapFormat;
-use revmap::scene::{Light, Material, Object, Placement, Scene, Shadow};
-use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Settings, Solver, Tolerance};
-use std::collections::HashSet;
 
 type F = vk::Format;
 
@@ -112,10 +101,7 @@ fn scene() -> Scene {
 }
 
 fn all_planes(scene: &Scene, solver: Solver) -> Frame {
-    let settings = Settings {
-        solver,
-        ..sized(options().width, options().height)
-    };
+    let settings = sized(options().width, options().height).with(|s| s.solver = solver);
     draw(scene, &settings)
 }
 
@@ -129,10 +115,7 @@ fn levels_of_copies_keep_the_identity() {
         ..Placement::default()
     };
     scene.objects[1].instances = (0..100).map(copy).collect();
-    let settings = SearchSettings {
-        tolerance: Tolerance::DEFAULT,
-        ..SearchSettings::exact()
-    };
+    let settings = SearchSettings::exact().with(|s| s.tolerance = Tolerance::DEFAULT);
     let mut lists = Lists::new(&host, &device, &[Plane::Identity], &scene, &settings);
     lists.draw(&view_of(&scene, &options()));
     let numbers: HashSet<u32> = lists.ids.iter().map(|id| id.number()).collect();
@@ -161,10 +144,7 @@ fn planes_of_a_list_are_those_of_a_frame() {
     let device = borrow(&host);
     for solver in [Solver::Exact, Solver::Quadric, Solver::Live] {
         let frame = all_planes(&scene, solver);
-        let settings = SearchSettings {
-            solver,
-            ..SearchSettings::exact()
-        };
+        let settings = SearchSettings::exact().with(|s| s.solver = solver);
         let planes = PLANES.map(|p| p.0);
         let mut lists = Lists::new(&host, &device, &planes, &scene, &settings);
         lists.draw(&view_of(&scene, &options()));
@@ -311,10 +291,7 @@ fn check_motion(shadow: Shadow) {
     scene.objects.push(replicas);
     // Rays towards the light meet other solids than the drawn one.
     scene.shadow = shadow;
-    scene.lights = vec![Light {
-        direction: DVec3::new(-1.0, -0.1, -0.1),
-        ..Light::default()
-    }];
+    scene.lights = vec![Light::default().with(|l| l.direction = DVec3::new(-1.0, -0.1, -0.1))];
     let before = scene.clone();
     let planes = [Plane::Motion, Plane::Identity];
     let mut lists = Lists::new(&host, &device, &planes, &scene, &SearchSettings::exact());
@@ -413,17 +390,10 @@ fn misfitting_lists_are_refused() {
     ] {
         assert_eq!(refused(plane, format, &exact), usage("color"), "{plane:?}");
     }
-    let rgba8 = SearchSettings {
-        solver: Solver::Live,
-        map_format: MapFormat::Rgba8,
-        ..exact
-    };
+    let rgba8 = exact.with(|s| (s.solver, s.map_format) = (Solver::Live, MapFormat::Rgba8));
     let color = F::R32G32B32A32_SFLOAT;
     assert_eq!(refused(Plane::Color, color, &rgba8), usage("map_format"));
-    let circle = SearchSettings {
-        solver: revmap_searches::CIRCLE,
-        ..exact
-    };
+    let circle = exact.with(|s| s.solver = revmap_searches::CIRCLE);
     assert_eq!(refused(Plane::Color, color, &circle), usage("planes"));
     let list = Planes::List(PlaneList::new(&[Plane::Color]).unwrap());
     let compute = Renderer::new(&device, Output::Compute(list), &exact, 1);

@@ -2,19 +2,10 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Attachments, Host, Options, borrow, dynamic, open, viewport};
-use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
+use crate::common::host::{Attachments, Host, borrow, dynamic, open, viewport};
+use crate::common::prelude::*;
 use crate::embedding::{BACKGROUND, drawn_by, every_way, options, three, upright};
-use glam::{DMat4, DVec3, DVec4};
-use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, DrawPath, Output, PassFormats, Renderer, View,
-};
-use revmap::scene::{Clip, Scene};
-use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
-use revmap_offscreen::Offscreen;
-use revmap_searches::CIRCLE;
-use std::collections::HashSet;
 
 /// A view by these matrices, for the host's pictures.
 pub fn seen(view: DMat4, projection: DMat4) -> View {
@@ -33,10 +24,7 @@ pub fn depth_only(parallel: bool) -> PassFormats {
 
 /// The exact search, by cells of at least so many pixels.
 pub fn by_proxies_of(proxy_min_pixels: u32) -> SearchSettings {
-    SearchSettings {
-        proxy_min_pixels,
-        ..SearchSettings::exact()
-    }
+    SearchSettings::exact().with(|s| s.proxy_min_pixels = proxy_min_pixels)
 }
 
 /// Depths of a scene, drawn into a host's shadow map, and the draw paths of the objects.
@@ -50,10 +38,7 @@ pub fn depths(
 ) -> (Vec<f32>, Vec<DrawPath>) {
     let into = Attachments::new(
         host,
-        Options {
-            reversed: pass.depth == DepthOrder::Reversed,
-            ..options()
-        },
+        options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed),
         &[],
     );
     let (into, output) = (into.unwrap(), Output::Pass(pass.clone()));
@@ -185,10 +170,7 @@ fn compute_writes_to_a_hosts_buffer() {
     let device = borrow(&host);
     let scene = three();
     let (width, height) = (options().width, options().height);
-    let settings = Settings {
-        planes: Planes::Color,
-        ..in_compute(sized(width, height))
-    };
+    let settings = in_compute(sized(width, height)).with(|s| s.planes = Planes::Color);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     let wanted = Picture::of(&next_frame(&mut offscreen)).unwrap().rgba;
     let pixels = (width * height) as usize;
@@ -222,10 +204,7 @@ fn compute_writes_to_a_hosts_buffer() {
 fn depth_alone_takes_exact_searches() {
     let device = crate::common::device();
     let planes = Planes::Depth { parallel: false };
-    let circle = SearchSettings {
-        solver: CIRCLE,
-        ..SearchSettings::exact()
-    };
+    let circle = SearchSettings::exact().with(|s| s.solver = CIRCLE);
     let refused = |output, settings: &SearchSettings| {
         let error = Renderer::new(device, output, settings, 1).err().unwrap();
         assert!(error.to_string().contains("depth alone"), "{error}");

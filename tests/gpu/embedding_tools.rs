@@ -2,14 +2,10 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    self, Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
+    Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
 };
+use crate::common::prelude::*;
 use crate::embedding::{options, renderer, three};
-use ash::vk;
-use glam::DMat4;
-use revmap::gpu::{Output, PreparedFrame, Renderer};
-use revmap::scene::Scene;
-use revmap::settings::SearchSettings;
 use std::ffi::{CStr, c_char};
 use std::sync::Mutex;
 

@@ -1,13 +1,9 @@
 //! What a host shows: views with masks, and depth tests after a prepass.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Options, Stage, borrow, frame, open, order, view_of};
+use crate::common::host::{Host, Options, Stage, borrow, frame, open, order, view_of};
+use crate::common::prelude::*;
 use crate::embedding::{drawn, options, three};
-use ash::vk;
-use glam::{DMat4, Vec3};
-use revmap::gpu::{DepthTest, Device, DrawPath, Output, PassFormats, Renderer, View};
-use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings};
 
 fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
     let output = Output::Pass(PassFormats {

@@ -2,16 +2,9 @@
 //! host (`tests/soak`) changes them between frames in flight.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Mesh, Stage, Texture, borrow, frame, open};
-use crate::common::shapes;
+use crate::common::host::{Host, Mesh, Stage, Texture, borrow, frame, open};
+use crate::common::prelude::*;
 use crate::embedding::{options, renderer, three};
-use ash::vk;
-use glam::DMat4;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostImage, ObjectId, Renderer};
-use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
-use revmap::scene::{BumpForm, Object, Scene};
-use std::sync::Arc;
 
 const SIZE: u32 = 8;
 

@@ -6,18 +6,9 @@ use crate::common::host::{
     Attachments, Host, Options, UniformSet, add, borrow, draw_into, draw_words, dynamic, open,
     view_of,
 };
-use crate::common::{draw, shapes, sized};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use glam::{DVec3, Vec3};
-use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostShading, Output, PassFormats, Renderer, View};
-use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
-use revmap::scene::{Material, Object, Placement, Scene};
-use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings, Solver};
 use revmap::shading::Shading;
-use std::collections::HashSet;
-use std::sync::Arc;
 
 /// The library's own light, from the host's set.
 pub const COPY: &str = include_str!("../common/copy.glsl");
@@ -193,10 +184,7 @@ fn a_copy_of_our_function_gives_our_picture() {
         occlusion_culling: false,
         ..exact
     });
-    let live = SearchSettings {
-        solver: Solver::Live,
-        ..exact
-    };
+    let live = exact.with(|s| s.solver = Solver::Live);
     let mut paths = HashSet::new();
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let shading = shading(stage, COPY);

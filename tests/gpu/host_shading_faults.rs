@@ -4,18 +4,11 @@
 
 use crate::calls::{Layer, Mask};
 use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
+use crate::common::prelude::*;
 use crate::embedding::options;
 use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
 use crate::least_device::grant;
-use ash::vk;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostShading, Output, Renderer};
-use revmap::maps::MapFormat;
-use revmap::scene::{Lighting, Shadow};
-use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings};
 use revmap::shading::Shading;
-use revmap_searches::CIRCLE;
-use std::sync::Arc;
 
 const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
@@ -51,12 +44,7 @@ fn of_textures(count: u32) -> Arc<Shading> {
 #[test]
 fn textures_beyond_the_device_are_refused() {
     let (layer, host) = (Layer::take(), open());
-    let mask = Mask {
-        limits: Some(grant),
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let least = borrow_through(&host, &instance, &host.device).unwrap();
+    let least = layer.poorer(&host, |m| m.limits = Some(grant)).unwrap();
     let layout = |count| {
         let binding = vk::DescriptorSetLayoutBinding::default()
             .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
@@ -125,10 +113,7 @@ fn what_does_not_fit_is_refused() {
     refused(motion, &exact, &copy, set.layout, "planes", "with colour");
     let depths = pass(Planes::Depth { parallel: false }, &[]);
     refused(depths, &exact, &copy, set.layout, "planes", "with colour");
-    let circle = SearchSettings {
-        solver: CIRCLE,
-        ..exact
-    };
+    let circle = exact.with(|s| s.solver = CIRCLE);
     refused(
         colors(),
         &circle,
@@ -137,10 +122,7 @@ fn what_does_not_fit_is_refused() {
         "solver",
         "exact, quadric or live",
     );
-    let rgba8 = SearchSettings {
-        map_format: MapFormat::Rgba8,
-        ..exact
-    };
+    let rgba8 = exact.with(|s| s.map_format = MapFormat::Rgba8);
     refused(colors(), &rgba8, &copy, set.layout, "solver", "r16");
     for (name, binding) in [("set = 4", 0), ("set = 1", 9)] {
         let text = format!(
@@ -151,10 +133,7 @@ fn what_does_not_fit_is_refused() {
         refused(colors(), &exact, &by, set.layout, "shading", "in set 3");
     }
     let mut fits = shaded(&device, colors(), &exact, &copy, set.layout).unwrap();
-    let lighting = Lighting {
-        shadow: Shadow::Hard,
-        ..Lighting::default()
-    };
+    let lighting = Lighting::default().with(|l| l.shadow = Shadow::Hard);
     let error = fits.set_lighting(&lighting).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("shadow"), "{error}");
 }

@@ -2,12 +2,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{self, Stage, borrow, borrow_through, lent, open};
+use crate::common::host::{Stage, borrow, borrow_through, lent, open};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostDevice, Output};
-use revmap::settings::SearchSettings;
 
 /// Data is added while another thread compiles, without a message of the validation layers.
 #[test]
@@ -52,10 +49,7 @@ fn other_bytes_are_no_cache() {
     // SAFETY: a plain creation; the device that borrows the cache is dropped before it.
     unsafe {
         let cache = host.device.create_pipeline_cache(&empty, None).unwrap();
-        let with = HostDevice {
-            pipeline_cache: Some(cache),
-            ..lent(&host)
-        };
+        let with = lent(&host).with(|h| h.pipeline_cache = Some(cache));
         let device = Device::borrow(&with).unwrap();
         let error = device.add_pipeline_cache(&data).unwrap_err();
         assert_eq!(error.key.as_deref(), Some("pipeline_cache"), "{error}");
@@ -70,10 +64,7 @@ fn a_prewarm_outlives_its_renderer() {
     let (layer, host) = (Layer::take(), open());
     let raw = layer.device(&host.instance, &host.device);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
-    let options = host::Options {
-        dynamic: false,
-        ..options()
-    };
+    let options = options().with(|o| o.dynamic = false);
     let stage = Stage::new(&host, options).unwrap();
     let mut before = None;
     for _ in 0..2 {

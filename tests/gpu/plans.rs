@@ -2,13 +2,8 @@
 //! changes objects after `prepare` and records old tokens.
 
 use crate::common::host::{HostBuffer, borrow, once, open, renderer_of, target, view_of};
-use crate::common::{eye, placement, scene_of, shapes};
+use crate::common::prelude::*;
 use crate::embedding::options;
-use ash::vk;
-use revmap::gpu::Output;
-use revmap::scene::{Object, Scene};
-use revmap::settings::{Planes, SearchSettings};
-use std::sync::Arc;
 
 /// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
 #[test]
@@ -22,10 +17,7 @@ fn objects_by_the_ten_thousand() {
         object.placement = placement([0.1 * x - 7.5, 0.1 * y - 6.5, 0.0], [0.0; 3], [0.1; 3]);
         object
     };
-    let empty = Scene {
-        objects: Vec::new(),
-        ..scene_of(shapes::vase(), eye(25.0, 3.0))
-    };
+    let empty = scene_of(shapes::vase(), eye(25.0, 3.0)).with(|s| s.objects = Vec::new());
     let view = view_of(&empty, &options());
     let words = vec![1f32; 2 * (options().width * options().height) as usize];
     let words = HostBuffer::of(&host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();

@@ -2,19 +2,12 @@
 //! drawn, what does not is refused, and memory is used again.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
+use crate::calls::Layer;
 use crate::common::host::{
-    Checked, HostBuffer, add, borrow, borrow_through, once, open, target, view_of,
+    Checked, HostBuffer, add, borrow, once, open, target, view_of,
 };
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use glam::DVec3;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, FrameStatistics, INSTANCE_BYTES, Output, Renderer};
-use revmap::profile::Profile;
-use revmap::scene::{Object, Placement, Scene};
-use revmap::settings::{Planes, SearchSettings};
-use std::sync::Arc;
 
 /// Bytes of the device's largest storage buffer.
 const STORAGE: u32 = 1 << 20;
@@ -23,12 +16,7 @@ const MOST: usize = STORAGE as usize / INSTANCE_BYTES as usize;
 /// The layer, the host and the device of small buffers.
 fn small() -> (Layer, Checked, Device) {
     let (layer, host) = (Layer::take(), open());
-    let mask = Mask {
-        storage: STORAGE,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let device = borrow_through(&host, &instance, &host.device).unwrap();
+    let device = layer.poorer(&host, |m| m.storage = STORAGE).unwrap();
     (layer, host, device)
 }
 
@@ -158,10 +146,7 @@ fn ties_do_not_depend_on_ranges() {
         object
     };
     let (first, second) = (scene([0.9, 0.1, 0.1]), scene([0.1, 0.1, 0.9]));
-    let empty = Scene {
-        objects: Vec::new(),
-        ..three()
-    };
+    let empty = three().with(|s| s.objects = Vec::new());
     let mut fresh = renderer(&device, &empty);
     fresh.add(first.clone()).unwrap();
     fresh.add(second.clone()).unwrap();

@@ -2,19 +2,11 @@
 //! call is passed to Vulkan.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
-use crate::common::host::{borrow, borrow_through, once, open, open_with};
-use crate::common::{device, shapes};
-use ash::vk;
+use crate::calls::Layer;
+use crate::common::host::{borrow, once, open, open_with};
+use crate::common::prelude::*;
 use ash::vk::Handle as _;
-use glam::DVec3;
-use revmap::error::ErrorKind::{self, Unsupported, Usage};
-use revmap::gpu::{
-    ComputeTarget, Device, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer, View,
-};
-use revmap::scene::{Camera, Lighting, Object, Offset, Placement, Shadow};
-use revmap::settings::{Planes, SearchSettings, Solver};
-use std::sync::Arc;
+use revmap::error::ErrorKind::{Unsupported, Usage};
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const FLOAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -23,10 +15,7 @@ const BOTH: vk::Format = vk::Format::D32_SFLOAT_S8_UINT;
 const NONE: vk::Format = vk::Format::UNDEFINED;
 
 fn pass(begun: PassKind, samples: u32, planes: Planes) -> Output {
-    Output::Pass(PassFormats {
-        samples,
-        ..PassFormats::new(begun, planes)
-    })
+    Output::Pass(PassFormats::new(begun, planes).with(|p| p.samples = samples))
 }
 
 fn dynamic(
@@ -137,12 +126,7 @@ fn samples_that_the_device_has_not_are_refused() {
     }
     let layer = Layer::take();
     let host = open();
-    let mask = Mask {
-        samples: true,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
+    let poorer = layer.poorer(&host, |m| m.samples = true).unwrap();
     let own = PassKind::RenderPass {
         // SAFETY: the renderer refuses this handle before any use.
         pass: unsafe { HostPass::new(vk::RenderPass::from_raw(1)) },
@@ -248,10 +232,7 @@ fn setters_name_the_object() {
     renderer.remove(first).unwrap();
     let mut flat = Object::new("another name", profile.clone());
     flat.placement.scale.y = 0.0;
-    let offset = Offset {
-        extend: f64::NAN,
-        ..Offset::default()
-    };
+    let offset = Offset::default().with(|o| o.extend = f64::NAN);
     let (copies, name) = (vec![Placement::default(), flat.placement], "vase");
     for (found, key, name) in [
         (renderer.set_offset(vase, offset), "extend", name),
@@ -290,12 +271,7 @@ fn setters_name_the_object() {
 fn too_many_copies_name_the_object() {
     let layer = Layer::take();
     let host = open();
-    let mask = Mask {
-        storage: 1 << 20,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
+    let poorer = layer.poorer(&host, |m| m.storage = 1 << 20).unwrap();
     let color = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
     let mut renderer = Renderer::new(&poorer, color, &SearchSettings::exact(), 1).unwrap();
     let mut object = Object::new("vase", shapes::vase().into());
@@ -326,10 +302,7 @@ fn a_refusal_repeats_until_it_is_mended() {
     let mut renderer = Renderer::new(
         device(),
         dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1),
-        &SearchSettings {
-            solver: Solver::Live,
-            ..SearchSettings::exact()
-        },
+        &SearchSettings::exact().with(|s| s.solver = Solver::Live),
         1,
     )
     .unwrap();
@@ -342,10 +315,7 @@ fn a_refusal_repeats_until_it_is_mended() {
     let view = View::from_camera(&camera, (64, 48), [0.1, 100.0]).unwrap();
     renderer.plan(&view).unwrap();
     let before = renderer.lighting().clone();
-    let shadows = Lighting {
-        shadow: Shadow::Hard,
-        ..before.clone()
-    };
+    let shadows = before.clone().with(|l| l.shadow = Shadow::Hard);
     renderer.set_lighting(&shadows).unwrap();
     for _ in 0..2 {
         let refused = renderer.plan(&view).unwrap_err();

@@ -3,18 +3,12 @@
 
 use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open};
-use crate::common::{next_frame, sized};
+use crate::common::prelude::*;
 use crate::embedding::three;
-use ash::vk;
-use glam::DVec3;
-use revmap::error::ErrorKind;
-use revmap::gpu::MemoryUse;
-use revmap::scene::Placement;
-use revmap::settings::{DrawStage, Planes, Settings};
-use revmap_offscreen::{Offscreen, OffscreenOptions};
 use std::collections::HashMap;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::SeqCst;
 
 /// Bytes of the device.
 const BYTES: u64 = 4 << 30;
@@ -85,10 +79,7 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
         planes: Planes::Color,
         ..settings
     };
-    let options = OffscreenOptions {
-        samples: 4,
-        ..OffscreenOptions::default()
-    };
+    let options = OffscreenOptions::default().with(|o| o.samples = 4);
     let with = || Offscreen::with(&device, &scene, &large, options);
     let first = with().unwrap();
     let (used, full) = (device.memory_use(), live());

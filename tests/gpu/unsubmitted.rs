@@ -7,13 +7,8 @@ use crate::common::host::{
     Attachments, COLOR, Host, HostBuffer, add, barrier, borrow, borrow_through, color_pass, never,
     once, open, target, view_of,
 };
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use revmap::gpu::{Device, ObjectId, Output, Renderer, View};
-use revmap::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
-use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Solver};
-use std::sync::Arc;
 
 const SIZE: u32 = 16;
 const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];

@@ -3,16 +3,11 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    self, Attachments, Host, Mesh, MeshPipeline, MeshShaders, Options, borrow, once, open,
+    Attachments, Host, Mesh, MeshPipeline, MeshShaders, borrow, once, open,
 };
+use crate::common::prelude::*;
 use crate::embedding::{hundred, options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, parallel};
-use ash::vk;
-use glam::{DMat4, DVec3, DVec4, Vec3};
-use revmap::error::ErrorKind;
-use revmap::gpu::{DepthOrder, Device, Output, PassFormats, Renderer, View, Viewport};
-use revmap::scene::{Scene, Shadow};
-use revmap::settings::{Planes, SearchSettings};
 
 /// Bytes of colours, and depths.
 type Picture = (Vec<u8>, Vec<f32>);
@@ -91,10 +86,7 @@ fn in_pass(
     (port, matrices): (&Port, [DMat4; 2]),
     mesh: Option<&Mesh>,
 ) -> Picture {
-    let options = Options {
-        reversed: pass.depth == DepthOrder::Reversed,
-        ..options()
-    };
+    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
     let formats: &[_] = match pass.planes {
         Planes::Color => &[(host::COLOR, 4)],
         _ => &[],
@@ -389,10 +381,7 @@ fn solids_and_meshes_share_the_depth_range() {
             let mut renderer = host::renderer_of(&device, output, &by_proxies_of(least), 1, &scene);
             let matrices = [look, lens(is_parallel, reversed)];
             let mut drawn = |depths: [f64; 2], mesh| {
-                let port = Port {
-                    depths,
-                    ..Port::new([0, 0], false)
-                };
+                let port = Port::new([0, 0], false).with(|p| p.depths = depths);
                 in_pass(&host, &pass, &mut renderer, (&port, matrices), mesh)
             };
             for mesh in [None, Some(&mesh)] {
@@ -405,10 +394,7 @@ fn solids_and_meshes_share_the_depth_range() {
             }
         }
         let view = |depths| {
-            let port = Port {
-                depths,
-                ..Port::new([0, 0], false)
-            };
+            let port = Port::new([0, 0], false).with(|p| p.depths = depths);
             port.view([look, lens(false, false)], DepthOrder::Normal)
         };
         let mut renderer = color_renderer(&device, &scene, true);
