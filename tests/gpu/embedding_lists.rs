@@ -87,11 +87,7 @@ impl<'a> Lists<'a> {
 /// Three solids, one of them in copies.
 fn scene() -> Scene {
     let mut scene = three();
-    let copy = |x: f64| Placement {
-        position: DVec3::new(x, 0.7, 0.1),
-        scale: DVec3::splat(0.5),
-        ..Placement::default()
-    };
+    let copy = |x: f64| scaled([x, 0.7, 0.1], 0.5);
     scene.objects[1].instances = vec![copy(-0.4), copy(0.3)].into();
     scene.objects[2].material = Some(Material {
         roughness: 0.75,
@@ -149,10 +145,7 @@ fn planes_of_a_list_are_those_of_a_frame() {
         let mut lists = Lists::new(&host, &device, &planes, &scene, &settings);
         lists.draw(&view_of(&scene, &options()));
         let identity = lists.read::<2>(Plane::Identity);
-        let (colors, base) = (
-            lists.floats::<4>(Plane::Color),
-            lists.floats::<4>(Plane::BaseColor),
-        );
+        let [colors, base] = [Plane::Color, Plane::BaseColor].map(|p| lists.floats::<4>(p));
         let normals = lists.floats::<4>(Plane::Normal);
         let octahedral = lists.floats::<2>(Plane::OctahedralNormal);
         let material = lists.floats::<2>(Plane::Material);
@@ -314,10 +307,8 @@ fn check_motion(shadow: Shadow) {
     let (second, second_clip) =
         jittered(eye + DVec3::new(0.05, 0.1, -0.02), DVec2::new(-0.25, 0.125));
     lists.draw(&second.with_last(&first));
-    let (motion, identity) = (
-        lists.floats::<2>(Plane::Motion),
-        lists.read::<2>(Plane::Identity),
-    );
+    let motion = lists.floats::<2>(Plane::Motion);
+    let identity = lists.read::<2>(Plane::Identity);
     let changes = before.objects.iter().zip(&scene.objects);
     let shifts: Vec<_> = changes
         .map(|(before, now)| before.offset.extend - now.offset.extend)

@@ -1,9 +1,9 @@
 //! A host's near plane cuts solids as it cuts meshes: rays begin in it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Attachments, Host, Options, borrow, open, order, viewport};
+use crate::common::host::{Host, Options, borrow, open, order, viewport};
 use crate::common::prelude::*;
-use crate::embedding::{every_way, options};
+use crate::embedding::{every_way, first_frame, options};
 use crate::embedding_outputs::{by_proxies_of, depth_only};
 use rayon::prelude::*;
 use revmap::cast::RayCaster;
@@ -72,21 +72,16 @@ fn depths(
     }
     let mut all = Vec::new();
     for (name, pass, formats) in passes {
-        let into = Attachments::new(host, *options, formats).unwrap();
         let mut renderer = host::renderer_of(device, Output::Pass(pass), settings, 1, scene);
-        let clears = vec![vk::ClearColorValue::default(); formats.len()];
-        host::draw_into(host, &into, &clears, &mut renderer, view, None);
-        all.push((name, into.depths(), renderer.draw_paths()));
+        let drawn = (&mut renderer, view);
+        let (_, depths) = first_frame(host, *options, Some(formats), drawn, None);
+        all.push((name, depths, renderer.draw_paths()));
     }
     if !parallel && !options.reversed {
-        let pixels = (options.width * options.height) as usize;
-        let mut words = vec![1f32.to_bits(); pixels];
-        words.resize(2 * pixels, 0);
         let output = Output::Compute(Planes::Color);
         let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-        let found = host::draw_words(host, &words, &mut renderer, view, None);
-        let found = found[..pixels].iter().map(|word| f32::from_bits(*word));
-        all.push(("compute", found.collect(), renderer.draw_paths()));
+        let (_, depths) = first_frame(host, *options, None, (&mut renderer, view), None);
+        all.push(("compute", depths, renderer.draw_paths()));
     }
     all
 }

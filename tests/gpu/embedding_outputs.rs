@@ -2,9 +2,9 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Attachments, Host, borrow, dynamic, open, viewport};
+use crate::common::host::{Host, borrow, dynamic, open, viewport};
 use crate::common::prelude::*;
-use crate::embedding::{BACKGROUND, drawn_by, every_way, options, three, upright};
+use crate::embedding::{BACKGROUND, drawn_by, every_way, first_frame, options, three, upright};
 use revmap_files::Picture;
 
 /// A view by these matrices, for the host's pictures.
@@ -36,15 +36,11 @@ pub fn depths(
     settings: &SearchSettings,
     pass: &PassFormats,
 ) -> (Vec<f32>, Vec<DrawPath>) {
-    let into = Attachments::new(
-        host,
-        options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed),
-        &[],
-    );
-    let (into, output) = (into.unwrap(), Output::Pass(pass.clone()));
+    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
+    let output = Output::Pass(pass.clone());
     let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-    host::draw_into(host, &into, &[], &mut renderer, view, None);
-    (into.depths(), renderer.draw_paths())
+    let (_, depths) = first_frame(host, options, Some(&[]), (&mut renderer, view), None);
+    (depths, renderer.draw_paths())
 }
 
 /// The depth of a light's view along parallel rays is the analytic depth.
@@ -104,10 +100,8 @@ fn depth_alone_has_equal_bits_by_every_path() {
             paths.extend(own);
         }
     }
-    assert!(
-        paths.contains(&DrawPath::Cells) && paths.contains(&DrawPath::Box),
-        "{paths:?}"
-    );
+    let every = [DrawPath::Cells, DrawPath::Box];
+    assert!(every.iter().all(|path| paths.contains(path)), "{paths:?}");
 }
 
 /// A projection of parallel rays.

@@ -15,14 +15,9 @@ const PIXELS_PER_DEGREE: f64 = 67.0;
 /// Solids, copies and pixels of one copy.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut small = three();
-    let spot = |n: u32| Placement {
-        position: glam::DVec3::new(
-            f64::from(n / 20) * 0.16 - 1.2,
-            f64::from(n % 20) * 0.16 - 1.5,
-            0.0,
-        ),
-        scale: glam::DVec3::splat(0.1),
-        ..Placement::default()
+    let spot = |n: u32| {
+        let (x, y) = (f64::from(n / 20), f64::from(n % 20));
+        scaled([0.16 * x - 1.2, 0.16 * y - 1.5, 0.0], 0.1)
     };
     small.objects.truncate(1);
     small.objects[0].instances = (0..300).map(spot).collect();

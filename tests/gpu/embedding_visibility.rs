@@ -11,13 +11,8 @@ fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &S
         depth_test,
         ..host::color_pass()
     });
-    host::renderer_of(
-        device,
-        output,
-        &SearchSettings::exact(),
-        host::FRAMES,
-        scene,
-    )
+    let exact = SearchSettings::exact();
+    host::renderer_of(device, output, &exact, host::FRAMES, scene)
 }
 
 /// A view shows the objects of its mask, as if there were no others.
@@ -35,13 +30,8 @@ fn a_view_shows_the_objects_of_its_mask() {
     some.set_mask(ids[2], 0).unwrap();
     for (mask, shown) in [(1, 0), (2, 1), (1, 0)] {
         for _ in 0..2 {
-            frame(
-                &mut stage,
-                &mut some,
-                &view.with_mask(mask),
-                DMat4::IDENTITY,
-                &[],
-            );
+            let view = view.with_mask(mask);
+            frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);
         }
         let mut alone = scene.clone();
         alone.objects = vec![scene.objects[shown].clone()];

@@ -2,12 +2,9 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    Attachments, Host, Options, UniformSet, add, borrow, draw_into, draw_words, dynamic, open,
-    view_of,
-};
+use crate::common::host::{Host, UniformSet, add, borrow, dynamic, open, view_of};
 use crate::common::prelude::*;
-use crate::embedding::{options, three};
+use crate::embedding::{first_frame, options, three};
 use revmap::shading::Shading;
 
 /// The library's own light, from the host's set.
@@ -110,35 +107,6 @@ pub fn made(
     unsafe { Renderer::with_shading(device, output, settings, 1, &host) }.unwrap()
 }
 
-/// The first attachment of a frame in a pass, as bytes.
-pub fn in_pass(
-    host: &Host,
-    renderer: &mut Renderer,
-    view: &View,
-    formats: &[(vk::Format, usize)],
-    set: Option<&UniformSet>,
-) -> Vec<u8> {
-    let into = Attachments::new(host, options(), formats).unwrap();
-    let clears = vec![vk::ClearColorValue { float32: [0.0; 4] }; formats.len()];
-    draw_into(host, &into, &clears, renderer, view, set);
-    into.color(0)
-}
-
-/// The words of colours of a frame in compute.
-pub fn in_compute(
-    host: &Host,
-    renderer: &mut Renderer,
-    view: &View,
-    set: Option<&UniformSet>,
-) -> Vec<u8> {
-    let Options { width, height, .. } = options();
-    let pixels = (width * height) as usize;
-    let mut words = vec![1f32.to_bits(); pixels];
-    words.resize(2 * pixels, 0);
-    let drawn = draw_words(host, &words, renderer, view, set);
-    bytemuck::cast_slice(&drawn[pixels..]).to_vec()
-}
-
 /// The picture of a scene in a stage, and the path of each object.
 pub fn picture(
     host: &Host,
@@ -156,10 +124,8 @@ pub fn picture(
     };
     let mut renderer = made(device, output, settings, by);
     add(&mut renderer, scene);
-    let drawn = match stage {
-        DrawStage::Fragment => in_pass(host, &mut renderer, &view, &color, set),
-        DrawStage::Compute => in_compute(host, &mut renderer, &view, set),
-    };
+    let formats = (stage == DrawStage::Fragment).then_some(&color[..]);
+    let (drawn, _) = first_frame(host, options(), formats, (&mut renderer, &view), set);
     (drawn, renderer.draw_paths())
 }
 
@@ -234,7 +200,8 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
         let by = Some((&shading, &set));
         let mut renderer = made(&device, output, &SearchSettings::exact(), by);
         ids = add(&mut renderer, &scene);
-        let bytes = in_pass(&host, &mut renderer, &view, formats, Some(&set));
+        let drawn = (&mut renderer, &view);
+        let (bytes, _) = first_frame(&host, options(), Some(formats), drawn, Some(&set));
         let words: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
         words.as_chunks().0.to_vec()
     };

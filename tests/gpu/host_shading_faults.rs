@@ -5,8 +5,8 @@
 use crate::calls::{Layer, Mask};
 use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
 use crate::common::prelude::*;
-use crate::embedding::options;
-use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
+use crate::embedding::{first_frame, options};
+use crate::host_shading::{COPY, lights, made, pass, picture, scene, shading};
 use crate::least_device::grant;
 use revmap::shading::Shading;
 
@@ -80,8 +80,8 @@ fn what_does_not_fit_is_refused() {
     let set = UniformSet::of(&host, &[[0f32; 4]; 8]).unwrap();
     let copy = shading(DrawStage::Fragment, COPY);
     let exact = SearchSettings::exact();
-    type By<'a> = &'a Arc<Shading>;
-    let refused = |output, settings: &SearchSettings, by: By, layout, key: &str, words: &str| {
+    let in_compute = shading(DrawStage::Compute, COPY);
+    let refused = |output, settings: &SearchSettings, by, layout, key: &str, words: &str| {
         let made = shaded(&device, output, settings, by, layout);
         let error = made.err().expect(key);
         assert_eq!(error.kind, ErrorKind::Usage, "{error}");
@@ -90,40 +90,22 @@ fn what_does_not_fit_is_refused() {
     };
     let null = vk::DescriptorSetLayout::null();
     refused(colors(), &exact, &copy, null, "set_layout", "reads set 3");
-    let compute = Output::Compute(Planes::Color);
-    refused(
-        compute,
-        &exact,
-        &copy,
-        set.layout,
-        "shading",
-        "needs compute",
-    );
-    let in_compute = shading(DrawStage::Compute, COPY);
-    refused(
-        colors(),
-        &exact,
-        &in_compute,
-        set.layout,
-        "shading",
-        "needs fragment",
-    );
     let list = Planes::List(PlaneList::new(&[Plane::Motion]).unwrap());
     let motion = pass(list, &[vk::Format::R16G16_SFLOAT]);
-    refused(motion, &exact, &copy, set.layout, "planes", "with colour");
     let depths = pass(Planes::Depth { parallel: false }, &[]);
-    refused(depths, &exact, &copy, set.layout, "planes", "with colour");
+    let compute = Output::Compute(Planes::Color);
     let circle = exact.with(|s| s.solver = CIRCLE);
-    refused(
-        colors(),
-        &circle,
-        &copy,
-        set.layout,
-        "solver",
-        "exact, quadric or live",
-    );
     let rgba8 = exact.with(|s| s.map_format = MapFormat::Rgba8);
-    refused(colors(), &rgba8, &copy, set.layout, "solver", "r16");
+    for (output, settings, by, key, words) in [
+        (compute, exact, &copy, "shading", "needs compute"),
+        (colors(), exact, &in_compute, "shading", "needs fragment"),
+        (motion, exact, &copy, "planes", "with colour"),
+        (depths, exact, &copy, "planes", "with colour"),
+        (colors(), circle, &copy, "solver", "exact, quadric or live"),
+        (colors(), rgba8, &copy, "solver", "r16"),
+    ] {
+        refused(output, &settings, by, set.layout, key, words);
+    }
     for (name, binding) in [("set = 4", 0), ("set = 1", 9)] {
         let text = format!(
             "layout({name}, binding = {binding}) uniform Other {{ vec4 value; }} other;\n\
@@ -182,22 +164,31 @@ fn pipelines_are_prewarmed_and_told_apart() {
     let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";
     let [copy, red] = [COPY, red].map(|text| shading(DrawStage::Fragment, text));
     let view = view_of(&scene, &options());
-    let color = [(SRGB, 4)];
     let exact = SearchSettings::exact();
     let mut shown = Vec::new();
+    let shown_by = |renderer: &mut Renderer| {
+        first_frame(
+            &host,
+            options(),
+            Some(&[(SRGB, 4)]),
+            (renderer, &view),
+            Some(&set),
+        )
+        .0
+    };
     for by in [&copy, &red] {
         let mut renderer = made(&device, colors(), &exact, Some((by, &set)));
         renderer.hide_until_compiled(true);
         add(&mut renderer, &scene);
         let before = device.pipelines_compiled();
-        let hidden = in_pass(&host, &mut renderer, &view, &color, Some(&set));
+        let hidden = shown_by(&mut renderer);
         assert!(hidden.iter().all(|byte| *byte == 0), "drawn");
         assert_eq!(device.pipelines_compiled(), before);
         let warm = renderer.prewarm().unwrap();
         std::thread::scope(|scope| scope.spawn(|| warm.compile()).join().unwrap()).unwrap();
         let compiled = device.pipelines_compiled();
         assert!(compiled > before);
-        shown.push(in_pass(&host, &mut renderer, &view, &color, Some(&set)));
+        shown.push(shown_by(&mut renderer));
         assert_eq!(device.pipelines_compiled(), compiled, "compiled in a frame");
     }
     let ours = picture(&host, &device, &scene, &exact, DrawStage::Fragment, None).0;

@@ -21,16 +21,17 @@ pub fn grant(limits: &mut vk::PhysicalDeviceLimits) {
 fn a_device_of_least_limits_is_refused_by_name() {
     let (layer, host) = (Layer::take(), open());
     type Change = fn(&mut vk::PhysicalDeviceLimits);
+    let samplers = |kind: &str| format!("maxPerStageDescriptor{kind} of 16 (it has 15)");
     let lacks: [(Change, &str); 10] = [
         (|_| (), "(it has 4), maxFragmentCombinedOutputResources of"),
         (|_| (), "lacks maxPerStageDescriptorStorageBuffers of"),
         (
             |l| l.max_per_stage_descriptor_samplers = 15,
-            "maxPerStageDescriptorSamplers of 16 (it has 15)",
+            &samplers("Samplers"),
         ),
         (
             |l| l.max_per_stage_descriptor_sampled_images = 15,
-            "maxPerStageDescriptorSampledImages of 16 (it has 15)",
+            &samplers("SampledImages"),
         ),
         (
             |l| l.max_bound_descriptor_sets = 2,

@@ -1,9 +1,9 @@
 //! Renderers of many objects. The random host (`tests/soak`) prepares several views at a time,
 //! changes objects after `prepare` and records old tokens.
 
-use crate::common::host::{HostBuffer, borrow, once, open, renderer_of, target, view_of};
+use crate::common::host::{borrow, open, renderer_of, view_of};
 use crate::common::prelude::*;
-use crate::embedding::options;
+use crate::embedding::{first_frame, options};
 
 /// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
 #[test]
@@ -19,21 +19,11 @@ fn objects_by_the_ten_thousand() {
     };
     let empty = scene_of(shapes::vase(), eye(25.0, 3.0)).with(|s| s.objects = Vec::new());
     let view = view_of(&empty, &options());
-    let words = vec![1f32; 2 * (options().width * options().height) as usize];
-    let words = HostBuffer::of(&host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
     let bytes = |count: u32| {
         let output = Output::Compute(Planes::Color);
         let mut renderer = renderer_of(&device, output, &SearchSettings::exact(), 1, &empty);
-        // SAFETY: the buffer has two words per pixel and outlives the renderer's frames.
-        unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
-        let draw = |renderer: &mut revmap::gpu::Renderer| {
-            once(&host, |cmd| {
-                // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
-                unsafe {
-                    let frame = renderer.prepare(cmd, 0, &view).unwrap();
-                    renderer.record_compute(cmd, &frame).unwrap();
-                }
-            });
+        let draw = |renderer: &mut Renderer| {
+            first_frame(&host, options(), None, (renderer, &view), None);
         };
         let ids: Vec<_> = (0..count)
             .map(|n| renderer.add(object(n)).unwrap())

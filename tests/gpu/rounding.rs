@@ -64,7 +64,6 @@ fn scenes() -> [(&'static str, Scene); 2] {
 }
 
 const ROWS: u32 = 256;
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
     sized(240, 180).with(|s| (s.map_rows, s.solver, s.stage) = (Some(ROWS), solver, stage))

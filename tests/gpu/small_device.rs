@@ -55,10 +55,9 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     let raw = planted_device(&host.instance, &host.device, memory);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let mut scene = three();
-    let place = |n: u32| Placement {
-        position: DVec3::new(f64::from(n / 300), f64::from(n % 300) - 150.0, 0.0) * -0.4,
-        scale: DVec3::splat(0.4),
-        ..Placement::default()
+    let place = |n: u32| {
+        let (x, y) = (f64::from(n / 300), f64::from(n % 300) - 150.0);
+        scaled([-0.4 * x, -0.4 * y, 0.0], 0.4)
     };
     scene.objects[1].instances = (0..90_000).map(place).collect();
     let settings = sized(160, 120);
@@ -66,7 +65,7 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     let before = next_frame(&mut small);
     let fits = live();
     assert!(
-        fits > 0 && fits < 256 << 20,
+        (1..256 << 20).contains(&fits),
         "{fits} bytes for 90,000 copies"
     );
     assert_eq!(REFUSED.load(SeqCst), 0);

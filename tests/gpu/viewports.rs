@@ -2,15 +2,10 @@
 //! range of their own.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    Attachments, Host, Mesh, MeshPipeline, MeshShaders, borrow, once, open,
-};
+use crate::common::host::{Attachments, Host, Mesh, MeshPipeline, MeshShaders, borrow, once, open};
 use crate::common::prelude::*;
-use crate::embedding::{hundred, options, three};
+use crate::embedding::{Picture, first_frame, hundred, options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, parallel};
-
-/// Bytes of colours, and depths.
-type Picture = (Vec<u8>, Vec<f32>);
 
 /// The host's `VkViewport` and scissor.
 #[derive(Clone, Copy)]
@@ -47,17 +42,14 @@ impl Port {
 
     /// Sets viewport and scissor.
     unsafe fn set(&self, host: &Host, cmd: vk::CommandBuffer) {
-        let [x, y, width, height, min_depth, max_depth] = {
-            let (v, [min, max]) = (&self.place, self.depths);
-            [v.x, v.y, v.width, v.height, min, max].map(|number| number as f32)
-        };
+        let (v, [min, max]) = (&self.place, self.depths);
         let viewport = vk::Viewport {
-            x,
-            y,
-            width,
-            height,
-            min_depth,
-            max_depth,
+            x: v.x as f32,
+            y: v.y as f32,
+            width: v.width as f32,
+            height: v.height as f32,
+            min_depth: min as f32,
+            max_depth: max as f32,
         };
         let [first, end] = self.rows;
         let scissor = vk::Rect2D {
@@ -116,25 +108,13 @@ fn in_pass(
             into.copy(cmd);
         }
     });
-    let color = if formats.is_empty() {
-        Vec::new()
-    } else {
-        into.color(0)
-    };
-    (color, into.depths())
+    let color = formats.first().map(|_| into.color(0));
+    (color.unwrap_or_default(), into.depths())
 }
 
 /// Draws the solids in compute.
 fn in_compute(host: &Host, renderer: &mut Renderer, view: &View) -> Picture {
-    let pixels = (options().width * options().height) as usize;
-    let mut words = vec![1f32.to_bits(); pixels];
-    words.resize(2 * pixels, 0);
-    let words = host::draw_words(host, &words, renderer, view, None);
-    let (depths, colors) = words.split_at(pixels);
-    (
-        bytemuck::cast_slice(colors).to_vec(),
-        depths.iter().map(|bits| f32::from_bits(*bits)).collect(),
-    )
+    first_frame(host, options(), None, (renderer, view), None)
 }
 
 fn color_renderer(device: &Device, scene: &Scene, compute: bool) -> Renderer {
@@ -158,10 +138,9 @@ fn compare_moved(found: &Picture, whole: &Picture, [dx, dy]: [i32; 2]) -> [usize
         hits += usize::from(depth < 1.0);
         let mut same = (found.1[at] - depth).abs() < 1e-5;
         if let Some(color) = found.0.get(4 * at..4 * at + 4) {
-            let wanted = if inside {
-                &whole.0[4 * from..4 * from + 4]
-            } else {
-                &[0; 4]
+            let wanted = match inside {
+                true => &whole.0[4 * from..4 * from + 4],
+                false => &[0; 4],
             };
             same &= color.iter().zip(wanted).all(|(a, b)| a.abs_diff(*b) <= 2);
         }
@@ -211,13 +190,10 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
                     let rows = port.rows[0]..port.rows[1];
                     in_compute(&host, &mut renderer, &view.with_rows(rows))
                 }
-                false => in_pass(
-                    &host,
-                    &host::color_pass(),
-                    &mut renderer,
-                    (port, matrices),
-                    None,
-                ),
+                false => {
+                    let pass = host::color_pass();
+                    in_pass(&host, &pass, &mut renderer, (port, matrices), None)
+                }
             };
             let what = format!("{name}, compute {compute}");
             let whole = drawn(&Port::new([0, 0], false));
@@ -255,13 +231,8 @@ fn parallel_views_beside_the_framebuffer_draw_what_shows() {
         let output = Output::Pass(pass.clone());
         let mut renderer = host::renderer_of(&device, output, &by_proxies_of(0), 1, &scene);
         let mut drawn = |port: &Port| {
-            in_pass(
-                &host,
-                &pass,
-                &mut renderer,
-                (port, [look, parallel()]),
-                None,
-            )
+            let shown = (port, [look, parallel()]);
+            in_pass(&host, &pass, &mut renderer, shown, None)
         };
         let whole = drawn(&Port::new([0, 0], false));
         for by in MOVES {
