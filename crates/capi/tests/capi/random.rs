@@ -7,23 +7,9 @@ use crate::host::{
     Attachments, COLOR, DEPTH, Host, HostBuffer, Options, Texture, assert_silent, barrier,
     commands, open,
 };
+use crate::names::*;
 use crate::recording::lend_with_queue;
-use ash::vk;
-use revmap_capi::device::*;
-use revmap_capi::fault::*;
-use revmap_capi::object::*;
-use revmap_capi::offscreen::*;
-use revmap_capi::profile::*;
-use revmap_capi::rays::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::statistics::*;
-use revmap_capi::renderer::*;
-use revmap_capi::shading::*;
-use revmap_capi::texture::*;
-use revmap_capi::values::*;
 use std::collections::VecDeque;
-use std::ptr::{null, null_mut};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 

@@ -2,8 +2,7 @@
 
 use super::{SIZE, WHOLE};
 use crate::host::view_and_projection;
-use glam::DVec3;
-use revmap_capi::values::*;
+use crate::names::*;
 
 #[path = "../../../../../tests/common/random.rs"]
 mod numbers;
