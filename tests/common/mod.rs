@@ -16,6 +16,11 @@ pub use drawing::*;
 pub use scenes::*;
 pub use shapes::offset;
 
+/// An upright copy of this size.
+pub fn scaled(position: [f64; 3], size: f64) -> revmap::scene::Placement {
+    placement(position, [0.0; 3], [size; 3])
+}
+
 /// Asserts that the bytes of an example's shading are what its GLSL gives.
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 pub fn assert_kept_shading(example: &str, lights: &str, kept: &[u8]) {

@@ -35,11 +35,6 @@ pub fn eye(elevation: f64, distance: f64) -> DVec3 {
     DVec3::new(0.93 * c, 0.37 * c, s) * distance + DVec3::new(0.0, 0.0, 0.5)
 }
 
-/// An upright copy of this size.
-pub fn scaled(position: [f64; 3], size: f64) -> Placement {
-    placement(position, [0.0; 3], [size; 3])
-}
-
 pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placement {
     Placement {
         position: position.into(),

@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    self, Attachments, Host, Mesh, Options, Stage, UniformSet, borrow, frame, open, order, viewport,
+    self, Attachments, Host, Mesh, Options, Stage, UniformSet, frame, opened, order, viewport,
 };
 use crate::common::prelude::*;
 
@@ -21,6 +21,11 @@ pub fn options() -> Options {
 
 pub fn renderer(device: &Device, stage: &Stage) -> Renderer {
     host::renderer(device, stage, &SearchSettings::exact(), host::FRAMES)
+}
+
+/// The matrices of a scene's camera.
+pub fn matrices(scene: &Scene) -> [DMat4; 2] {
+    host::view_and_projection(scene.camera.eye, scene.camera.target, &options())
 }
 
 pub fn three() -> Scene {
@@ -146,8 +151,7 @@ pub fn drawn_by(
 
 #[test]
 fn alone_it_draws_the_off_screen_frame() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
     let settings = sized(options().width, options().height).with(|s| s.planes = Planes::Color);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
@@ -184,8 +188,7 @@ fn kind(pixel: &[u8]) -> u8 {
 /// exact formula.
 #[test]
 fn meshes_meet_solids_where_they_should() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (middle, radius, wide) = (DVec3::new(0.35, -0.1, 0.45), 0.3, 0.3);
     let mut object = Object::new("cylinder", shapes::column_of(wide).into());
     object.color = [1.0, 0.0, 0.0];

@@ -1,6 +1,6 @@
 //! Device memory of a host whose surfaces change in every frame.
 
-use crate::common::host::{Stage, borrow, frame, open};
+use crate::common::host::{Stage, frame, opened};
 use crate::common::prelude::*;
 use crate::embedding::{options, renderer};
 
@@ -16,8 +16,7 @@ fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
 /// surfaces.
 #[test]
 fn memory_stays_flat() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let options = options().with(|o| (o.width, o.height) = (32, 24));
     let mut stage = Stage::new(&host, options).unwrap();
     let mut few = renderer(&device, &stage);

@@ -2,7 +2,9 @@
 //! into the last frame.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Attachments, Host, Options, borrow, dynamic, open, view_of, viewport};
+use crate::common::host::{
+    Attachments, Host, Options, borrow, dynamic, open, opened, view_of, viewport,
+};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
 use revmap::cast::RayCaster;
@@ -274,8 +276,7 @@ fn motion_leads_to_the_last_frames_point() {
 }
 
 fn check_motion(shadow: Shadow) {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut scene = three();
     scene.objects[0].placement.scale = DVec3::new(1.0, 0.8, 1.1);
     let mut replicas = Object::new("replicas", shapes::vase().into());
@@ -358,8 +359,7 @@ fn check_motion(shadow: Shadow) {
 /// Lists that a device or a plane does not take are refused by kind and key.
 #[test]
 fn misfitting_lists_are_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (_host, device) = opened();
     let twice = PlaneList::new(&[Plane::Color, Plane::Color]);
     assert_eq!(twice.unwrap_err().kind, ErrorKind::Usage);
     let refused = |plane, format, settings: &SearchSettings| {

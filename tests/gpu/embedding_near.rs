@@ -1,7 +1,7 @@
 //! A host's near plane cuts solids as it cuts meshes: rays begin in it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, Options, borrow, open, order, viewport};
+use crate::common::host::{Host, Options, opened, order, viewport};
 use crate::common::prelude::*;
 use crate::embedding::{every_way, first_frame, options};
 use crate::embedding_outputs::{by_proxies_of, depth_only};
@@ -90,8 +90,7 @@ fn depths(
 /// search, draw path and stage.
 #[test]
 fn the_near_plane_cuts_solids() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let planes_of = |name: &str| match name {
         "three" => vec![1.5, 2.95, 6.0],
         "one" => vec![3.05],

@@ -2,9 +2,11 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, borrow, dynamic, open, viewport};
+use crate::common::host::{Host, dynamic, opened, viewport};
 use crate::common::prelude::*;
-use crate::embedding::{BACKGROUND, drawn_by, every_way, first_frame, options, three, upright};
+use crate::embedding::{
+    BACKGROUND, drawn_by, every_way, first_frame, matrices, options, three, upright,
+};
 use revmap_files::Picture;
 
 /// A view by these matrices, for the host's pictures.
@@ -46,8 +48,7 @@ pub fn depths(
 /// The depth of a light's view along parallel rays is the analytic depth.
 #[test]
 fn depth_along_parallel_rays_is_analytic() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let exact = SearchSettings::exact();
     let wide = 0.3;
     let one = scene_of(shapes::column_of(wide), three().camera.eye);
@@ -81,12 +82,10 @@ fn depth_along_parallel_rays_is_analytic() {
 /// draw path: `EQUAL` draws every pixel after it.
 #[test]
 fn depth_alone_has_equal_bits_by_every_path() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut paths = HashSet::new();
     for (name, scene) in &every_way() {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let [view, projection] = host::view_and_projection(eye, target, &options());
+        let [view, projection] = matrices(&scene);
         let light = seen(view, projection);
         for least in [0, u32::MAX] {
             let settings = by_proxies_of(least);
@@ -118,8 +117,7 @@ pub fn parallel() -> DMat4 {
 /// Depth-only passes over solids cut by their box give the same depth by cells as by boxes.
 #[test]
 fn depth_alone_of_what_the_box_cuts() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     for (name, profile) in shapes::all() {
         for (extend, from) in [
             (0.12, DVec3::new(2.0, 1.0, 2.5)),
@@ -160,8 +158,7 @@ fn depth_alone_of_what_the_box_cuts() {
 /// already in the buffer are kept.
 #[test]
 fn compute_writes_to_a_hosts_buffer() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
     let (width, height) = (options().width, options().height);
     let settings = in_compute(sized(width, height)).with(|s| s.planes = Planes::Color);

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
+    Attachments, Host, Stage, add, borrow_through, draw_into, once, open, opened, view_of,
 };
 use crate::common::prelude::*;
 use crate::embedding::{options, renderer, three};
@@ -152,8 +152,7 @@ impl Drop for Secondary<'_> {
 /// what one renderer of all objects draws.
 #[test]
 fn two_threads_record_two_renderers() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (options, scene) = (options(), three());
     let view = view_of(&scene, &options);
     let mut parts = [scene.clone(), scene.clone()];

@@ -1,7 +1,7 @@
 //! What a host shows: views with masks, and depth tests after a prepass.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, Options, Stage, borrow, frame, open, order, view_of};
+use crate::common::host::{Host, Options, Stage, frame, opened, order, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{drawn, options, three};
 
@@ -18,8 +18,7 @@ fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &S
 /// A view shows the objects of its mask, as if there were no others.
 #[test]
 fn a_view_shows_the_objects_of_its_mask() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (scene, options) = (three(), options());
     let view = view_of(&scene, &options);
     let mut stage = Stage::new(&host, options).unwrap();
@@ -99,8 +98,7 @@ const MOST_APART: u8 = 8;
 /// After a prepass of the same depths, `EQUAL` draws every pixel, and the default draws none.
 #[test]
 fn equal_depths_pass_after_a_prepass() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let options = options();
     let dark = three();
     let mut bright = dark.clone();

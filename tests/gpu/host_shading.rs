@@ -2,7 +2,7 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, UniformSet, add, borrow, dynamic, open, view_of};
+use crate::common::host::{Host, UniformSet, add, borrow, dynamic, open, opened, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{first_frame, options, three};
 use revmap::shading::Shading;
@@ -139,8 +139,7 @@ pub fn apart(a: &[u8], b: &[u8]) -> (usize, usize) {
 /// A copy of the library's function gives the library's picture, by every path and in both stages.
 #[test]
 fn a_copy_of_our_function_gives_our_picture() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (scene, mut alone) = (scene(), scene());
     alone.objects.truncate(1);
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
@@ -180,8 +179,7 @@ fn a_copy_of_our_function_gives_our_picture() {
 /// The values that the function gets are the planes of a frame.
 #[test]
 fn values_of_the_surface_are_the_planes_of_a_frame() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = scene();
     let view = view_of(&scene, &options());
     let frame = draw(&scene, &sized(options().width, options().height));

@@ -3,7 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
+use crate::common::host::{
+    Checked, UniformSet, add, borrow, borrow_through, open, opened, view_of,
+};
 use crate::common::prelude::*;
 use crate::embedding::{first_frame, options};
 use crate::host_shading::{COPY, lights, made, pass, picture, scene, shading};
@@ -75,8 +77,7 @@ fn textures_beyond_the_device_are_refused() {
 /// A shading is refused where it would not shade, each time with the key and the remedy.
 #[test]
 fn what_does_not_fit_is_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let set = UniformSet::of(&host, &[[0f32; 4]; 8]).unwrap();
     let copy = shading(DrawStage::Fragment, COPY);
     let exact = SearchSettings::exact();
@@ -157,8 +158,7 @@ fn validation_reports_a_binding_that_the_layout_lacks() {
 /// on one device have pipelines of their own, and none of the library's.
 #[test]
 fn pipelines_are_prewarmed_and_told_apart() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = scene();
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
     let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{Stage, borrow, borrow_through, lent, open};
+use crate::common::host::{Stage, borrow, borrow_through, lent, open, opened};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
 
@@ -35,8 +35,7 @@ fn caches_are_added_while_pipelines_are_compiled() {
 /// Bytes that the library did not write do not reach the driver, and a host's cache is the host's.
 #[test]
 fn other_bytes_are_no_cache() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let data = device.pipeline_cache_data().unwrap();
     device.add_pipeline_cache(&data).unwrap();
     let mut changed = data.clone();

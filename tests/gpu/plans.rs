@@ -1,15 +1,14 @@
 //! Renderers of many objects. The random host (`tests/soak`) prepares several views at a time,
 //! changes objects after `prepare` and records old tokens.
 
-use crate::common::host::{borrow, open, renderer_of, view_of};
+use crate::common::host::{opened, renderer_of, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{first_frame, options};
 
 /// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
 #[test]
 fn objects_by_the_ten_thousand() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let profiles = [shapes::vase(), shapes::sphere(), shapes::glass()].map(Arc::new);
     let object = |n: u32| {
         let mut object = Object::new("one", profiles[n as usize % profiles.len()].clone());

@@ -2,7 +2,7 @@
 //! technique. General and special forms draw the same bits.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Checked, Host, borrow, never, open, view_of};
+use crate::common::host::{Host, borrow, never, open, opened, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{hundred, options, three};
 use crate::random::Random;
@@ -68,13 +68,6 @@ impl<'a> Warm<'a> {
 
 fn exact() -> SearchSettings {
     SearchSettings::exact()
-}
-
-/// The host and a device of its own: other tests compile on theirs.
-fn opened() -> (Checked, Device) {
-    let host = open();
-    let device = borrow(&host);
-    (host, device)
 }
 
 fn vase() -> Scene {

@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{Checked, HostBuffer, borrow, once, open, renderer_of, target, view_of};
+use crate::common::host::{Checked, HostBuffer, once, open, opened, renderer_of, target, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{far_words, options, three};
 
@@ -124,8 +124,7 @@ fn objects_are_added_beside_a_large_crowd() {
 /// Of coincident copies the one of the earlier object shows, wherever its instances are.
 #[test]
 fn ties_do_not_depend_on_ranges() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let object = |color| three().objects[0].clone().with(|o| o.color = color);
     let (first, second) = (object([0.9, 0.1, 0.1]), object([0.1, 0.1, 0.9]));
     let empty = three().with(|s| s.objects = Vec::new());

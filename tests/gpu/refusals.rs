@@ -3,7 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{borrow, once, open, open_with};
+use crate::common::host::{borrow, once, open, open_with, opened};
 use crate::common::prelude::*;
 use ash::vk::Handle as _;
 use revmap::error::ErrorKind::{Unsupported, Usage};
@@ -155,8 +155,7 @@ fn all_planes_need_their_feature_and_their_buffer() {
     let bare = open_with(|_| vk::PhysicalDeviceFeatures::default());
     assert_refused(&borrow(&bare), all(), Unsupported, None);
 
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let camera = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
     let view = View::from_camera(&camera, (16, 16), [1.0, 4.0]).unwrap();
     // The renderer refuses these handles before any use.

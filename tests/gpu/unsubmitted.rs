@@ -4,8 +4,8 @@
 
 use crate::calls::Layer;
 use crate::common::host::{
-    Attachments, COLOR, Host, HostBuffer, add, barrier, borrow, borrow_through, color_pass, never,
-    once, open, target, view_of,
+    Attachments, COLOR, Host, HostBuffer, add, barrier, borrow_through, color_pass, never, once,
+    open, opened, target, view_of,
 };
 use crate::common::prelude::*;
 use crate::embedding::{far_words, options, three};
@@ -191,8 +191,7 @@ fn a_retry_after_a_failed_call_draws_everything() {
 /// The budget of memory refuses a frame. Once there is memory, everything is drawn.
 #[test]
 fn a_retry_after_a_refusal_of_memory_draws_everything() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = textured();
     for stage in STAGES {
         let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
@@ -215,8 +214,7 @@ fn a_retry_after_a_refusal_of_memory_draws_everything() {
 /// are drawn then, without being set again.
 #[test]
 fn one_wrong_object_hides_no_other() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let search = SearchSettings {
         solver: Solver::Live,
         map_format: MapFormat::Rgba8,

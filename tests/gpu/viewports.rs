@@ -2,9 +2,9 @@
 //! range of their own.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Attachments, Host, Mesh, MeshPipeline, MeshShaders, borrow, once, open};
+use crate::common::host::{Attachments, Host, Mesh, MeshPipeline, MeshShaders, once, opened};
 use crate::common::prelude::*;
-use crate::embedding::{Picture, first_frame, hundred, options, three};
+use crate::embedding::{Picture, first_frame, hundred, matrices, options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, parallel};
 
 /// The host's `VkViewport` and scissor.
@@ -171,8 +171,7 @@ fn assert_moved(found: &Picture, whole: &Picture, by: [i32; 2], what: &str) {
 /// The visible part of a viewport is that of the same picture drawn in place, in both stages.
 #[test]
 fn viewports_beside_the_framebuffer_draw_what_shows() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut shadows = hundred();
     shadows.shadow = Shadow::Hard;
     for (name, scene) in [
@@ -180,8 +179,7 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
         ("copies", hundred()),
         ("shadows", shadows),
     ] {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let matrices = host::view_and_projection(eye, target, &options());
+        let matrices = matrices(&scene);
         for compute in [false, true] {
             let mut renderer = color_renderer(&device, &scene, compute);
             let mut drawn = |port: &Port| match compute {
@@ -222,8 +220,7 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
 /// The same for a shadow map of parallel rays.
 #[test]
 fn parallel_views_beside_the_framebuffer_draw_what_shows() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let from = DVec3::new(2.0, 1.0, 2.5);
     let look = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let pass = depth_only(true);
@@ -246,11 +243,9 @@ fn parallel_views_beside_the_framebuffer_draw_what_shows() {
 /// A viewport that the device does not have is refused by name, and so is its plan.
 #[test]
 fn viewports_beyond_the_device_are_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (_host, device) = opened();
     let scene = three();
-    let (eye, target) = (scene.camera.eye, scene.camera.target);
-    let matrices = host::view_and_projection(eye, target, &options());
+    let matrices = matrices(&scene);
     for compute in [false, true] {
         let mut renderer = color_renderer(&device, &scene, compute);
         for [x, y, width, height] in [
@@ -281,8 +276,7 @@ fn lens(is_parallel: bool, reversed: bool) -> DMat4 {
     let mut lens = parallel();
     if !is_parallel {
         let scene = three();
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        lens = host::view_and_projection(eye, target, &options())[1];
+        lens = matrices(&scene)[1];
         let (near, far) = (0.1, 3.1);
         lens.z_axis.z = far / (near - far);
         lens.w_axis.z = near * far / (near - far);
@@ -325,16 +319,14 @@ fn compare_ranges(
 #[test]
 fn solids_and_meshes_share_the_depth_range() {
     const RANGE: [f32; 2] = [0.2, 0.7];
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mesh = Mesh::sphere(&host, 64, Vec3::new(0.3, -0.1, 0.45), 0.3, Vec3::Z).unwrap();
     for (name, scene, least) in [
         ("cells", three(), 0),
         ("boxes", three(), u32::MAX),
         ("copies", hundred(), 0),
     ] {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let look = host::view_and_projection(eye, target, &options())[0];
+        let look = matrices(&scene)[0];
         for (is_parallel, reversed) in [(false, false), (false, true), (true, false), (true, true)]
         {
             let pass = PassFormats {

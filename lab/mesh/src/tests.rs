@@ -15,6 +15,10 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+#[path = "../../../src/shader/tests/kept.rs"]
+mod kept;
+use kept::assert_kept;
+
 pub(super) fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
     let source = ContourSource::new(&profile.outline).unwrap();
@@ -226,17 +230,14 @@ fn meshes_and_searches_hide_each_other() {
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/spirv");
-    let kept = |name: &str| std::fs::read(format!("{folder}/{name}")).unwrap();
-    let hashes = String::from_utf8(kept("sources.fnv")).unwrap();
-    let [sources, compiler] = [g::SOURCES_HASH, g::COMPILER_HASH].map(|h| format!("{h:#018x}"));
-    let hashes: Vec<&str> = hashes.lines().collect();
-    assert_eq!(hashes[0], sources, "renew it as build.rs says");
+    let hashes = [g::SOURCES_HASH, g::COMPILER_HASH];
     let names = ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"];
-    for (n, name) in names.into_iter().enumerate() {
-        let words = unpacked(&kept(&format!("{name}.spv.z")));
-        assert!(
-            words == shader(n) || hashes[1] != compiler,
-            "{name} differs"
-        );
-    }
+    let all = names.into_iter().enumerate();
+    let all = all.map(|(n, name)| (name.to_owned(), shader(n)));
+    assert_kept(
+        (folder, "as build.rs says"),
+        hashes,
+        all.collect(),
+        unpacked,
+    );
 }
