@@ -16,6 +16,9 @@ use crate::surface::{ROWS, Tables};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+mod kept;
+use kept::assert_kept;
+
 /// The number of modules.
 const MODULES: usize = 26;
 
@@ -67,10 +70,6 @@ fn a_variant_sets_every_specialisation_constant() {
     assert_eq!(all, set);
 }
 
-fn kept_file(name: &str) -> String {
-    format!("{}/shaders-spirv/{name}", env!("CARGO_MANIFEST_DIR"))
-}
-
 /// The catalogue of modules is finite and of known length, so that any growth is visible.
 #[test]
 fn modules_are_few_and_small() {
@@ -78,7 +77,8 @@ fn modules_are_few_and_small() {
     let names: BTreeSet<String> = all.iter().map(Module::name).collect();
     assert_eq!(names.len(), all.len());
     assert_eq!(all.len(), MODULES);
-    let packed = |module: &Module| kept_file(&format!("{}.spv.z", module.name()));
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders-spirv");
+    let packed = |module: &Module| format!("{folder}/{}.spv.z", module.name());
     let bytes = |module| std::fs::metadata(packed(module)).unwrap().len();
     let packed: u64 = all.iter().map(bytes).sum();
     assert!(packed < 480_000, "{packed} bytes in all");
@@ -166,31 +166,9 @@ fn tables_have_the_rows_and_nodes_of_the_shaders() {
 /// available here.
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
-    let kept = |name: &str| {
-        let path = kept_file(name);
-        std::fs::read(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
-    };
-    let kept_hashes = String::from_utf8(kept("sources.fnv")).unwrap();
-    let hashes: Vec<&str> = kept_hashes.lines().collect();
-    let same_compiler = hashes[1] == format!("{:#018x}", g::COMPILER_HASH);
-    assert_eq!(
-        hashes[0],
-        format!("{:#018x}", g::SOURCES_HASH),
-        "shaders-glsl/ changed; renew shaders-spirv/ with REVMAP_KEEP_SPIRV=1 cargo build"
-    );
-    if same_compiler {
-        for module in modules() {
-            let name = module.name();
-            let compiled = words(&module).unwrap();
-            let kept = unpacked(&kept(&format!("{name}.spv.z"))).unwrap();
-            assert!(
-                kept == compiled,
-                "{name}: kept words differ from the compiled"
-            );
-        }
-    }
-    let files = std::fs::read_dir(format!("{}/shaders-spirv", env!("CARGO_MANIFEST_DIR")));
-    let files = files.unwrap().count();
-    // The hash of the sources.
-    assert_eq!(files, modules().len() + 1, "files that nothing reads");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders-spirv");
+    let renew = "with REVMAP_KEEP_SPIRV=1 cargo build";
+    let hashes = [g::SOURCES_HASH, g::COMPILER_HASH];
+    let all = modules().iter().map(|m| (m.name(), words(m))).collect();
+    assert_kept((folder, renew), hashes, all, unpacked);
 }

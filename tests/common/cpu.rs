@@ -1,5 +1,6 @@
 //! Common code of tests that need no device.
 
+pub mod change;
 pub mod outlines;
 mod random;
 #[allow(dead_code)]

@@ -85,6 +85,13 @@ pub fn lent(host: &Host) -> HostDevice<'_> {
     }
 }
 
+/// A host, and its device as one of its own: other tests compile on theirs.
+pub fn opened() -> (Checked, Device) {
+    let host = open();
+    let device = borrow(&host);
+    (host, device)
+}
+
 pub fn borrow(host: &Host) -> Device {
     // SAFETY: the host's own handles; each test drops the device before the host.
     unsafe { Device::borrow(&lent(host)) }.unwrap()

@@ -2,10 +2,12 @@
 //! the layers.
 #![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod change;
 mod drawing;
 pub mod host;
 pub mod outlines;
 pub mod passing;
+pub mod prelude;
 mod scenes;
 pub mod shapes;
 pub mod ways;
@@ -13,6 +15,11 @@ pub mod ways;
 pub use drawing::*;
 pub use scenes::*;
 pub use shapes::offset;
+
+/// An upright copy of this size.
+pub fn scaled(position: [f64; 3], size: f64) -> revmap::scene::Placement {
+    placement(position, [0.0; 3], [size; 3])
+}
 
 /// Asserts that the bytes of an example's shading are what its GLSL gives.
 #[cfg(feature = "shaderc")] // compiles GLSL at run time

@@ -1,11 +1,12 @@
 //! Rays of the CPU's caster beside the reference in double precision.
 
+use crate::common::change::Change;
 use crate::common::rays::{Random, count};
 use crate::common::shapes;
 use glam::{DQuat, DVec3};
 use revmap::cast::RayCaster;
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
+use revmap::scene::{Camera, Clip, Object, Placement, Scene};
 use revmap_reference::{Ray, Reference};
 
 /// Objects of each kind: offsets, cuts, replicas, placements, copies.
@@ -19,43 +20,28 @@ fn objects() -> Vec<Object> {
         .map(|(name, profile)| Object::new(name, profile.into()))
         .collect();
     let plain = |profile: revmap::profile::Profile| Object::new("solid", profile.into());
-    let offset = |extend, bevel, chamfer| Offset {
-        extend,
-        bevel,
-        chamfer,
-    };
     let vase = plain(shapes::vase());
+    let copy = |k: u32| Placement {
+        position: DVec3::new(f64::from(k % 10), f64::from(k / 10), 0.0),
+        scale: DVec3::splat(0.5 + 0.002 * f64::from(k)),
+        ..placed
+    };
     all.extend([
-        Object {
-            offset: offset(0.04, 0.3, 0.2),
-            placement: placed,
-            ..vase.clone()
-        },
-        Object {
-            offset: offset(0.1, 0.0, 0.0),
-            clip: Clip::Box,
-            ..vase.clone()
-        },
-        Object {
-            axis: [0.75, 0.4],
-            ..vase.clone()
-        },
-        Object {
-            repeat: [2, 3, 2],
-            mirror: [true, false, true],
-            axis: [0.6, 0.5],
-            ..plain(shapes::glass())
-        },
-        Object {
-            instances: (0..200)
-                .map(|k| Placement {
-                    position: DVec3::new(f64::from(k % 10), f64::from(k / 10), 0.0),
-                    scale: DVec3::splat(0.5 + 0.002 * f64::from(k)),
-                    ..placed
-                })
-                .collect(),
-            ..vase
-        },
+        vase.clone().with(|o| {
+            o.offset = shapes::offset(0.04, 0.3, 0.2);
+            o.placement = placed;
+        }),
+        vase.clone().with(|o| {
+            o.offset = shapes::offset(0.1, 0.0, 0.0);
+            o.clip = Clip::Box;
+        }),
+        vase.clone().with(|o| o.axis = [0.75, 0.4]),
+        plain(shapes::glass()).with(|o| {
+            o.repeat = [2, 3, 2];
+            o.mirror = [true, false, true];
+            o.axis = [0.6, 0.5];
+        }),
+        vase.with(|o| o.instances = (0..200).map(copy).collect()),
     ]);
     all
 }
@@ -90,10 +76,8 @@ fn casts_hit_what_the_reference_hits() {
     for object in objects() {
         let mut scene = Scene::new(Camera::new(DVec3::ONE, DVec3::ZERO));
         scene.objects.push(object.clone());
-        let (truth, caster) = (
-            Reference::new(&scene).unwrap(),
-            RayCaster::new(&object).unwrap(),
-        );
+        let truth = Reference::new(&scene).unwrap();
+        let caster = RayCaster::new(&object).unwrap();
         let [low, high] = caster.bounds().unwrap();
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let mut random = Random(7);

@@ -1,5 +1,6 @@
 //! Checks the contour against its definition: it separates the points with `F < 0` from the others.
 
+use crate::common::rays::guards;
 use crate::common::samples;
 use crate::common::shapes::offset;
 use glam::DVec2;
@@ -8,13 +9,13 @@ use revmap::error::ErrorKind;
 use revmap::profile::Outline;
 use revmap::scene::Offset;
 use revmap::surface::{
-    Contour, ContourSource, FitOptions, MOST_SEGMENTS, QuadricPatch, ROWS, Tables, fit_patches,
+    Contour, ContourSource, FitOptions, MOST_SEGMENTS, ROWS, Tables, fit_patches,
 };
 
-/// Returns true if a point of the quadric belongs to the patch.
-fn guards(patch: &QuadricPatch, square: f64, z: f64) -> bool {
-    let [cz, cr, low, high] = patch.guard;
-    (low..=high).contains(&(cz * z + cr * square))
+fn outline(loops: &[&[[f64; 2]]]) -> Outline {
+    let points = |l: &&[[f64; 2]]| l.iter().map(|p| DVec2::from(*p)).collect();
+    let loops = loops.iter().map(points).collect();
+    Outline { loops }
 }
 
 /// Twice the winding number of the boundary round a point, with the axis as boundary: 2 inside.
@@ -109,17 +110,11 @@ fn tips_on_the_axis() {
         [[0.4, 0.25], [0.4, 0.75], [0.0, 0.5]],
         [[0.3, 0.2], [0.45, 0.9], [0.0, 0.6]],
     ];
-    let points = |all: &[[f64; 2]; 3]| all.map(DVec2::from).to_vec();
     let whole = [[0.0, 0.0], [0.48, 0.0], [0.48, 1.0], [0.0, 1.0]];
-    for tip in &tips {
-        let solid = Outline {
-            loops: vec![points(tip)],
-        };
-        let mut hole = points(tip);
-        hole.reverse();
-        let cavity = Outline {
-            loops: vec![whole.map(DVec2::from).to_vec(), hole],
-        };
+    for tip in tips {
+        let solid = outline(&[&tip]);
+        let [a, b, c] = tip;
+        let cavity = outline(&[&whole, &[c, b, a]]);
         for extend in [-0.06, -0.03, -0.01, 0.02, 0.08] {
             sound(&solid, offset(extend, 0.0, 1.0)).unwrap();
             sound(&cavity, offset(extend, 0.0, 1.0)).unwrap();
@@ -133,13 +128,10 @@ fn tips_on_the_axis() {
 /// conic is at its far end.
 #[test]
 fn far_ends_of_thin_ellipses() {
-    let loops = |all: [&[[f64; 2]]; 2]| all.map(|l| l.iter().map(|p| DVec2::from(*p)).collect());
     for (tip, top) in [(0.99, 0.52), (0.99, 0.74), (0.9, 0.4)] {
         let spike = [[0.4, tip], [0.41085, 1.0], [0.38915, 1.0]];
         let below = [[0.0, 0.1], [0.45, 0.1], [0.45, top], [0.0, top]];
-        let outline = Outline {
-            loops: loops([&spike, &below]).to_vec(),
-        };
+        let outline = outline(&[&spike, &below]);
         for bevel in [0.9, 0.93, 0.95, 0.97, 0.99, 0.999] {
             sound(&outline, offset(0.0, bevel, 1.0)).unwrap();
         }
@@ -175,12 +167,9 @@ fn fine_patterns_under_wide_offsets() {
     let cell = |n: u32| {
         let low = DVec2::new(f64::from(n % across), f64::from(n / across)) * size;
         let corner = |x: f64, y: f64| low + DVec2::new(x, y) * size;
-        vec![
-            corner(0.0, 0.0),
-            corner(1.0, 0.0),
-            corner(1.0, 1.0),
-            corner(0.0, 1.0),
-        ]
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            .map(|(x, y)| corner(x, y))
+            .to_vec()
     };
     let outline = Outline {
         loops: dark.map(cell).collect(),
@@ -289,23 +278,18 @@ fn rows_and_nodes_contain_their_patches() {
 #[test]
 fn loops_that_touch() {
     let touch = [0.23830707371234894, 0.5634481739252806];
-    let loops = [
-        vec![
-            [0.20953533789503118, 0.6242880245839505],
-            [0.03897609827147791, 0.7395282681200596],
-            [0.19750422514226482, 0.4783838381214222],
-            touch,
-        ],
-        vec![
-            [0.349583290704926, 0.7954328951334169],
-            touch,
-            [0.450701805896659, 0.11432463201705488],
-        ],
+    let first = [
+        [0.20953533789503118, 0.6242880245839505],
+        [0.03897609827147791, 0.7395282681200596],
+        [0.19750422514226482, 0.4783838381214222],
+        touch,
     ];
-    let points = |l: Vec<[f64; 2]>| l.into_iter().map(DVec2::from).collect();
-    let outline = Outline {
-        loops: loops.map(points).into(),
-    };
+    let second = [
+        [0.349583290704926, 0.7954328951334169],
+        touch,
+        [0.450701805896659, 0.11432463201705488],
+    ];
+    let outline = outline(&[&first, &second]);
     for extend in [0.005, 0.02, 0.042754879734338364, 0.06] {
         sound(&outline, offset(extend, 0.0, 1.0)).unwrap();
     }
@@ -325,10 +309,7 @@ fn flat_patches_end() {
                 [inner, 0.3],
                 [outer, 0.3],
             ];
-            let outline = Outline {
-                loops: vec![points.map(DVec2::from).to_vec()],
-            };
-            let source = ContourSource::new(&outline).unwrap();
+            let source = ContourSource::new(&outline(&[&points])).unwrap();
             let contour = source.contour(&Offset::default()).unwrap();
             for patch in fit_patches(&contour, &FitOptions::default()) {
                 let run = patch.end - patch.start;

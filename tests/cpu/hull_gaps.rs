@@ -2,13 +2,11 @@
 //! All is computed in double precision, so that no rounding excuses a lost ray.
 
 use crate::common::outlines::outline;
-use crate::common::rays::{Random, count};
+use crate::common::rays::{Random, count, enters_frustum, eye_around, guards, hull};
 use glam::{DVec2, DVec3};
 use revmap::profile::Profile;
 use revmap::scene::Offset;
-use revmap::surface::{
-    ContourSource, FitOptions, ProxyHull, ProxyHullOptions, QuadricPatch, fit_patches,
-};
+use revmap::surface::{ContourSource, FitOptions, Frustum, ProxyHull, QuadricPatch, fit_patches};
 use std::f64::consts::TAU;
 
 /// Height beyond floor and ceiling from which on guards admit other sheets of a quadric.
@@ -17,12 +15,6 @@ const HEIGHT_SLACK: f64 = 1e-3;
 /// Distance by which a ray is moved aside in all directions: only rays that hit the same patch then
 /// are tested.
 const ASIDE: f64 = 2e-5;
-
-/// True if a point of a patch's quadric is on the patch.
-fn guards(patch: &QuadricPatch, square: f64, z: f64) -> bool {
-    let [cz, cr, low, high] = patch.guard;
-    (low..=high).contains(&(cz * z + cr * square))
-}
 
 struct Solid {
     patches: Vec<QuadricPatch>,
@@ -39,11 +31,7 @@ impl Solid {
         let source = ContourSource::new(&profile.outline).unwrap();
         let contour = source.contour(&Offset::default()).ok()?;
         let patches = fit_patches(&contour, &FitOptions::default());
-        let options = ProxyHullOptions {
-            patches_per_cell,
-            ..ProxyHullOptions::default()
-        };
-        let hull = ProxyHull::new(&patches, &options);
+        let hull = hull(&patches, patches_per_cell);
         Some(Self { patches, hull })
     }
 
@@ -56,24 +44,11 @@ impl Solid {
 
     /// The nearest hit of the fragments of a ray.
     fn fragment(&self, o: DVec3, v: DVec3) -> Option<f64> {
-        let n = self.hull.sides as usize;
-        let step = |k: usize| DVec2::from_angle(TAU * k as f64 / n as f64);
-        let circle: Vec<DVec2> = (0..=n).map(step).collect();
-        let mut best: Option<f64> = None;
-        for frustum in &self.hull.frusta {
-            let corner = |k: usize, [r, z]: [f32; 2]| (circle[k] * f64::from(r)).extend(z.into());
-            let entered = (0..n).any(|k| {
-                let [a, b] = [k, k + 1].map(|k| corner(k, frustum.from));
-                let [c, d] = [k, k + 1].map(|k| corner(k, frustum.to));
-                enters(o, v, [a, b, d]) || enters(o, v, [a, d, c])
-            });
-            if entered {
-                let cell = &self.patches[frustum.first as usize..][..frustum.count as usize];
-                let hits = cell.iter().filter_map(|p| root(p, o, v));
-                best = hits.chain(best).min_by(f64::total_cmp);
-            }
-        }
-        best
+        let entered = |f: &&Frustum| enters_frustum(f, self.hull.sides, o, v);
+        let cell = |f: &Frustum| &self.patches[f.first as usize..][..f.count as usize];
+        let cells = self.hull.frusta.iter().filter(entered).map(cell);
+        let hits = cells.flatten().filter_map(|p| root(p, o, v));
+        hits.min_by(f64::total_cmp)
     }
 
     /// Rays at points close to joints, from eyes around: how many hit and how many of these are
@@ -81,9 +56,7 @@ impl Solid {
     fn lost(&self, rays: usize, random: &mut Random) -> (usize, usize, String) {
         let (mut hits, mut lost, mut place) = (0, 0, String::new());
         for _ in 0..rays {
-            let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
-            let (y, x) = (random.next() * TAU).sin_cos();
-            let o = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
+            let o = eye_around(random, 1.55);
             let patch = &self.patches[(random.next() * self.patches.len() as f64) as usize];
             let way = (0.02 * random.next() / patch.start.distance(patch.end)).min(1.0);
             let way = if random.next() < 0.5 { way } else { 1.0 - way };
@@ -132,13 +105,6 @@ fn root(patch: &QuadricPatch, o: DVec3, v: DVec3) -> Option<f64> {
         && (-HEIGHT_SLACK..=1.0 + HEIGHT_SLACK).contains(&p.z)
         && guards(patch, flat(p, p), p.z);
     is_hit.then_some(t)
-}
-
-/// True if a ray passes a triangle against its normal.
-fn enters(o: DVec3, v: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let normal = (b - a).cross(c - a);
-    let side = |p: DVec3, q: DVec3| (q - o).cross(p - o).dot(v) >= 0.0;
-    normal.dot(v) < 0.0 && normal.dot(a - o) < 0.0 && side(a, b) && side(b, c) && side(c, a)
 }
 
 /// Random outlines. Of 600, shells without walls at the level of their joints, without the inner rims

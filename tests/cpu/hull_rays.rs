@@ -1,15 +1,13 @@
 //! Hulls on the CPU, ray by ray: every hit is in a cell whose triangles the ray enters, and nothing
 //! that hulls leave out is visible.
 
-use crate::common::rays::{Random, count, profiles};
+use crate::common::rays::{self, Random, count, enters_frustum, eye_around, profiles};
 use crate::common::shapes;
 use glam::{DVec2, DVec3};
 use revmap::cast::RayCaster;
 use revmap::profile::{Outline, Profile};
 use revmap::scene::{Clip, Object, Offset};
-use revmap::surface::{
-    ContourSource, FitOptions, Frustum, ProxyHull, ProxyHullOptions, QuadricPatch, fit_patches,
-};
+use revmap::surface::{ContourSource, FitOptions, Frustum, ProxyHull, QuadricPatch, fit_patches};
 
 /// A solid's boundary, for rays and for hulls.
 struct Boundary {
@@ -33,11 +31,7 @@ impl Boundary {
     }
 
     fn hull(&self, patches_per_cell: u32) -> ProxyHull {
-        let options = ProxyHullOptions {
-            patches_per_cell,
-            ..ProxyHullOptions::default()
-        };
-        ProxyHull::new(&self.patches, &options)
+        rays::hull(&self.patches, patches_per_cell)
     }
 
     /// `None` if a ray hits nothing, else whether it enters a triangle of the hit's cell.
@@ -63,37 +57,6 @@ fn is_on(patch: &QuadricPatch, p: DVec2) -> bool {
     value.abs() < 1e-5 * patch.gradient(p).length() && (low - slack..=high + slack).contains(&place)
 }
 
-/// Returns true if a ray passes a triangle of a frustum against its normal.
-fn enters_frustum(frustum: &Frustum, sides: u32, o: DVec3, v: DVec3) -> bool {
-    let corner = |step: u32, [r, z]: [f32; 2]| {
-        let angle = std::f64::consts::TAU * f64::from(step) / f64::from(sides);
-        (DVec2::from_angle(angle) * f64::from(r)).extend(f64::from(z))
-    };
-    (0..sides).any(|n| {
-        let [a, b] = [n, n + 1].map(|step| corner(step, frustum.from));
-        let [c, d] = [n, n + 1].map(|step| corner(step, frustum.to));
-        enters(o, v, [a, b, d]) || enters(o, v, [a, d, c])
-    })
-}
-
-/// Returns true if a ray passes a triangle against its normal.
-fn enters(o: DVec3, v: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let normal = (b - a).cross(c - a);
-    if normal.dot(v) >= 0.0 || normal.dot(a - o) >= 0.0 {
-        return false;
-    }
-    let side = |p: DVec3, q: DVec3| (q - o).cross(p - o).dot(v);
-    let (x, y, z) = (side(a, b), side(b, c), side(c, a));
-    x >= 0.0 && y >= 0.0 && z >= 0.0
-}
-
-/// An eye anywhere around a solid.
-fn eye_around(random: &mut Random) -> DVec3 {
-    let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.55).sin_cos();
-    let (y, x) = (random.next() * 6.3).sin_cos();
-    DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5
-}
-
 /// Asserts that at most one hit in a thousand is lost: rounding decides at silhouettes.
 #[track_caller]
 fn assert_covered(what: &str, covered: impl Iterator<Item = Option<bool>>) {
@@ -117,7 +80,7 @@ fn hulls_lose_no_ray() {
             for tests in [1, 3] {
                 let (hull, mut random) = (boundary.hull(tests), Random(11));
                 let covered = (0..count).map(|_| {
-                    let origin = eye_around(&mut random);
+                    let origin = eye_around(&mut random, 1.55);
                     let [x, y, z] = [random.next(), random.next(), random.next()];
                     let direction = DVec3::new(x - 0.5, y - 0.5, z) - origin;
                     boundary.is_covered(&hull, origin, direction.normalize())
@@ -258,7 +221,7 @@ fn rims_and_ledges_lose_no_ray() {
         for tests in [2, 3, 4, 5, 8] {
             let hull = boundary.hull(tests);
             let covered = (0..count(3000)).map(|_| {
-                let origin = eye_around(&mut random);
+                let origin = eye_around(&mut random, 1.55);
                 // A point within a hundredth of a joint, a quarter of a texel under the surface. A
                 // ray at the surface itself may be at a silhouette.
                 let patch = &patches[(random.next() * patches.len() as f64) as usize];

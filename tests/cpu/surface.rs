@@ -1,6 +1,6 @@
 //! Compares quadric patches with the reference in double precision, ray by ray.
 
-use crate::common::rays::{Random, count, profiles};
+use crate::common::rays::{Random, count, eye_around, profiles};
 use crate::common::shapes::offset;
 use glam::{DVec2, DVec3};
 use revmap::cast::RayCaster;
@@ -53,9 +53,7 @@ fn against(
     let mut tally = Tally::default();
     let mut random = Random(7);
     for _ in 0..count {
-        let (sin, cos) = ((random.next() * 2.0 - 1.0) * 1.3).sin_cos();
-        let (y, x) = (random.next() * 6.3).sin_cos();
-        let origin = DVec3::new(x * cos, y * cos, sin) * 2.2 + DVec3::Z * 0.5;
+        let origin = eye_around(&mut random, 1.3);
         let [x, y, z] = [random.next(), random.next(), random.next()];
         let across = DVec2::new(x * 2.0 - 1.0, y * 2.0 - 1.0) * profile.radius;
         let target = across.extend(z);

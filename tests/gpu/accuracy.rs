@@ -1,11 +1,7 @@
 //! Pictures of circle tracing compared with the reference in double precision. `revmap stability` has
 //! unusual viewpoints.
 
-use crate::common::ways::STAGES;
-use crate::common::{draw, errors, eye, placement, reference, scene_of, shapes, sized};
-use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{Planes, Settings};
-use revmap_searches::CIRCLE;
+use crate::common::prelude::*;
 
 fn precise() -> Settings {
     Settings {

@@ -1,16 +1,7 @@
 //! Fragment and compute pictures of one scene are equal bit for bit, in every channel: also with all
 //! textures, bumps and offsets.
 
-use crate::common::{
-    assert_sound, draw, eye, from_boxes, hits, in_compute, offset, placement, scene_of, shapes,
-    sized,
-};
-use glam::DVec3;
-use revmap::maps::{ColorMap, DisplacementMap, MapFormat, Projection, SlopeFilter};
-use revmap::scene::{BumpForm, Camera, Object, Offset, Scene, Shadow, Texturing};
-use revmap::settings::{Settings, Solver};
-use revmap_searches::CIRCLE;
-use std::sync::Arc;
+use crate::common::prelude::*;
 
 /// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
 /// is within an object.
@@ -102,10 +93,7 @@ fn fragment_and_compute_agree_bit_for_bit() {
         if let Some(difference) = fragment.first_difference(&compute) {
             panic!("{name}, {solver:?}: {difference}");
         }
-        let culling = Settings {
-            occlusion_culling: true,
-            ..in_compute(settings)
-        };
+        let culling = in_compute(settings).with(|s| s.occlusion_culling = true);
         let mut culled = draw(scene, &culling);
         fragment.steps.fill(0.0);
         culled.steps.fill(0.0);
@@ -132,10 +120,7 @@ fn shadowed_copies_of_two_looks_agree() {
         };
         object.instances = (-1..2).map(copy).collect();
     }
-    let settings = from_boxes(Settings {
-        solver: Solver::Exact,
-        ..sized(320, 240)
-    });
+    let settings = from_boxes(sized(320, 240).with(|s| s.solver = Solver::Exact));
     let mut fragment = draw(&scene, &settings);
     let mut compute = draw(&scene, &in_compute(settings));
     assert!(hits(&fragment) > 10_000);
@@ -150,10 +135,7 @@ fn shadowed_copies_of_two_looks_agree() {
 #[test]
 fn one_changed_bit_is_noticed() {
     let (_, scene) = scenes().remove(0);
-    let settings = Settings {
-        solver: Solver::Quadric,
-        ..sized(64, 48)
-    };
+    let settings = sized(64, 48).with(|s| s.solver = Solver::Quadric);
     let fragment = draw(&scene, &settings);
     let mut other = fragment.clone();
     let hit = other.distance.iter().position(|d| d.is_finite()).unwrap();

@@ -1,18 +1,10 @@
-//! Adaptive rays come to the colours of 64. Silhouette smoothing on a device equals smoothing a frame afterwards: in both stages, for one
-//! object and several, with colour only and with all planes.
+//! Adaptive rays come to the colours of 64. Silhouette smoothing on a device equals smoothing a frame
+//! afterwards: in both stages, for one object and several, with colour only and with all planes.
 
-use crate::common::ways::STAGES;
-use crate::common::{device, draw, drawn_by, eye, scene_of, shapes};
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use revmap_offscreen::adaptive::{Adaptive, Refined};
 use revmap_offscreen::antialias::silhouettes;
 use revmap_offscreen::samples::averaged;
-use std::sync::Arc;
 
 fn settings(stage: DrawStage, planes: Planes, antialias: bool) -> Settings {
     Settings {

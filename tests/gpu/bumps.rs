@@ -1,14 +1,7 @@
 //! Bump mapping compared with the normal of the truly displaced surface, for every projection.
 
-use crate::common::{draw, eye, placement, scene_of, sized};
-use glam::{DVec2, DVec3};
-use revmap::frame::Frame;
-use revmap::maps::{ArcLength, DisplacementMap, MapFormat, Projection};
-use revmap::profile::Profile;
-use revmap::scene::{CameraFrame, Scene};
-use revmap::settings::Settings;
+use crate::common::prelude::*;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// Lower and upper rim of a cup's outside: the tested surface is exactly this cone.
 const RIMS: [[f64; 2]; 2] = [[0.22, 0.08], [0.4, 0.92]];
@@ -107,10 +100,7 @@ fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
             scene.objects[0].placement = placement;
             scene.objects[0].texturing.projection = projection;
             scene.objects[0].texturing.displacement_map = Some(slopes.clone());
-            let settings = Settings {
-                map_format: MapFormat::R32,
-                ..sized(160, 120)
-            };
+            let settings = sized(160, 120).with(|s| s.map_format = MapFormat::R32);
             let depths = [0.08, 0.04, 0.02];
             let errors = depths.map(|a| {
                 scene.objects[0].texturing.bump = a;

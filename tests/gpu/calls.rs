@@ -1,10 +1,16 @@
 //! A test layer between the renderer and Vulkan. It can make calls of a borrowed device fail, and
 //! can report a poorer physical device than the real one. The renderer is unaware of it.
 
+use crate::common::host::{Host, borrow_through};
 use ash::vk;
+use revmap::gpu::Device;
 use std::ffi::{CStr, c_void};
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+#[path = "least_limits.rs"]
+mod least_limits;
+use least_limits::least_limits;
 
 /// One machine word: a handle, a pointer or a number. Each wrapped function takes at most six.
 /// Every 64-bit calling convention passes them in the same places whatever their type (on Windows
@@ -223,6 +229,14 @@ impl Layer {
         *MASK.lock().unwrap() = mask;
         planted_instance(entry, instance, queries)
     }
+
+    /// The host's device, with less than it has.
+    pub fn poorer(&self, host: &Host, change: impl FnOnce(&mut Mask)) -> revmap::Result<Device> {
+        let mut mask = Mask::default();
+        change(&mut mask);
+        let instance = self.instance(&host.entry, &host.instance, mask);
+        borrow_through(host, &instance, &host.device)
+    }
 }
 
 /// A device whose functions `plant` may replace: it gets their names and the driver's own. Those in
@@ -273,94 +287,6 @@ pub struct Mask {
     pub storage: u32,
     /// The least limits of Vulkan 1.2, with a change.
     pub limits: Option<fn(&mut vk::PhysicalDeviceLimits)>,
-}
-
-/// The limits that Vulkan 1.2 guarantees (table "Required Limits" of the specification), and no more.
-/// Alignments are the largest. Limits of features that are off are left out: those of tessellation,
-/// geometry, clip distances and sparse memory.
-pub fn least_limits() -> vk::PhysicalDeviceLimits {
-    use vk::SampleCountFlags as Count;
-    let four = Count::TYPE_1 | Count::TYPE_4;
-    vk::PhysicalDeviceLimits {
-        max_image_dimension1_d: 4096,
-        max_image_dimension2_d: 4096,
-        max_image_dimension3_d: 256,
-        max_image_dimension_cube: 4096,
-        max_image_array_layers: 256,
-        max_texel_buffer_elements: 65_536,
-        max_uniform_buffer_range: 16_384,
-        max_storage_buffer_range: 1 << 27,
-        max_push_constants_size: 128,
-        max_memory_allocation_count: 4096,
-        max_sampler_allocation_count: 4000,
-        buffer_image_granularity: 131_072,
-        max_bound_descriptor_sets: 4,
-        max_per_stage_descriptor_samplers: 16,
-        max_per_stage_descriptor_uniform_buffers: 12,
-        max_per_stage_descriptor_storage_buffers: 4,
-        max_per_stage_descriptor_sampled_images: 16,
-        max_per_stage_descriptor_storage_images: 4,
-        max_per_stage_descriptor_input_attachments: 4,
-        max_per_stage_resources: 128,
-        max_descriptor_set_samplers: 96,
-        max_descriptor_set_uniform_buffers: 72,
-        max_descriptor_set_uniform_buffers_dynamic: 8,
-        max_descriptor_set_storage_buffers: 24,
-        max_descriptor_set_storage_buffers_dynamic: 4,
-        max_descriptor_set_sampled_images: 96,
-        max_descriptor_set_storage_images: 24,
-        max_descriptor_set_input_attachments: 4,
-        max_vertex_input_attributes: 16,
-        max_vertex_input_bindings: 16,
-        max_vertex_input_attribute_offset: 2047,
-        max_vertex_input_binding_stride: 2048,
-        max_vertex_output_components: 64,
-        max_fragment_input_components: 64,
-        max_fragment_output_attachments: 4,
-        max_fragment_combined_output_resources: 4,
-        max_compute_shared_memory_size: 16_384,
-        max_compute_work_group_count: [65_535; 3],
-        max_compute_work_group_invocations: 128,
-        max_compute_work_group_size: [128, 128, 64],
-        sub_pixel_precision_bits: 4,
-        sub_texel_precision_bits: 4,
-        mipmap_precision_bits: 4,
-        max_draw_indexed_index_value: (1 << 24) - 1,
-        max_draw_indirect_count: 1,
-        max_sampler_lod_bias: 2.0,
-        max_sampler_anisotropy: 1.0,
-        max_viewports: 1,
-        max_viewport_dimensions: [4096; 2],
-        viewport_bounds_range: [-8192.0, 8191.0],
-        min_memory_map_alignment: 64,
-        min_texel_buffer_offset_alignment: 256,
-        min_uniform_buffer_offset_alignment: 256,
-        min_storage_buffer_offset_alignment: 256,
-        min_texel_offset: -8,
-        max_texel_offset: 7,
-        max_framebuffer_width: 4096,
-        max_framebuffer_height: 4096,
-        max_framebuffer_layers: 256,
-        framebuffer_color_sample_counts: four,
-        framebuffer_depth_sample_counts: four,
-        framebuffer_stencil_sample_counts: four,
-        framebuffer_no_attachments_sample_counts: four,
-        max_color_attachments: 4,
-        sampled_image_color_sample_counts: four,
-        sampled_image_integer_sample_counts: Count::TYPE_1,
-        sampled_image_depth_sample_counts: four,
-        sampled_image_stencil_sample_counts: four,
-        storage_image_sample_counts: Count::TYPE_1,
-        max_sample_mask_words: 1,
-        timestamp_period: 1.0,
-        discrete_queue_priorities: 2,
-        point_size_range: [1.0; 2],
-        line_width_range: [1.0; 2],
-        optimal_buffer_copy_offset_alignment: 256,
-        optimal_buffer_copy_row_pitch_alignment: 256,
-        non_coherent_atom_size: 256,
-        ..Default::default()
-    }
 }
 
 static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);

@@ -1,10 +1,7 @@
 //! Boxes that grow with the offset (`clip = "none"`), compared with the reference, which only moves
 //! the box's faces; and boxes that cut (`clip = "box"`).
 
-use crate::common::{draw, drawn_by, errors, eye, offset, placement, reference, scene_of, shapes};
-use revmap::profile::{Profile, Raster};
-use revmap::scene::{Clip, Growth, Object, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
+use crate::common::prelude::*;
 
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
     drawn_by((200, 150), stage, solver)

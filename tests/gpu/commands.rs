@@ -3,15 +3,9 @@
 
 use crate::calls::{above, planted_device};
 use crate::common::host::{HostBuffer, assert_silent, barrier, borrow_through, once, open};
-use crate::common::{placement, scene_of, shapes};
-use ash::vk;
-use glam::DVec3;
-use revmap::gpu::Device;
-use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Planes, Settings, Tolerance};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use std::ffi::c_void;
-use std::sync::{Arc, Mutex};
+use std::sync::{Mutex, PoisonError};
 
 /// Counts calls of commands and passes them on.
 macro_rules! counted {
@@ -81,11 +75,7 @@ fn field(objects: u32, copies: u32) -> Scene {
     let side = f64::from(objects * copies).sqrt().ceil() as u32;
     let place = |n: u32| {
         let at = |k: u32| 8.0 * (f64::from(k) + 0.5) / f64::from(side) - 4.0;
-        placement(
-            [at(n % side), at(n / side), 0.0],
-            [0.0; 3],
-            [4.0 / f64::from(side); 3],
-        )
+        scaled([at(n % side), at(n / side), 0.0], 4.0 / f64::from(side))
     };
     scene.objects = (0..objects)
         .map(|n| {
@@ -137,9 +127,7 @@ fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
 
 #[test]
 fn commands_follow_pipelines() {
-    let _one = ONE
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let host = open();
     let raw = planted_device(&host.instance, &host.device, layer);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
@@ -167,10 +155,8 @@ fn commands_follow_pipelines() {
         assert!(all(&many) <= all(&some), "{some:?}, {many:?}");
         // One copy beyond the limit for proxies must not cause a jump in commands.
         let (below, above) = (of(1, 64), of(1, 65));
-        assert!(
-            all(&below).abs_diff(all(&above)) <= 4,
-            "{below:?}, {above:?}"
-        );
+        let step = all(&below).abs_diff(all(&above));
+        assert!(step <= 4, "{below:?}, {above:?}");
     }
     drop(device);
     assert_silent(&host);
@@ -179,9 +165,7 @@ fn commands_follow_pipelines() {
 /// An update recorded through the layer is counted and takes effect in the buffer.
 #[test]
 fn an_update_is_noticed() {
-    let _one = ONE
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let host = open();
     let raw = planted_device(&host.instance, &host.device, layer);
     let words = HostBuffer::of(&host, &[0u32; 4], vk::BufferUsageFlags::TRANSFER_DST).unwrap();

@@ -1,27 +1,14 @@
 //! Crowds: copies proven hidden are left out, and no pixel changes.
 
-use crate::common::ways::{STAGES, apart};
-use crate::common::{device, next_frame, shapes, updated};
-use glam::{DQuat, DVec3};
-use revmap::frame::Frame;
-use revmap::gpu::DrawPath;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Copies, Light, Object, Placement, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
+use crate::common::ways::apart;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Positions that are irregular but evenly distributed.
 fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
     (0..count).map(move |k| {
         let part = |step: f64| (f64::from(k + 1000 * seed) * step).fract();
-        [
-            part(0.754_877_666),
-            part(0.569_840_291),
-            part(0.618_034),
-            part(0.414_214),
-        ]
+        [0.754_877_666, 0.569_840_291, 0.618_034, 0.414_214].map(part)
     })
 }
 
@@ -51,10 +38,8 @@ pub fn crowd(profiles: Vec<Profile>, count: u32) -> Scene {
 }
 
 pub fn army(count: u32) -> Scene {
-    crowd(
-        vec![shapes::sphere(), shapes::vase(), shapes::cone()],
-        count,
-    )
+    let profiles = vec![shapes::sphere(), shapes::vase(), shapes::cone()];
+    crowd(profiles, count)
 }
 
 fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
@@ -75,10 +60,7 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
 
 /// The same settings without lists of patches.
 pub fn by_tree(stage: DrawStage, occlusion_culling: bool) -> Settings {
-    Settings {
-        solver: Solver::Quadric,
-        ..settings(stage, occlusion_culling)
-    }
+    settings(stage, occlusion_culling).with(|s| s.solver = Solver::Quadric)
 }
 
 pub fn draw(scene: &Scene, settings: &Settings) -> Frame {
@@ -118,34 +100,18 @@ fn assert_near(a: &Frame, b: &Frame, what: &str) {
 
 /// Views from within, from above, from straight above and from afar, where most copies are smaller
 /// than a pixel.
-pub const VIEWS: [(&str, DVec3, DVec3); 4] = [
-    (
-        "within",
-        DVec3::new(0.0, 0.0, 0.9),
-        DVec3::new(6.0, 6.0, 0.4),
-    ),
-    (
-        "above",
-        DVec3::new(-5.0, -4.0, 7.0),
-        DVec3::new(5.0, 5.0, 0.0),
-    ),
-    (
-        "straight down",
-        DVec3::new(5.0, 5.0, 9.0),
-        DVec3::new(5.0, 5.01, 0.0),
-    ),
-    (
-        "afar",
-        DVec3::new(-70.0, -50.0, 30.0),
-        DVec3::new(5.0, 5.0, 0.0),
-    ),
+pub const VIEWS: [(&str, [f64; 3], [f64; 3]); 4] = [
+    ("within", [0.0, 0.0, 0.9], [6.0, 6.0, 0.4]),
+    ("above", [-5.0, -4.0, 7.0], [5.0, 5.0, 0.0]),
+    ("straight down", [5.0, 5.0, 9.0], [5.0, 5.01, 0.0]),
+    ("afar", [-70.0, -50.0, 30.0], [5.0, 5.0, 0.0]),
 ];
 
 /// A scene from each of these views.
 pub fn seen(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> {
     VIEWS.into_iter().map(|(name, eye, target)| {
         let mut scene = scene.clone();
-        (scene.camera.eye, scene.camera.target) = (eye, target);
+        (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
         (name, scene)
     })
 }
@@ -181,10 +147,8 @@ fn culled_copies_are_not_missed() {
             .collect();
         let hit = frames[0].distance.iter().filter(|d| d.is_finite()).count();
         assert!(hit > 50, "{name}: {hit} pixels");
-        for (frame, what) in frames[1..]
-            .iter()
-            .zip(["fragment, all", "compute", "compute, all"])
-        {
+        let others = ["fragment, all", "compute", "compute, all"];
+        for (frame, what) in frames[1..].iter().zip(others) {
             assert_same_bits(&frames[0], frame, &format!("{name}: {what}"));
         }
         for cull in [true, false] {
@@ -204,16 +168,13 @@ fn culled_copies_are_not_missed() {
 fn a_crowd_is_as_many_single_objects() {
     let scene = army(40);
     let mut single = scene.clone();
-    single.objects = scene
-        .objects
-        .iter()
-        .flat_map(|object| {
-            object.instances.iter().map(|placement| Object {
-                placement: *placement,
-                instances: Copies::default(),
-                ..object.clone()
-            })
-        })
+    let alone = |object: &Object| {
+        let object = object.clone().with(|o| o.instances = Copies::default());
+        move |placement: &Placement| object.clone().with(|o| o.placement = *placement)
+    };
+    let objects = scene.objects.iter();
+    single.objects = objects
+        .flat_map(|o| o.instances.iter().map(alone(o)))
         .collect();
     for stage in STAGES {
         let settings = by_tree(stage, true);
@@ -245,11 +206,9 @@ fn hidden_copies_throw_shadows_and_come_back() {
         }
         // One object changes, and so does the part of the others that it hides.
         scene.objects[1].instances.truncate(3);
-        (scene.camera.eye, scene.camera.target) = (VIEWS[3].1, VIEWS[3].2);
-        let (fewer, fresh) = (
-            updated(&mut offscreen, &scene),
-            draw(&scene, &settings(stage, true)),
-        );
+        (scene.camera.eye, scene.camera.target) = (VIEWS[3].1.into(), VIEWS[3].2.into());
+        let fewer = updated(&mut offscreen, &scene);
+        let fresh = draw(&scene, &settings(stage, true));
         assert_same_bits(&fewer, &fresh, &format!("{stage:?}, fewer"));
     }
     device().check().unwrap();

@@ -2,14 +2,10 @@
 //! that of `examples/host`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Mesh, Options, Stage, borrow, frame, open, order, viewport};
-use crate::common::{eye, next_frame, scene_of, shapes, sized};
-use glam::{DMat4, DVec2, DVec3, Vec3};
-use revmap::gpu::{Device, Renderer, View};
-use revmap::scene::{Camera, CameraFrame, Clip, Lighting, Object, Placement, Scene, Shadow};
-use revmap::settings::{Planes, SearchSettings, Settings};
-use revmap_files::Picture;
-use revmap_offscreen::Offscreen;
+use crate::common::host::{
+    self, Attachments, Host, Mesh, Options, Stage, UniformSet, frame, opened, order, viewport,
+};
+use crate::common::prelude::*;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
@@ -25,6 +21,11 @@ pub fn options() -> Options {
 
 pub fn renderer(device: &Device, stage: &Stage) -> Renderer {
     host::renderer(device, stage, &SearchSettings::exact(), host::FRAMES)
+}
+
+/// The matrices of a scene's camera.
+pub fn matrices(scene: &Scene) -> [DMat4; 2] {
+    host::view_and_projection(scene.camera.eye, scene.camera.target, &options())
 }
 
 pub fn three() -> Scene {
@@ -43,10 +44,9 @@ pub fn three() -> Scene {
 /// The same scene with a hundred copies of the ball.
 pub fn hundred() -> Scene {
     let mut scene = three();
-    let place = |n: u32| Placement {
-        position: DVec3::new(f64::from(n / 10) * -0.4, f64::from(n % 10) * 0.3 - 1.5, 0.0),
-        scale: DVec3::splat(0.4),
-        ..Placement::default()
+    let place = |n: u32| {
+        let (x, y) = (f64::from(n / 10), f64::from(n % 10));
+        scaled([-0.4 * x, 0.3 * y - 1.5, 0.0], 0.4)
     };
     scene.objects[1].instances = (0..100).map(place).collect();
     scene
@@ -90,6 +90,36 @@ pub fn every_way() -> Vec<(&'static str, Scene)> {
     ]
 }
 
+/// Bytes of colours, if a picture has any, and depths.
+pub type Picture = (Vec<u8>, Vec<f32>);
+
+/// The first frame of a renderer in a pass of these attachments, or in compute over far pixels.
+pub fn first_frame(
+    host: &Host,
+    options: Options,
+    formats: Option<&[(vk::Format, usize)]>,
+    (renderer, view): (&mut Renderer, &View),
+    set: Option<&UniformSet>,
+) -> Picture {
+    let Some(formats) = formats else {
+        let words = host::draw_words(host, &far_words(&options), renderer, view, set);
+        let (depths, colors) = words.split_at(words.len() / 2);
+        let depths = depths.iter().map(|bits| f32::from_bits(*bits));
+        return (bytemuck::cast_slice(colors).to_vec(), depths.collect());
+    };
+    let into = Attachments::new(host, options, formats).unwrap();
+    let clears = vec![vk::ClearColorValue::default(); formats.len()];
+    host::draw_into(host, &into, &clears, renderer, view, set);
+    let color = formats.first().map(|_| into.color(0));
+    (color.unwrap_or_default(), into.depths())
+}
+
+/// Words of depths, all far, then of colours, all 0.
+pub fn far_words(options: &Options) -> Vec<u32> {
+    let pixels = (options.width * options.height) as usize;
+    [vec![1f32.to_bits(); pixels], vec![0; pixels]].concat()
+}
+
 /// The host's picture of this scene only, from the off-screen camera.
 pub fn drawn(
     host: &Host,
@@ -97,7 +127,7 @@ pub fn drawn(
     options: Options,
     scene: &Scene,
     view: &View,
-) -> (Vec<u8>, Vec<f32>) {
+) -> Picture {
     drawn_by(host, device, options, scene, view, &SearchSettings::exact())
 }
 
@@ -109,7 +139,7 @@ pub fn drawn_by(
     scene: &Scene,
     view: &View,
     settings: &SearchSettings,
-) -> (Vec<u8>, Vec<f32>) {
+) -> Picture {
     let mut stage = Stage::new(host, options).unwrap();
     let mut renderer = host::renderer(device, &stage, settings, host::FRAMES);
     host::add(&mut renderer, scene);
@@ -121,24 +151,15 @@ pub fn drawn_by(
 
 #[test]
 fn alone_it_draws_the_off_screen_frame() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
-    let settings = Settings {
-        planes: Planes::Color,
-        ..sized(options().width, options().height)
-    };
+    let settings = sized(options().width, options().height).with(|s| s.planes = Planes::Color);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    let wanted = Picture::of(&next_frame(&mut offscreen))
-        .unwrap()
-        .rgba
-        .concat();
+    let wanted = revmap_files::Picture::of(&next_frame(&mut offscreen));
+    let wanted = wanted.unwrap().rgba.concat();
     let view = *offscreen.view();
     for dynamic in [true, false] {
-        let options = Options {
-            dynamic,
-            ..options()
-        };
+        let options = options().with(|o| o.dynamic = dynamic);
         let one = drawn(&host, &device, options, &scene, &view).0;
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
         // All four samples use the ray through the pixel's centre, so pixels away from silhouettes
@@ -167,30 +188,17 @@ fn kind(pixel: &[u8]) -> u8 {
 /// exact formula.
 #[test]
 fn meshes_meet_solids_where_they_should() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (middle, radius, wide) = (DVec3::new(0.35, -0.1, 0.45), 0.3, 0.3);
     let mut object = Object::new("cylinder", shapes::column_of(wide).into());
     object.color = [1.0, 0.0, 0.0];
-    let lighting = Lighting {
-        ambient: [1.0; 3],
-        lights: Vec::new(),
-        ..Lighting::default()
-    };
+    let lighting = Lighting::default().with(|l| (l.ambient, l.lights) = ([1.0; 3], Vec::new()));
     let (from, to) = (DVec3::new(2.6, 0.9, 1.6), DVec3::new(0.0, 0.0, 0.45));
-    for (reversed, dynamic, inside) in [
-        (false, true, false),
-        (false, false, false),
-        (true, true, false),
-        (true, false, false),
-        // An eye within the solid: drawn by the box.
-        (true, true, true),
-    ] {
-        let options = Options {
-            dynamic,
-            reversed,
-            ..options()
-        };
+    let outside = [(false, true), (false, false), (true, true), (true, false)];
+    let outside = outside.map(|(reversed, dynamic)| (reversed, dynamic, false));
+    // An eye within the solid: drawn by the box.
+    for (reversed, dynamic, inside) in outside.into_iter().chain([(true, true, true)]) {
+        let options = options().with(|o| (o.dynamic, o.reversed) = (dynamic, reversed));
         let (from, to) = match inside {
             true => (DVec3::new(-0.1, 0.0, 0.5), DVec3::new(0.3, -0.6, 0.5)),
             false => (from, to),
@@ -260,10 +268,8 @@ fn ball(o: DVec3, v: DVec3, radius: f64) -> f64 {
     let under = b * b - a * c;
     let roots = [(-b - under.sqrt()) / a, (-b + under.sqrt()) / a];
     // The host culls nothing, so an eye within the sphere sees its back.
-    roots
-        .into_iter()
-        .find(|t| *t >= 0.1)
-        .unwrap_or(f64::INFINITY)
+    let seen = roots.into_iter().find(|t| *t >= 0.1);
+    seen.unwrap_or(f64::INFINITY)
 }
 
 /// The nearest hit of the cylinder `x^2 + y^2 <= r^2, 0 <= z <= 1`; its back for an eye within.
@@ -281,7 +287,6 @@ pub fn upright(o: DVec3, v: DVec3, radius: f64) -> f64 {
     if span[0] > span[1] {
         return f64::INFINITY;
     }
-    span.into_iter()
-        .find(|t| *t >= 0.1)
-        .unwrap_or(f64::INFINITY)
+    let seen = span.into_iter().find(|t| *t >= 0.1);
+    seen.unwrap_or(f64::INFINITY)
 }

@@ -1,21 +1,16 @@
 //! Biases of depths, for shadow maps: constant, and by the slope of the surface.
 
-use crate::common::host::{self, borrow, color_pass, open, viewport};
-use crate::embedding::{options, three};
+use crate::common::host::{borrow, color_pass, open, opened, viewport};
+use crate::common::prelude::*;
+use crate::embedding::{matrices, options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, depths, parallel, seen};
-use glam::{DMat4, DVec4};
-use revmap::error::ErrorKind;
-use revmap::gpu::{DepthOrder, Output, PassFormats, Renderer, SlopeBias, View};
-use revmap::settings::SearchSettings;
 
 /// A bias shifts the depth of every hit, and nothing else.
 #[test]
 fn a_bias_shifts_depths() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
-    let (eye, target) = (scene.camera.eye, scene.camera.target);
-    let [view, projection] = host::view_and_projection(eye, target, &options());
+    let [view, projection] = matrices(&scene);
     let light = seen(view, projection);
     let exact = SearchSettings::exact();
     let [plain, shifted] = [light, light.with_depth_bias(1e-3)]
@@ -65,11 +60,9 @@ const REVERSE: DMat4 = DMat4::from_cols(
 /// by boxes, along rays from an eye and parallel ones, in both orders of depth.
 #[test]
 fn a_bias_follows_slopes() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
-    let (eye, target) = (scene.camera.eye, scene.camera.target);
-    let [view, perspective] = host::view_and_projection(eye, target, &options());
+    let [view, perspective] = matrices(&scene);
     let factor = 1.5;
     for (is_parallel, projection, limit) in [(false, perspective, 2e-4), (true, parallel(), 4e-3)] {
         for least in [0, u32::MAX] {
@@ -83,10 +76,7 @@ fn a_bias_follows_slopes() {
             };
             let light = View::from_matrices(view, seen_by, viewport(&options()), order).unwrap();
             let settings = by_proxies_of(least);
-            let pass = PassFormats {
-                depth: order,
-                ..depth_only(is_parallel)
-            };
+            let pass = depth_only(is_parallel).with(|p| p.depth = order);
             let sloped = PassFormats {
                 slope_bias: SlopeBias::new(factor, limit).unwrap(),
                 ..pass.clone()

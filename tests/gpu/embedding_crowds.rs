@@ -1,13 +1,8 @@
 //! Device memory of a host whose surfaces change in every frame.
 
-use crate::common::host::{Options, Stage, borrow, frame, open};
-use crate::common::{offset, placement, shapes};
+use crate::common::host::{Stage, frame, opened};
+use crate::common::prelude::*;
 use crate::embedding::{options, renderer};
-use glam::{DMat4, DVec3};
-use revmap::gpu::View;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Object};
-use std::sync::Arc;
 
 fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
     let mut object = Object::new("one", profiles[n as usize % profiles.len()].clone());
@@ -21,13 +16,8 @@ fn crowd_member(n: u32, profiles: &[Arc<Profile>]) -> Object {
 /// surfaces.
 #[test]
 fn memory_stays_flat() {
-    let host = open();
-    let device = borrow(&host);
-    let options = Options {
-        width: 32,
-        height: 24,
-        ..options()
-    };
+    let (host, device) = opened();
+    let options = options().with(|o| (o.width, o.height) = (32, 24));
     let mut stage = Stage::new(&host, options).unwrap();
     let mut few = renderer(&device, &stage);
     let profiles = [shapes::sphere()].map(Arc::new);

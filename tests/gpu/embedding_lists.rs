@@ -3,20 +3,11 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    self, Attachments, Host, Options, borrow, dynamic, open, view_of, viewport,
+    Attachments, Host, Options, borrow, dynamic, open, opened, view_of, viewport,
 };
-use crate::common::{draw, shapes, sized};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use revmap::cast::RayCaster;
-use revmap::error::ErrorKind;
-use revmap::frame::Frame;
-use revmap::gpu::{DepthOrder, Device, ObjectId, Output, PassFormats, Renderer, View};
-use revmap::maps::MapFormat;
-use revmap::scene::{Light, Material, Object, Placement, Scene, Shadow};
-use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Settings, Solver, Tolerance};
-use std::collections::HashSet;
 
 type F = vk::Format;
 
@@ -98,11 +89,7 @@ impl<'a> Lists<'a> {
 /// Three solids, one of them in copies.
 fn scene() -> Scene {
     let mut scene = three();
-    let copy = |x: f64| Placement {
-        position: DVec3::new(x, 0.7, 0.1),
-        scale: DVec3::splat(0.5),
-        ..Placement::default()
-    };
+    let copy = |x: f64| scaled([x, 0.7, 0.1], 0.5);
     scene.objects[1].instances = vec![copy(-0.4), copy(0.3)].into();
     scene.objects[2].material = Some(Material {
         roughness: 0.75,
@@ -112,10 +99,7 @@ fn scene() -> Scene {
 }
 
 fn all_planes(scene: &Scene, solver: Solver) -> Frame {
-    let settings = Settings {
-        solver,
-        ..sized(options().width, options().height)
-    };
+    let settings = sized(options().width, options().height).with(|s| s.solver = solver);
     draw(scene, &settings)
 }
 
@@ -129,10 +113,7 @@ fn levels_of_copies_keep_the_identity() {
         ..Placement::default()
     };
     scene.objects[1].instances = (0..100).map(copy).collect();
-    let settings = SearchSettings {
-        tolerance: Tolerance::DEFAULT,
-        ..SearchSettings::exact()
-    };
+    let settings = SearchSettings::exact().with(|s| s.tolerance = Tolerance::DEFAULT);
     let mut lists = Lists::new(&host, &device, &[Plane::Identity], &scene, &settings);
     lists.draw(&view_of(&scene, &options()));
     let numbers: HashSet<u32> = lists.ids.iter().map(|id| id.number()).collect();
@@ -161,18 +142,12 @@ fn planes_of_a_list_are_those_of_a_frame() {
     let device = borrow(&host);
     for solver in [Solver::Exact, Solver::Quadric, Solver::Live] {
         let frame = all_planes(&scene, solver);
-        let settings = SearchSettings {
-            solver,
-            ..SearchSettings::exact()
-        };
+        let settings = SearchSettings::exact().with(|s| s.solver = solver);
         let planes = PLANES.map(|p| p.0);
         let mut lists = Lists::new(&host, &device, &planes, &scene, &settings);
         lists.draw(&view_of(&scene, &options()));
         let identity = lists.read::<2>(Plane::Identity);
-        let (colors, base) = (
-            lists.floats::<4>(Plane::Color),
-            lists.floats::<4>(Plane::BaseColor),
-        );
+        let [colors, base] = [Plane::Color, Plane::BaseColor].map(|p| lists.floats::<4>(p));
         let normals = lists.floats::<4>(Plane::Normal);
         let octahedral = lists.floats::<2>(Plane::OctahedralNormal);
         let material = lists.floats::<2>(Plane::Material);
@@ -301,8 +276,7 @@ fn motion_leads_to_the_last_frames_point() {
 }
 
 fn check_motion(shadow: Shadow) {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut scene = three();
     scene.objects[0].placement.scale = DVec3::new(1.0, 0.8, 1.1);
     let mut replicas = Object::new("replicas", shapes::vase().into());
@@ -311,10 +285,7 @@ fn check_motion(shadow: Shadow) {
     scene.objects.push(replicas);
     // Rays towards the light meet other solids than the drawn one.
     scene.shadow = shadow;
-    scene.lights = vec![Light {
-        direction: DVec3::new(-1.0, -0.1, -0.1),
-        ..Light::default()
-    }];
+    scene.lights = vec![Light::default().with(|l| l.direction = DVec3::new(-1.0, -0.1, -0.1))];
     let before = scene.clone();
     let planes = [Plane::Motion, Plane::Identity];
     let mut lists = Lists::new(&host, &device, &planes, &scene, &SearchSettings::exact());
@@ -337,10 +308,8 @@ fn check_motion(shadow: Shadow) {
     let (second, second_clip) =
         jittered(eye + DVec3::new(0.05, 0.1, -0.02), DVec2::new(-0.25, 0.125));
     lists.draw(&second.with_last(&first));
-    let (motion, identity) = (
-        lists.floats::<2>(Plane::Motion),
-        lists.read::<2>(Plane::Identity),
-    );
+    let motion = lists.floats::<2>(Plane::Motion);
+    let identity = lists.read::<2>(Plane::Identity);
     let changes = before.objects.iter().zip(&scene.objects);
     let shifts: Vec<_> = changes
         .map(|(before, now)| before.offset.extend - now.offset.extend)
@@ -390,8 +359,7 @@ fn check_motion(shadow: Shadow) {
 /// Lists that a device or a plane does not take are refused by kind and key.
 #[test]
 fn misfitting_lists_are_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (_host, device) = opened();
     let twice = PlaneList::new(&[Plane::Color, Plane::Color]);
     assert_eq!(twice.unwrap_err().kind, ErrorKind::Usage);
     let refused = |plane, format, settings: &SearchSettings| {
@@ -413,17 +381,10 @@ fn misfitting_lists_are_refused() {
     ] {
         assert_eq!(refused(plane, format, &exact), usage("color"), "{plane:?}");
     }
-    let rgba8 = SearchSettings {
-        solver: Solver::Live,
-        map_format: MapFormat::Rgba8,
-        ..exact
-    };
+    let rgba8 = exact.with(|s| (s.solver, s.map_format) = (Solver::Live, MapFormat::Rgba8));
     let color = F::R32G32B32A32_SFLOAT;
     assert_eq!(refused(Plane::Color, color, &rgba8), usage("map_format"));
-    let circle = SearchSettings {
-        solver: revmap_searches::CIRCLE,
-        ..exact
-    };
+    let circle = exact.with(|s| s.solver = revmap_searches::CIRCLE);
     assert_eq!(refused(Plane::Color, color, &circle), usage("planes"));
     let list = Planes::List(PlaneList::new(&[Plane::Color]).unwrap());
     let compute = Renderer::new(&device, Output::Compute(list), &exact, 1);

@@ -1,17 +1,12 @@
 //! A host's near plane cuts solids as it cuts meshes: rays begin in it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Attachments, Host, Options, borrow, open, order, viewport};
-use crate::embedding::{every_way, options};
+use crate::common::host::{Host, Options, opened, order, viewport};
+use crate::common::prelude::*;
+use crate::embedding::{every_way, first_frame, options};
 use crate::embedding_outputs::{by_proxies_of, depth_only};
-use ash::vk;
-use glam::{DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 use revmap::cast::RayCaster;
-use revmap::gpu::{Device, DrawPath, Output, PassFormats, View};
-use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings, Solver};
-use std::collections::HashSet;
 
 /// The matrices of a scene's camera with this near plane, for reversed depths without a far plane, or
 /// for usual ones.
@@ -66,14 +61,8 @@ fn depths(
     options: &Options,
     parallel: bool,
 ) -> Vec<(&'static str, Vec<f32>, Vec<DrawPath>)> {
-    let alone = PassFormats {
-        depth: order(options),
-        ..depth_only(parallel)
-    };
-    let color = PassFormats {
-        depth: order(options),
-        ..host::color_pass()
-    };
+    let alone = depth_only(parallel).with(|p| p.depth = order(options));
+    let color = host::color_pass().with(|p| p.depth = order(options));
     let mut passes = vec![("depth", alone, &[][..])];
     if !parallel {
         passes.push(("color", color, &[(host::COLOR, 4)]));
@@ -83,21 +72,16 @@ fn depths(
     }
     let mut all = Vec::new();
     for (name, pass, formats) in passes {
-        let into = Attachments::new(host, *options, formats).unwrap();
         let mut renderer = host::renderer_of(device, Output::Pass(pass), settings, 1, scene);
-        let clears = vec![vk::ClearColorValue::default(); formats.len()];
-        host::draw_into(host, &into, &clears, &mut renderer, view, None);
-        all.push((name, into.depths(), renderer.draw_paths()));
+        let drawn = (&mut renderer, view);
+        let (_, depths) = first_frame(host, *options, Some(formats), drawn, None);
+        all.push((name, depths, renderer.draw_paths()));
     }
     if !parallel && !options.reversed {
-        let pixels = (options.width * options.height) as usize;
-        let mut words = vec![1f32.to_bits(); pixels];
-        words.resize(2 * pixels, 0);
         let output = Output::Compute(Planes::Color);
         let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-        let found = host::draw_words(host, &words, &mut renderer, view, None);
-        let found = found[..pixels].iter().map(|word| f32::from_bits(*word));
-        all.push(("compute", found.collect(), renderer.draw_paths()));
+        let (_, depths) = first_frame(host, *options, None, (&mut renderer, view), None);
+        all.push(("compute", depths, renderer.draw_paths()));
     }
     all
 }
@@ -106,8 +90,7 @@ fn depths(
 /// search, draw path and stage.
 #[test]
 fn the_near_plane_cuts_solids() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let planes_of = |name: &str| match name {
         "three" => vec![1.5, 2.95, 6.0],
         "one" => vec![3.05],
@@ -116,10 +99,7 @@ fn the_near_plane_cuts_solids() {
         "an eye within" => vec![0.01, 0.3],
         _ => vec![2.9],
     };
-    let of = |solver| SearchSettings {
-        solver,
-        ..SearchSettings::exact()
-    };
+    let of = |solver| SearchSettings::exact().with(|s| s.solver = solver);
     let searches = [
         by_proxies_of(0),
         by_proxies_of(u32::MAX),
@@ -131,10 +111,7 @@ fn the_near_plane_cuts_solids() {
         for (near, reversed, parallel) in planes_of(name).into_iter().flat_map(|near| {
             [(false, false), (true, false), (false, true)].map(|(r, p)| (near, r, p))
         }) {
-            let options = Options {
-                reversed,
-                ..options()
-            };
+            let options = options().with(|o| o.reversed = reversed);
             let both = matrices(scene, near, &options, parallel);
             let [look, lens] = both;
             let view = View::from_matrices(look, lens, viewport(&options), order(&options));

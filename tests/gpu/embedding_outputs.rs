@@ -2,19 +2,12 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Attachments, Host, Options, borrow, dynamic, open, viewport};
-use crate::common::{in_compute, next_frame, scene_of, shapes, sized};
-use crate::embedding::{BACKGROUND, drawn_by, every_way, options, three, upright};
-use glam::{DMat4, DVec3, DVec4};
-use revmap::gpu::{
-    ComputeTarget, DepthOrder, Device, DrawPath, Output, PassFormats, Renderer, View,
+use crate::common::host::{Host, dynamic, opened, viewport};
+use crate::common::prelude::*;
+use crate::embedding::{
+    BACKGROUND, drawn_by, every_way, first_frame, matrices, options, three, upright,
 };
-use revmap::scene::{Clip, Scene};
-use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::Picture;
-use revmap_offscreen::Offscreen;
-use revmap_searches::CIRCLE;
-use std::collections::HashSet;
 
 /// A view by these matrices, for the host's pictures.
 pub fn seen(view: DMat4, projection: DMat4) -> View {
@@ -33,10 +26,7 @@ pub fn depth_only(parallel: bool) -> PassFormats {
 
 /// The exact search, by cells of at least so many pixels.
 pub fn by_proxies_of(proxy_min_pixels: u32) -> SearchSettings {
-    SearchSettings {
-        proxy_min_pixels,
-        ..SearchSettings::exact()
-    }
+    SearchSettings::exact().with(|s| s.proxy_min_pixels = proxy_min_pixels)
 }
 
 /// Depths of a scene, drawn into a host's shadow map, and the draw paths of the objects.
@@ -48,25 +38,17 @@ pub fn depths(
     settings: &SearchSettings,
     pass: &PassFormats,
 ) -> (Vec<f32>, Vec<DrawPath>) {
-    let into = Attachments::new(
-        host,
-        Options {
-            reversed: pass.depth == DepthOrder::Reversed,
-            ..options()
-        },
-        &[],
-    );
-    let (into, output) = (into.unwrap(), Output::Pass(pass.clone()));
+    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
+    let output = Output::Pass(pass.clone());
     let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-    host::draw_into(host, &into, &[], &mut renderer, view, None);
-    (into.depths(), renderer.draw_paths())
+    let (_, depths) = first_frame(host, options, Some(&[]), (&mut renderer, view), None);
+    (depths, renderer.draw_paths())
 }
 
 /// The depth of a light's view along parallel rays is the analytic depth.
 #[test]
 fn depth_along_parallel_rays_is_analytic() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let exact = SearchSettings::exact();
     let wide = 0.3;
     let one = scene_of(shapes::column_of(wide), three().camera.eye);
@@ -100,12 +82,10 @@ fn depth_along_parallel_rays_is_analytic() {
 /// draw path: `EQUAL` draws every pixel after it.
 #[test]
 fn depth_alone_has_equal_bits_by_every_path() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut paths = HashSet::new();
     for (name, scene) in &every_way() {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let [view, projection] = host::view_and_projection(eye, target, &options());
+        let [view, projection] = matrices(&scene);
         let light = seen(view, projection);
         for least in [0, u32::MAX] {
             let settings = by_proxies_of(least);
@@ -119,10 +99,8 @@ fn depth_alone_has_equal_bits_by_every_path() {
             paths.extend(own);
         }
     }
-    assert!(
-        paths.contains(&DrawPath::Cells) && paths.contains(&DrawPath::Box),
-        "{paths:?}"
-    );
+    let every = [DrawPath::Cells, DrawPath::Box];
+    assert!(every.iter().all(|path| paths.contains(path)), "{paths:?}");
 }
 
 /// A projection of parallel rays.
@@ -139,8 +117,7 @@ pub fn parallel() -> DMat4 {
 /// Depth-only passes over solids cut by their box give the same depth by cells as by boxes.
 #[test]
 fn depth_alone_of_what_the_box_cuts() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     for (name, profile) in shapes::all() {
         for (extend, from) in [
             (0.12, DVec3::new(2.0, 1.0, 2.5)),
@@ -181,14 +158,10 @@ fn depth_alone_of_what_the_box_cuts() {
 /// already in the buffer are kept.
 #[test]
 fn compute_writes_to_a_hosts_buffer() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = three();
     let (width, height) = (options().width, options().height);
-    let settings = Settings {
-        planes: Planes::Color,
-        ..in_compute(sized(width, height))
-    };
+    let settings = in_compute(sized(width, height)).with(|s| s.planes = Planes::Color);
     let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
     let wanted = Picture::of(&next_frame(&mut offscreen)).unwrap().rgba;
     let pixels = (width * height) as usize;
@@ -222,10 +195,7 @@ fn compute_writes_to_a_hosts_buffer() {
 fn depth_alone_takes_exact_searches() {
     let device = crate::common::device();
     let planes = Planes::Depth { parallel: false };
-    let circle = SearchSettings {
-        solver: CIRCLE,
-        ..SearchSettings::exact()
-    };
+    let circle = SearchSettings::exact().with(|s| s.solver = CIRCLE);
     let refused = |output, settings: &SearchSettings| {
         let error = Renderer::new(device, output, settings, 1).err().unwrap();
         assert!(error.to_string().contains("depth alone"), "{error}");

@@ -2,17 +2,12 @@
 //! and leaves no sample of a solid to what is behind it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Options, Stage, borrow, open};
-use crate::common::{device, draw, sized};
+use crate::common::host::{Stage, borrow, open};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use glam::DMat4;
-use revmap::frame::{Frame, linear_from_srgb};
-use revmap::gpu::{Device, Output, PassFormats};
-use revmap::scene::{Placement, Scene};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
+use revmap::frame::linear_from_srgb;
 use revmap_compare::flip_map;
 use revmap_offscreen::samples::averaged;
-use revmap_offscreen::{Offscreen, OffscreenOptions};
 
 /// Pixels of a degree of the visual field, as FLIP's default.
 const PIXELS_PER_DEGREE: f64 = 67.0;
@@ -20,14 +15,9 @@ const PIXELS_PER_DEGREE: f64 = 67.0;
 /// Solids, copies and pixels of one copy.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut small = three();
-    let spot = |n: u32| Placement {
-        position: glam::DVec3::new(
-            f64::from(n / 20) * 0.16 - 1.2,
-            f64::from(n % 20) * 0.16 - 1.5,
-            0.0,
-        ),
-        scale: glam::DVec3::splat(0.1),
-        ..Placement::default()
+    let spot = |n: u32| {
+        let (x, y) = (f64::from(n / 20), f64::from(n % 20));
+        scaled([0.16 * x - 1.2, 0.16 * y - 1.5, 0.0], 0.1)
     };
     small.objects.truncate(1);
     small.objects[0].instances = (0..300).map(spot).collect();
@@ -37,10 +27,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 /// The host's picture by four samples.
 fn picture(host: &host::Host, device: &Device, scene: &Scene, sample_rays: bool) -> Frame {
     let samples = 4;
-    let options = Options {
-        samples,
-        ..options()
-    };
+    let options = options().with(|o| o.samples = samples);
     let mut stage = Stage::new(host, options).unwrap();
     let output = Output::Pass(PassFormats {
         samples,
@@ -96,10 +83,7 @@ fn steps_stay_in_their_pixel() {
     scene.objects.truncate(1);
     let settings = sized(options().width, options().height);
     let steps = |samples| {
-        let options = OffscreenOptions {
-            samples,
-            ..OffscreenOptions::default()
-        };
+        let options = OffscreenOptions::default().with(|o| o.samples = samples);
         let mut made = Offscreen::with(device(), &scene, &settings, options).unwrap();
         made.draw().unwrap();
         made.read().unwrap().steps

@@ -2,14 +2,10 @@
 #![allow(unsafe_code)]
 
 use crate::common::host::{
-    self, Attachments, Host, Stage, add, borrow, borrow_through, draw_into, once, open, view_of,
+    Attachments, Host, Stage, add, borrow_through, draw_into, once, open, opened, view_of,
 };
+use crate::common::prelude::*;
 use crate::embedding::{options, renderer, three};
-use ash::vk;
-use glam::DMat4;
-use revmap::gpu::{Output, PreparedFrame, Renderer};
-use revmap::scene::Scene;
-use revmap::settings::SearchSettings;
 use std::ffi::{CStr, c_char};
 use std::sync::Mutex;
 
@@ -156,8 +152,7 @@ impl Drop for Secondary<'_> {
 /// what one renderer of all objects draws.
 #[test]
 fn two_threads_record_two_renderers() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (options, scene) = (options(), three());
     let view = view_of(&scene, &options);
     let mut parts = [scene.clone(), scene.clone()];

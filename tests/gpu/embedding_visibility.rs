@@ -1,13 +1,9 @@
 //! What a host shows: views with masks, and depth tests after a prepass.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Options, Stage, borrow, frame, open, order, view_of};
+use crate::common::host::{Host, Options, Stage, frame, opened, order, view_of};
+use crate::common::prelude::*;
 use crate::embedding::{drawn, options, three};
-use ash::vk;
-use glam::{DMat4, Vec3};
-use revmap::gpu::{DepthTest, Device, DrawPath, Output, PassFormats, Renderer, View};
-use revmap::scene::Scene;
-use revmap::settings::{Planes, SearchSettings};
 
 fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &Scene) -> Renderer {
     let output = Output::Pass(PassFormats {
@@ -15,20 +11,14 @@ fn renderer(device: &Device, options: &Options, depth_test: DepthTest, scene: &S
         depth_test,
         ..host::color_pass()
     });
-    host::renderer_of(
-        device,
-        output,
-        &SearchSettings::exact(),
-        host::FRAMES,
-        scene,
-    )
+    let exact = SearchSettings::exact();
+    host::renderer_of(device, output, &exact, host::FRAMES, scene)
 }
 
 /// A view shows the objects of its mask, as if there were no others.
 #[test]
 fn a_view_shows_the_objects_of_its_mask() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (scene, options) = (three(), options());
     let view = view_of(&scene, &options);
     let mut stage = Stage::new(&host, options).unwrap();
@@ -39,13 +29,8 @@ fn a_view_shows_the_objects_of_its_mask() {
     some.set_mask(ids[2], 0).unwrap();
     for (mask, shown) in [(1, 0), (2, 1), (1, 0)] {
         for _ in 0..2 {
-            frame(
-                &mut stage,
-                &mut some,
-                &view.with_mask(mask),
-                DMat4::IDENTITY,
-                &[],
-            );
+            let view = view.with_mask(mask);
+            frame(&mut stage, &mut some, &view, DMat4::IDENTITY, &[]);
         }
         let mut alone = scene.clone();
         alone.objects = vec![scene.objects[shown].clone()];
@@ -113,8 +98,7 @@ const MOST_APART: u8 = 8;
 /// After a prepass of the same depths, `EQUAL` draws every pixel, and the default draws none.
 #[test]
 fn equal_depths_pass_after_a_prepass() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let options = options();
     let dark = three();
     let mut bright = dark.clone();

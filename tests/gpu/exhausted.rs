@@ -1,11 +1,7 @@
 //! Rays that run out of steps are counted, in both stages alike.
 
-use crate::common::ways::STAGES;
-use crate::common::{draw, drawn_by, eye, from_boxes, hits, placement, scene_of, shapes};
-use revmap::scene::{Object, Scene};
-use revmap::settings::{Planes, Settings, Solver};
-use revmap_searches::{CIRCLE, LINEAR, SECANT};
-use std::sync::Arc;
+use crate::common::prelude::*;
+use revmap_searches::{LINEAR, SECANT};
 
 /// A solid, replicas, and copies beside each other: only fragments search hidden surfaces.
 fn scenes() -> [Scene; 3] {
@@ -18,10 +14,7 @@ fn scenes() -> [Scene; 3] {
         .map(|y| placement([0.4, y, 0.0], [0.0; 3], [0.5; 3]))
         .to_vec()
         .into();
-    let of = |object| Scene {
-        objects: vec![object],
-        ..scene.clone()
-    };
+    let of = |object| scene.clone().with(|s| s.objects = vec![object]);
     [of(scene.objects[0].clone()), of(several), of(copies)]
 }
 

@@ -1,16 +1,7 @@
 //! Plates, and distances, outside the range of 32-bit world coordinates. `revmap stability` has the
 //! other extremes.
 
-use crate::common::ways::STAGES;
-use crate::common::{
-    assert_sound, device, draw, drawn_by, errors, eye, reference, scene_of, shapes, sized,
-};
-use glam::DVec3;
-use revmap::gpu::DrawPath;
-use revmap::profile::Profile;
-use revmap::scene::{Light, Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 
 fn settings(stage: DrawStage) -> Settings {
     drawn_by((160, 121), stage, Solver::DEFAULT)

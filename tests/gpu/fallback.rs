@@ -1,14 +1,7 @@
 //! A profile without a contour is drawn by the search on the map, and the renderer adds a note.
 
-use crate::common::ways::STAGES;
-use crate::common::{device, draw, drawn_by, eye, hits, scene_of, shapes};
-use glam::DVec2;
-use revmap::profile::{Outline, Profile};
-use revmap::scene::{Object, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use revmap_searches::CONE;
-use std::sync::Arc;
 
 #[test]
 fn what_has_no_contour_is_drawn_from_the_map() {
@@ -89,10 +82,7 @@ fn what_has_no_surface_is_drawn_from_the_map() {
             // The sphere's search with `quadric` differs from the default.
             assert!(same + 3 >= wanted.pixels(), "{same} of {}", wanted.pixels());
         }
-        let cone = Settings {
-            solver: CONE,
-            ..settings
-        };
+        let cone = settings.with(|s| s.solver = CONE);
         let error = Offscreen::new(device(), &scene, &cone).err().unwrap();
         assert_eq!(error.key.as_deref(), Some("object.1.profile"), "{error}");
         assert!(error.message.contains("no surface"), "{error}");

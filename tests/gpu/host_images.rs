@@ -2,16 +2,9 @@
 //! host (`tests/soak`) changes them between frames in flight.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, Host, Mesh, Stage, Texture, borrow, frame, open};
-use crate::common::shapes;
+use crate::common::host::{Host, Mesh, Stage, Texture, frame, opened};
+use crate::common::prelude::*;
 use crate::embedding::{options, renderer, three};
-use ash::vk;
-use glam::DMat4;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostImage, ObjectId, Renderer};
-use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
-use revmap::scene::{BumpForm, Object, Scene};
-use std::sync::Arc;
 
 const SIZE: u32 = 8;
 
@@ -61,8 +54,7 @@ fn differ(a: &[u8], b: &[u8]) -> usize {
 /// An image with the texels of a map gives the map's picture; without it the map is back.
 #[test]
 fn images_with_the_texels_of_maps_give_their_pictures() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let texels = colors(stripes);
     let map = ColorMap::from_texels(SIZE, SIZE, texels.clone()).unwrap();
     let heights: Vec<f32> = (0..SIZE * SIZE)
@@ -103,8 +95,7 @@ fn images_with_the_texels_of_maps_give_their_pictures() {
 /// bumps. Read as slopes it gives another one.
 #[test]
 fn an_image_of_heights_gives_the_picture_of_its_slopes() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     // Level at the upper and lower edge, where maps wrap round and the sampler does not.
     let height = |n: u32| match n / SIZE {
         0 | 1 | 6 | 7 => 0.0,
@@ -147,8 +138,7 @@ fn an_image_of_heights_gives_the_picture_of_its_slopes() {
 /// Null handles and objects of other renderers are refused.
 #[test]
 fn wrong_images_are_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     // SAFETY: null handles are refused before they are kept.
     let null = unsafe { HostImage::new(vk::ImageView::null(), vk::Sampler::null()) };
     assert_eq!(null.unwrap_err().kind, ErrorKind::Usage);

@@ -2,22 +2,10 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    Attachments, Host, Options, UniformSet, add, borrow, draw_into, draw_words, dynamic, open,
-    view_of,
-};
-use crate::common::{draw, shapes, sized};
-use crate::embedding::{options, three};
-use ash::vk;
-use glam::{DVec3, Vec3};
-use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath, HostShading, Output, PassFormats, Renderer, View};
-use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
-use revmap::scene::{Material, Object, Placement, Scene};
-use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings, Solver};
+use crate::common::host::{Host, UniformSet, add, borrow, dynamic, open, opened, view_of};
+use crate::common::prelude::*;
+use crate::embedding::{first_frame, options, three};
 use revmap::shading::Shading;
-use std::collections::HashSet;
-use std::sync::Arc;
 
 /// The library's own light, from the host's set.
 pub const COPY: &str = include_str!("../common/copy.glsl");
@@ -119,35 +107,6 @@ pub fn made(
     unsafe { Renderer::with_shading(device, output, settings, 1, &host) }.unwrap()
 }
 
-/// The first attachment of a frame in a pass, as bytes.
-pub fn in_pass(
-    host: &Host,
-    renderer: &mut Renderer,
-    view: &View,
-    formats: &[(vk::Format, usize)],
-    set: Option<&UniformSet>,
-) -> Vec<u8> {
-    let into = Attachments::new(host, options(), formats).unwrap();
-    let clears = vec![vk::ClearColorValue { float32: [0.0; 4] }; formats.len()];
-    draw_into(host, &into, &clears, renderer, view, set);
-    into.color(0)
-}
-
-/// The words of colours of a frame in compute.
-pub fn in_compute(
-    host: &Host,
-    renderer: &mut Renderer,
-    view: &View,
-    set: Option<&UniformSet>,
-) -> Vec<u8> {
-    let Options { width, height, .. } = options();
-    let pixels = (width * height) as usize;
-    let mut words = vec![1f32.to_bits(); pixels];
-    words.resize(2 * pixels, 0);
-    let drawn = draw_words(host, &words, renderer, view, set);
-    bytemuck::cast_slice(&drawn[pixels..]).to_vec()
-}
-
 /// The picture of a scene in a stage, and the path of each object.
 pub fn picture(
     host: &Host,
@@ -165,10 +124,8 @@ pub fn picture(
     };
     let mut renderer = made(device, output, settings, by);
     add(&mut renderer, scene);
-    let drawn = match stage {
-        DrawStage::Fragment => in_pass(host, &mut renderer, &view, &color, set),
-        DrawStage::Compute => in_compute(host, &mut renderer, &view, set),
-    };
+    let formats = (stage == DrawStage::Fragment).then_some(&color[..]);
+    let (drawn, _) = first_frame(host, options(), formats, (&mut renderer, &view), set);
     (drawn, renderer.draw_paths())
 }
 
@@ -182,8 +139,7 @@ pub fn apart(a: &[u8], b: &[u8]) -> (usize, usize) {
 /// A copy of the library's function gives the library's picture, by every path and in both stages.
 #[test]
 fn a_copy_of_our_function_gives_our_picture() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let (scene, mut alone) = (scene(), scene());
     alone.objects.truncate(1);
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
@@ -193,10 +149,7 @@ fn a_copy_of_our_function_gives_our_picture() {
         occlusion_culling: false,
         ..exact
     });
-    let live = SearchSettings {
-        solver: Solver::Live,
-        ..exact
-    };
+    let live = exact.with(|s| s.solver = Solver::Live);
     let mut paths = HashSet::new();
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         let shading = shading(stage, COPY);
@@ -226,8 +179,7 @@ fn a_copy_of_our_function_gives_our_picture() {
 /// The values that the function gets are the planes of a frame.
 #[test]
 fn values_of_the_surface_are_the_planes_of_a_frame() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = scene();
     let view = view_of(&scene, &options());
     let frame = draw(&scene, &sized(options().width, options().height));
@@ -246,7 +198,8 @@ fn values_of_the_surface_are_the_planes_of_a_frame() {
         let by = Some((&shading, &set));
         let mut renderer = made(&device, output, &SearchSettings::exact(), by);
         ids = add(&mut renderer, &scene);
-        let bytes = in_pass(&host, &mut renderer, &view, formats, Some(&set));
+        let drawn = (&mut renderer, &view);
+        let (bytes, _) = first_frame(&host, options(), Some(formats), drawn, Some(&set));
         let words: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
         words.as_chunks().0.to_vec()
     };

@@ -3,19 +3,14 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, UniformSet, add, borrow, borrow_through, open, view_of};
-use crate::embedding::options;
-use crate::host_shading::{COPY, in_pass, lights, made, pass, picture, scene, shading};
+use crate::common::host::{
+    Checked, UniformSet, add, borrow, borrow_through, open, opened, view_of,
+};
+use crate::common::prelude::*;
+use crate::embedding::{first_frame, options};
+use crate::host_shading::{COPY, lights, made, pass, picture, scene, shading};
 use crate::least_device::grant;
-use ash::vk;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostShading, Output, Renderer};
-use revmap::maps::MapFormat;
-use revmap::scene::{Lighting, Shadow};
-use revmap::settings::{DrawStage, Plane, PlaneList, Planes, SearchSettings};
 use revmap::shading::Shading;
-use revmap_searches::CIRCLE;
-use std::sync::Arc;
 
 const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
@@ -51,12 +46,7 @@ fn of_textures(count: u32) -> Arc<Shading> {
 #[test]
 fn textures_beyond_the_device_are_refused() {
     let (layer, host) = (Layer::take(), open());
-    let mask = Mask {
-        limits: Some(grant),
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let least = borrow_through(&host, &instance, &host.device).unwrap();
+    let least = layer.poorer(&host, |m| m.limits = Some(grant)).unwrap();
     let layout = |count| {
         let binding = vk::DescriptorSetLayoutBinding::default()
             .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
@@ -87,13 +77,12 @@ fn textures_beyond_the_device_are_refused() {
 /// A shading is refused where it would not shade, each time with the key and the remedy.
 #[test]
 fn what_does_not_fit_is_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let set = UniformSet::of(&host, &[[0f32; 4]; 8]).unwrap();
     let copy = shading(DrawStage::Fragment, COPY);
     let exact = SearchSettings::exact();
-    type By<'a> = &'a Arc<Shading>;
-    let refused = |output, settings: &SearchSettings, by: By, layout, key: &str, words: &str| {
+    let in_compute = shading(DrawStage::Compute, COPY);
+    let refused = |output, settings: &SearchSettings, by, layout, key: &str, words: &str| {
         let made = shaded(&device, output, settings, by, layout);
         let error = made.err().expect(key);
         assert_eq!(error.kind, ErrorKind::Usage, "{error}");
@@ -102,46 +91,22 @@ fn what_does_not_fit_is_refused() {
     };
     let null = vk::DescriptorSetLayout::null();
     refused(colors(), &exact, &copy, null, "set_layout", "reads set 3");
-    let compute = Output::Compute(Planes::Color);
-    refused(
-        compute,
-        &exact,
-        &copy,
-        set.layout,
-        "shading",
-        "needs compute",
-    );
-    let in_compute = shading(DrawStage::Compute, COPY);
-    refused(
-        colors(),
-        &exact,
-        &in_compute,
-        set.layout,
-        "shading",
-        "needs fragment",
-    );
     let list = Planes::List(PlaneList::new(&[Plane::Motion]).unwrap());
     let motion = pass(list, &[vk::Format::R16G16_SFLOAT]);
-    refused(motion, &exact, &copy, set.layout, "planes", "with colour");
     let depths = pass(Planes::Depth { parallel: false }, &[]);
-    refused(depths, &exact, &copy, set.layout, "planes", "with colour");
-    let circle = SearchSettings {
-        solver: CIRCLE,
-        ..exact
-    };
-    refused(
-        colors(),
-        &circle,
-        &copy,
-        set.layout,
-        "solver",
-        "exact, quadric or live",
-    );
-    let rgba8 = SearchSettings {
-        map_format: MapFormat::Rgba8,
-        ..exact
-    };
-    refused(colors(), &rgba8, &copy, set.layout, "solver", "r16");
+    let compute = Output::Compute(Planes::Color);
+    let circle = exact.with(|s| s.solver = CIRCLE);
+    let rgba8 = exact.with(|s| s.map_format = MapFormat::Rgba8);
+    for (output, settings, by, key, words) in [
+        (compute, exact, &copy, "shading", "needs compute"),
+        (colors(), exact, &in_compute, "shading", "needs fragment"),
+        (motion, exact, &copy, "planes", "with colour"),
+        (depths, exact, &copy, "planes", "with colour"),
+        (colors(), circle, &copy, "solver", "exact, quadric or live"),
+        (colors(), rgba8, &copy, "solver", "r16"),
+    ] {
+        refused(output, &settings, by, set.layout, key, words);
+    }
     for (name, binding) in [("set = 4", 0), ("set = 1", 9)] {
         let text = format!(
             "layout({name}, binding = {binding}) uniform Other {{ vec4 value; }} other;\n\
@@ -151,10 +116,7 @@ fn what_does_not_fit_is_refused() {
         refused(colors(), &exact, &by, set.layout, "shading", "in set 3");
     }
     let mut fits = shaded(&device, colors(), &exact, &copy, set.layout).unwrap();
-    let lighting = Lighting {
-        shadow: Shadow::Hard,
-        ..Lighting::default()
-    };
+    let lighting = Lighting::default().with(|l| l.shadow = Shadow::Hard);
     let error = fits.set_lighting(&lighting).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("shadow"), "{error}");
 }
@@ -196,29 +158,37 @@ fn validation_reports_a_binding_that_the_layout_lacks() {
 /// on one device have pipelines of their own, and none of the library's.
 #[test]
 fn pipelines_are_prewarmed_and_told_apart() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = scene();
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
     let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";
     let [copy, red] = [COPY, red].map(|text| shading(DrawStage::Fragment, text));
     let view = view_of(&scene, &options());
-    let color = [(SRGB, 4)];
     let exact = SearchSettings::exact();
     let mut shown = Vec::new();
+    let shown_by = |renderer: &mut Renderer| {
+        first_frame(
+            &host,
+            options(),
+            Some(&[(SRGB, 4)]),
+            (renderer, &view),
+            Some(&set),
+        )
+        .0
+    };
     for by in [&copy, &red] {
         let mut renderer = made(&device, colors(), &exact, Some((by, &set)));
         renderer.hide_until_compiled(true);
         add(&mut renderer, &scene);
         let before = device.pipelines_compiled();
-        let hidden = in_pass(&host, &mut renderer, &view, &color, Some(&set));
+        let hidden = shown_by(&mut renderer);
         assert!(hidden.iter().all(|byte| *byte == 0), "drawn");
         assert_eq!(device.pipelines_compiled(), before);
         let warm = renderer.prewarm().unwrap();
         std::thread::scope(|scope| scope.spawn(|| warm.compile()).join().unwrap()).unwrap();
         let compiled = device.pipelines_compiled();
         assert!(compiled > before);
-        shown.push(in_pass(&host, &mut renderer, &view, &color, Some(&set)));
+        shown.push(shown_by(&mut renderer));
         assert_eq!(device.pipelines_compiled(), compiled, "compiled in a frame");
     }
     let ours = picture(&host, &device, &scene, &exact, DrawStage::Fragment, None).0;

@@ -2,16 +2,8 @@
 //! fragment stage, tiles in compute. They give the picture that the same search gives from the
 //! box's sides, both in the cases that they draw and in those that they leave to the box.
 
-use crate::common::ways::{STAGES, WALKED, WRAPPED, Ways, apart, draw_by};
-use crate::common::{
-    device, draw, drawn_by, errors, eye, from_boxes, offset, placement, scene_of, shapes,
-};
-use glam::DVec3;
-use revmap::gpu::DrawPath;
-use revmap::maps::MapFormat;
-use revmap::profile::Profile;
-use revmap::scene::{Clip, Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
+use crate::common::prelude::*;
+use crate::common::ways::{WALKED, WRAPPED, Ways, apart, draw_by};
 use revmap_compare::Spread;
 
 /// A search with its hulls and beams, and the equivalent search from the box.
@@ -51,10 +43,7 @@ const LIVE: Search = Search {
 
 /// Settings that use proxies for solids of any size.
 pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
-    Settings {
-        proxy_min_pixels: 0,
-        ..drawn_by((320, 240), stage, solver)
-    }
+    drawn_by((320, 240), stage, solver).with(|s| s.proxy_min_pixels = 0)
 }
 
 impl Search {
@@ -162,10 +151,7 @@ fn what_the_box_cuts() {
 /// is bounded.
 #[test]
 fn what_a_flat_box_cuts_along_its_side() {
-    let search = Search {
-        normals: (|spread| spread.p99, 0.1),
-        ..EXACT
-    };
+    let search = EXACT.with(|s| s.normals = (|spread| spread.p99, 0.1));
     for (name, profile) in shapes::all() {
         for (elevation, azimuth) in [(0.0, 0.52), (3.0, 0.02), (5.0, 0.8)] {
             let far = eye(elevation, 2.8);
@@ -315,10 +301,7 @@ fn from_afar() {
 fn where_there_is_none() {
     let scene = scene_of(shapes::sphere(), eye(25.0, 2.2));
     for stage in STAGES {
-        let papers = Settings {
-            map_format: MapFormat::Rgba8,
-            ..settings(Solver::Live, stage)
-        };
+        let papers = settings(Solver::Live, stage).with(|s| s.map_format = MapFormat::Rgba8);
         draw_by("8 bits", &scene, &papers, WALKED);
         for solver in [Solver::Live, Solver::Exact] {
             let boxes = from_boxes(settings(solver, stage));

@@ -3,17 +3,12 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{borrow, borrow_through, open, open_with};
+use crate::common::host::{borrow, open, open_with};
+use crate::common::prelude::*;
 use crate::common::ways::apart;
-use crate::common::{reference, sized};
 use crate::embedding::{hundred, three};
 use crate::texturing::waves;
 use crate::trouble::{picture, settings};
-use ash::vk;
-use revmap::error::ErrorKind;
-use revmap::frame::Frame;
-use revmap::scene::{Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver};
 
 /// Grants what renderers need beyond the guaranteed limits of Vulkan.
 pub fn grant(limits: &mut vk::PhysicalDeviceLimits) {
@@ -26,16 +21,17 @@ pub fn grant(limits: &mut vk::PhysicalDeviceLimits) {
 fn a_device_of_least_limits_is_refused_by_name() {
     let (layer, host) = (Layer::take(), open());
     type Change = fn(&mut vk::PhysicalDeviceLimits);
+    let samplers = |kind: &str| format!("maxPerStageDescriptor{kind} of 16 (it has 15)");
     let lacks: [(Change, &str); 10] = [
         (|_| (), "(it has 4), maxFragmentCombinedOutputResources of"),
         (|_| (), "lacks maxPerStageDescriptorStorageBuffers of"),
         (
             |l| l.max_per_stage_descriptor_samplers = 15,
-            "maxPerStageDescriptorSamplers of 16 (it has 15)",
+            &samplers("Samplers"),
         ),
         (
             |l| l.max_per_stage_descriptor_sampled_images = 15,
-            "maxPerStageDescriptorSampledImages of 16 (it has 15)",
+            &samplers("SampledImages"),
         ),
         (
             |l| l.max_bound_descriptor_sets = 2,
@@ -63,12 +59,7 @@ fn a_device_of_least_limits_is_refused_by_name() {
         ),
     ];
     for (change, lack) in lacks {
-        let mask = Mask {
-            limits: Some(change),
-            ..Mask::default()
-        };
-        let instance = layer.instance(&host.entry, &host.instance, mask);
-        let Err(error) = borrow_through(&host, &instance, &host.device) else {
+        let Err(error) = layer.poorer(&host, |m| m.limits = Some(change)) else {
             panic!("taken without {lack}");
         };
         assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
@@ -97,14 +88,9 @@ fn a_device_of_nearly_least_limits_draws_the_same() {
             proxy_min_pixels: u32::MAX,
             ..settings(stage)
         };
-        let whole = borrow_through(&host, &host.instance, &host.device).unwrap();
+        let whole = borrow(&host);
         let wanted = picture(&whole, &scene, &settings);
-        let mask = Mask {
-            limits: Some(grant),
-            ..Mask::default()
-        };
-        let instance = layer.instance(&host.entry, &host.instance, mask);
-        let least = borrow_through(&host, &instance, &host.device).unwrap();
+        let least = layer.poorer(&host, |m| m.limits = Some(grant)).unwrap();
         let found = picture(&least, &scene, &settings);
         let (hits, edges, far) = apart(&wanted, &found);
         // Smaller uniform buffers and triangles in place of points change roundings.
@@ -149,30 +135,19 @@ fn tinted(a: &Frame, b: &Frame) -> usize {
 fn the_least_device_draws_right_by_default() {
     let layer = Layer::take();
     // Anisotropic filtering is sharper, so colours are compared without it.
-    let plain = open_with(|features| vk::PhysicalDeviceFeatures {
-        sampler_anisotropy: vk::FALSE,
-        ..features
-    });
+    let plain = open_with(|features| features.with(|p| p.sampler_anisotropy = vk::FALSE));
     let plain = borrow(&plain);
-    let needed = vk::PhysicalDeviceFeatures {
-        fragment_stores_and_atomics: vk::TRUE,
-        ..Default::default()
-    };
+    let needed = vk::PhysicalDeviceFeatures::default().fragment_stores_and_atomics(true);
     let host = open_with(|_| needed);
-    let mask = Mask {
-        limits: Some(grant),
-        timestamps: true,
-        ..Mask::default()
+    let lacks = |m: &mut Mask| {
+        m.limits = Some(grant);
+        m.timestamps = true;
     };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let least = borrow_through(&host, &instance, &host.device).unwrap();
+    let least = layer.poorer(&host, lacks).unwrap();
     for (name, scene) in scenes() {
         let truth = reference(&scene, &sized(160, 120));
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
-            let settings = Settings {
-                stage,
-                ..sized(160, 120)
-            };
+            let settings = sized(160, 120).with(|s| s.stage = stage);
             let found = picture(&least, &scene, &settings);
             let whole = picture(&plain, &scene, &settings);
             let (hits, edges, far) = apart(&truth, &found);

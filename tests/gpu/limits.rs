@@ -2,22 +2,10 @@
 //! the solid, never with a hole.
 
 use crate::common::passing::count;
-use crate::common::{
-    assert_sound, device, draw, eye, hits, offset, reference, scene_of, shapes, sized, updated,
-};
-use revmap::error::ErrorKind;
-use revmap::maps::MapFormat;
-use revmap::scene::{Clip, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_offscreen::Offscreen;
-use revmap_searches::CIRCLE;
+use crate::common::prelude::*;
 
 fn settings() -> Settings {
-    Settings {
-        map_rows: Some(256),
-        map_format: MapFormat::R32,
-        ..sized(160, 120)
-    }
+    sized(160, 120).with(|s| (s.map_rows, s.map_format) = (Some(256), MapFormat::R32))
 }
 
 fn with(scene: &Scene, extend: f64, bevel: f64, chamfer: f64) -> Scene {
@@ -65,11 +53,7 @@ fn beyond_its_map_a_solid_gets_a_wider_one() {
     let wanted = reference(&wide, &settings());
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
         for solver in [Solver::Live, CIRCLE, Solver::Quadric] {
-            let settings = Settings {
-                stage,
-                solver,
-                ..settings()
-            };
+            let settings = settings().with(|s| (s.stage, s.solver) = (stage, solver));
             let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
             let frame = updated(&mut renderer, &wide);
             assert_sound(&frame, "beyond the map");
@@ -111,11 +95,7 @@ fn a_renderer_refuses_what_a_file_would_not_say() {
     renderer.draw().unwrap();
 
     // The papers' format holds only distances outside the solid.
-    let papers = Settings {
-        map_format: MapFormat::Rgba8,
-        solver: Solver::Live,
-        ..settings()
-    };
+    let papers = settings().with(|s| (s.map_format, s.solver) = (MapFormat::Rgba8, Solver::Live));
     let error =
         revmap_offscreen::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("object.0.extend"));

@@ -4,13 +4,10 @@
 
 use crate::calls::{Layer, above, planted_device, planted_instance};
 use crate::common::host::{Host, borrow_through, open};
-use crate::common::{eye, scene_of, shapes};
-use ash::vk;
-use revmap::gpu::MemoryUse;
-use revmap::settings::{DrawStage, Planes, Settings};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use std::ffi::{CStr, c_void};
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::Ordering::SeqCst;
+use std::sync::atomic::{AtomicU64, AtomicUsize};
 use vk::MemoryPropertyFlags as Flags;
 
 /// Host-visible types without coherence come before every coherent type that fits.

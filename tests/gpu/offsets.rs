@@ -2,16 +2,9 @@
 //! accuracy of normals.
 
 use crate::common::passing::{Count, counts};
-use crate::common::{device, eye, offset, scene_of, shapes, sized, updated};
-use glam::DVec3;
+use crate::common::prelude::*;
 use rayon::prelude::*;
-use revmap::frame::Frame;
-use revmap::maps::MapFormat;
-use revmap::scene::{CameraFrame, Clip, Offset, Scene};
-use revmap::settings::{Settings, Solver};
-use revmap_offscreen::Offscreen;
 use revmap_reference::{Ray, Reference};
-use revmap_searches::CIRCLE;
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write as _;
 
@@ -46,11 +39,7 @@ fn with(scene: &Scene, offset: Offset, elevation: f64) -> Scene {
 }
 
 fn searched(solver: Solver, width: u32, height: u32) -> Settings {
-    Settings {
-        solver,
-        map_rows: Some(ROWS),
-        ..sized(width, height)
-    }
+    sized(width, height).with(|s| (s.solver, s.map_rows) = (solver, Some(ROWS)))
 }
 
 /// Shape, setting, then a count for each of `SOLVERS`, summed over the views.
@@ -176,10 +165,7 @@ fn normals_follow_bevel_and_chamfer() {
             let settings_of = searched(Solver::Live, 96, 72);
             let all = settings();
             let first = with(&plain, all[0].1, 25.0);
-            let settings = Settings {
-                map_format,
-                ..settings_of
-            };
+            let settings = settings_of.with(|s| s.map_format = map_format);
             let mut renderer = Offscreen::new(device(), &first, &settings).unwrap();
             for (name, offset) in all {
                 let scene = with(&plain, offset, 25.0);

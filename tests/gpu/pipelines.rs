@@ -2,12 +2,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{self, Stage, borrow, borrow_through, lent, open};
+use crate::common::host::{Stage, borrow, borrow_through, lent, open, opened};
+use crate::common::prelude::*;
 use crate::embedding::{options, three};
-use ash::vk;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, HostDevice, Output};
-use revmap::settings::SearchSettings;
 
 /// Data is added while another thread compiles, without a message of the validation layers.
 #[test]
@@ -38,8 +35,7 @@ fn caches_are_added_while_pipelines_are_compiled() {
 /// Bytes that the library did not write do not reach the driver, and a host's cache is the host's.
 #[test]
 fn other_bytes_are_no_cache() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let data = device.pipeline_cache_data().unwrap();
     device.add_pipeline_cache(&data).unwrap();
     let mut changed = data.clone();
@@ -52,10 +48,7 @@ fn other_bytes_are_no_cache() {
     // SAFETY: a plain creation; the device that borrows the cache is dropped before it.
     unsafe {
         let cache = host.device.create_pipeline_cache(&empty, None).unwrap();
-        let with = HostDevice {
-            pipeline_cache: Some(cache),
-            ..lent(&host)
-        };
+        let with = lent(&host).with(|h| h.pipeline_cache = Some(cache));
         let device = Device::borrow(&with).unwrap();
         let error = device.add_pipeline_cache(&data).unwrap_err();
         assert_eq!(error.key.as_deref(), Some("pipeline_cache"), "{error}");
@@ -70,10 +63,7 @@ fn a_prewarm_outlives_its_renderer() {
     let (layer, host) = (Layer::take(), open());
     let raw = layer.device(&host.instance, &host.device);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
-    let options = host::Options {
-        dynamic: false,
-        ..options()
-    };
+    let options = options().with(|o| o.dynamic = false);
     let stage = Stage::new(&host, options).unwrap();
     let mut before = None;
     for _ in 0..2 {

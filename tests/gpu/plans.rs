@@ -1,20 +1,14 @@
 //! Renderers of many objects. The random host (`tests/soak`) prepares several views at a time,
 //! changes objects after `prepare` and records old tokens.
 
-use crate::common::host::{HostBuffer, borrow, once, open, renderer_of, target, view_of};
-use crate::common::{eye, placement, scene_of, shapes};
-use crate::embedding::options;
-use ash::vk;
-use revmap::gpu::Output;
-use revmap::scene::{Object, Scene};
-use revmap::settings::{Planes, SearchSettings};
-use std::sync::Arc;
+use crate::common::host::{opened, renderer_of, view_of};
+use crate::common::prelude::*;
+use crate::embedding::{first_frame, options};
 
 /// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
 #[test]
 fn objects_by_the_ten_thousand() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let profiles = [shapes::vase(), shapes::sphere(), shapes::glass()].map(Arc::new);
     let object = |n: u32| {
         let mut object = Object::new("one", profiles[n as usize % profiles.len()].clone());
@@ -22,26 +16,13 @@ fn objects_by_the_ten_thousand() {
         object.placement = placement([0.1 * x - 7.5, 0.1 * y - 6.5, 0.0], [0.0; 3], [0.1; 3]);
         object
     };
-    let empty = Scene {
-        objects: Vec::new(),
-        ..scene_of(shapes::vase(), eye(25.0, 3.0))
-    };
+    let empty = scene_of(shapes::vase(), eye(25.0, 3.0)).with(|s| s.objects = Vec::new());
     let view = view_of(&empty, &options());
-    let words = vec![1f32; 2 * (options().width * options().height) as usize];
-    let words = HostBuffer::of(&host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
     let bytes = |count: u32| {
         let output = Output::Compute(Planes::Color);
         let mut renderer = renderer_of(&device, output, &SearchSettings::exact(), 1, &empty);
-        // SAFETY: the buffer has two words per pixel and outlives the renderer's frames.
-        unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
-        let draw = |renderer: &mut revmap::gpu::Renderer| {
-            once(&host, |cmd| {
-                // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
-                unsafe {
-                    let frame = renderer.prepare(cmd, 0, &view).unwrap();
-                    renderer.record_compute(cmd, &frame).unwrap();
-                }
-            });
+        let draw = |renderer: &mut Renderer| {
+            first_frame(&host, options(), None, (renderer, &view), None);
         };
         let ids: Vec<_> = (0..count)
             .map(|n| renderer.add(object(n)).unwrap())

@@ -2,19 +2,11 @@
 //! technique. General and special forms draw the same bits.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Checked, Host, borrow, never, open, view_of};
-use crate::common::ways::STAGES;
-use crate::common::{placement, shapes};
+use crate::common::host::{Host, borrow, never, open, opened, view_of};
+use crate::common::prelude::*;
 use crate::embedding::{hundred, options, three};
 use crate::random::Random;
 use crate::unsubmitted::{Drawn, differ};
-use glam::DVec3;
-use revmap::gpu::{Device, FrameStatistics, View};
-use revmap::profile::Profile;
-use revmap::scene::{Clip, Light, Lighting, Object, Offset, Scene, Shadow};
-use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
-use revmap_searches::CIRCLE;
-use std::sync::Arc;
 
 /// A renderer of which every general pipeline is compiled.
 struct Warm<'a> {
@@ -78,13 +70,6 @@ fn exact() -> SearchSettings {
     SearchSettings::exact()
 }
 
-/// The host and a device of its own: other tests compile on theirs.
-fn opened() -> (Checked, Device) {
-    let host = open();
-    let device = borrow(&host);
-    (host, device)
-}
-
 fn vase() -> Scene {
     let mut scene = three();
     scene.objects.truncate(1);
@@ -146,10 +131,7 @@ fn large_tables_compile_nothing() {
         scene.objects = vec![Object::new("screw", screw.clone())];
         let near = scene.camera.eye;
         scene.camera.eye = near * 500.0;
-        let search = SearchSettings {
-            tolerance: Tolerance::DEFAULT,
-            ..exact()
-        };
+        let search = exact().with(|s| s.tolerance = Tolerance::DEFAULT);
         let mut warm = Warm::new(&host, &device, (stage, &search), &scene);
         warm.frame("far");
         scene.camera.eye = near * 0.5;
@@ -195,10 +177,7 @@ fn general_and_special_forms_draw_the_same_bits() {
     for (name, scene) in scenes() {
         for stage in STAGES {
             for least in [0, 150] {
-                let search = SearchSettings {
-                    proxy_min_pixels: least,
-                    ..exact()
-                };
+                let search = exact().with(|s| s.proxy_min_pixels = least);
                 let device = borrow(&host); // without pipelines
                 let mut drawn = Drawn::by(&host, &device, stage, &scene, &search);
                 // Pipelines for three lights are general.
@@ -278,11 +257,7 @@ fn change(warm: &mut Warm, solid: &Object, random: &mut Random) {
             .unwrap(),
         3 => {
             let [extend, bevel] = [[0.0, 0.0], [0.3, 0.0], [-0.02, 0.1], [0.05, 0.2]][one_of(4)];
-            let offset = Offset {
-                extend,
-                bevel,
-                ..Offset::default()
-            };
+            let offset = Offset::default().with(|o| (o.extend, o.bevel) = (extend, bevel));
             renderer.set_offset(id, offset).unwrap();
         }
         4 => {
@@ -294,10 +269,7 @@ fn change(warm: &mut Warm, solid: &Object, random: &mut Random) {
         5 => {
             let lights = vec![Light::pair()[0]; one_of(5)];
             renderer
-                .set_lighting(&Lighting {
-                    lights,
-                    ..Lighting::default()
-                })
+                .set_lighting(&Lighting::default().with(|l| l.lights = lights))
                 .unwrap();
         }
         6 => {

@@ -2,14 +2,8 @@
 //! faces of the box.
 
 use super::hulls::{EXACT, settings};
+use crate::common::prelude::*;
 use crate::common::ways::{WALKED, WRAPPED, draw_by};
-use crate::common::{errors, eye, placement, reference, scene_of, shapes};
-use glam::DVec3;
-use revmap::gpu::DrawPath;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Object, Scene};
-use revmap::settings::{DrawStage, Solver};
-use std::sync::Arc;
 
 /// Several intersecting objects, some copied, in one depth buffer: hulls beside boxes.
 #[test]

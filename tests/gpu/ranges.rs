@@ -2,19 +2,10 @@
 //! drawn, what does not is refused, and memory is used again.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
-use crate::common::host::{
-    Checked, HostBuffer, add, borrow, borrow_through, once, open, target, view_of,
-};
-use crate::embedding::{options, three};
-use ash::vk;
-use glam::DVec3;
-use revmap::error::ErrorKind;
-use revmap::gpu::{Device, FrameStatistics, INSTANCE_BYTES, Output, Renderer};
-use revmap::profile::Profile;
-use revmap::scene::{Object, Placement, Scene};
-use revmap::settings::{Planes, SearchSettings};
-use std::sync::Arc;
+use crate::calls::Layer;
+use crate::common::host::{Checked, HostBuffer, once, open, opened, renderer_of, target, view_of};
+use crate::common::prelude::*;
+use crate::embedding::{far_words, options, three};
 
 /// Bytes of the device's largest storage buffer.
 const STORAGE: u32 = 1 << 20;
@@ -23,54 +14,39 @@ const MOST: usize = STORAGE as usize / INSTANCE_BYTES as usize;
 /// The layer, the host and the device of small buffers.
 fn small() -> (Layer, Checked, Device) {
     let (layer, host) = (Layer::take(), open());
-    let mask = Mask {
-        storage: STORAGE,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let device = borrow_through(&host, &instance, &host.device).unwrap();
+    let device = layer.poorer(&host, |m| m.storage = STORAGE).unwrap();
     (layer, host, device)
 }
 
 fn renderer(device: &Device, scene: &Scene) -> Renderer {
     let output = Output::Compute(Planes::Color);
-    let mut made = Renderer::new(device, output, &SearchSettings::exact(), 1).unwrap();
-    add(&mut made, scene);
-    made
+    renderer_of(device, output, &SearchSettings::exact(), 1, scene)
 }
 
 /// Words of a frame, and its statistics.
 fn draw(host: &Checked, renderer: &mut Renderer) -> revmap::Result<(Vec<u8>, FrameStatistics)> {
-    let pixels = (options().width * options().height) as usize;
-    let words = [vec![1.0f32; pixels], vec![0.0; pixels]].concat();
+    let words = far_words(&options());
     let words = HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
     // SAFETY: the buffer has two words per pixel, and the next frame gets another one.
     unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
+    let view = view_of(&three(), &options());
     let mut result = Ok(FrameStatistics::default());
     once(host, |cmd| {
         // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
-        result = unsafe {
-            renderer
-                .prepare(cmd, 0, &view_of(&three(), &options()))
-                .and_then(|frame| {
-                    renderer.record_compute(cmd, &frame)?;
-                    Ok(frame.statistics())
-                })
-        };
+        result = unsafe { renderer.prepare(cmd, 0, &view) }.and_then(|frame| {
+            // SAFETY: the frame was just prepared.
+            unsafe { renderer.record_compute(cmd, &frame) }?;
+            Ok(frame.statistics())
+        });
     });
     Ok((words.bytes(), result?))
 }
 
 /// Small copies beside the three solids.
 fn copies(count: usize) -> Vec<Placement> {
-    let place = |n: usize| Placement {
-        position: DVec3::new(
-            -0.02 * (n / 100) as f64 - 1.0,
-            0.03 * (n % 100) as f64 - 1.5,
-            0.0,
-        ),
-        scale: DVec3::splat(0.02),
-        ..Placement::default()
+    let place = |n: usize| {
+        let (x, y) = ((n / 100) as f64, (n % 100) as f64);
+        scaled([-0.02 * x - 1.0, 0.03 * y - 1.5, 0.0], 0.02)
     };
     (0..count).map(place).collect()
 }
@@ -107,10 +83,8 @@ fn a_renderer_recovers_from_too_many_copies() {
     drawn.remove(id).unwrap();
     let (found, after) = draw(&host, &mut drawn).unwrap();
     assert!(found == wanted);
-    assert!(
-        after.slot_bytes < 8 * before.slot_bytes,
-        "{after:?}, {before:?}"
-    );
+    let [after, before] = [after, before].map(|frame| frame.slot_bytes);
+    assert!(after < 8 * before, "{after}, {before}");
 }
 
 #[test]
@@ -150,18 +124,10 @@ fn objects_are_added_beside_a_large_crowd() {
 /// Of coincident copies the one of the earlier object shows, wherever its instances are.
 #[test]
 fn ties_do_not_depend_on_ranges() {
-    let host = open();
-    let device = borrow(&host);
-    let scene = |color: [f32; 3]| {
-        let mut object = three().objects[0].clone();
-        object.color = color;
-        object
-    };
-    let (first, second) = (scene([0.9, 0.1, 0.1]), scene([0.1, 0.1, 0.9]));
-    let empty = Scene {
-        objects: Vec::new(),
-        ..three()
-    };
+    let (host, device) = opened();
+    let object = |color| three().objects[0].clone().with(|o| o.color = color);
+    let (first, second) = (object([0.9, 0.1, 0.1]), object([0.1, 0.1, 0.9]));
+    let empty = three().with(|s| s.objects = Vec::new());
     let mut fresh = renderer(&device, &empty);
     fresh.add(first.clone()).unwrap();
     fresh.add(second.clone()).unwrap();
@@ -183,13 +149,11 @@ fn tables_fill_their_buffer() {
     let mut drawn = renderer(&device, &three());
     let other = |n: usize| {
         let side = 0.2 + 0.3 / (n + 1) as f64;
-        let points = [
-            [0.0, 0.0],
-            [side, 0.2],
-            [0.5 * side, 0.6],
-            [side, 0.8],
-            [0.0, 1.0],
-        ];
+        let radii = [0.0, side, 0.5 * side, side, 0.0].into_iter();
+        let points: Vec<_> = radii
+            .zip([0.0, 0.2, 0.6, 0.8, 1.0])
+            .map(<[f64; 2]>::from)
+            .collect();
         let mut object = Object::new("other", Arc::new(Profile::polygon(&points, 0.5).unwrap()));
         object.placement = copies(n + 1)[n];
         object
@@ -208,11 +172,8 @@ fn tables_fill_their_buffer() {
     let error = refused.expect("tables beyond the limit");
     assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
     // Those of the last frame that was drawn, each alone.
-    let tables: u64 = drawn
-        .object_costs()
-        .iter()
-        .map(|cost| cost.table_bytes)
-        .sum();
+    let costs = drawn.object_costs();
+    let tables: u64 = costs.iter().map(|cost| cost.table_bytes).sum();
     println!("{} objects, {tables} bytes of tables", ids.len());
     assert!(tables > u64::from(STORAGE) * 17 / 20, "{tables}");
     for id in ids.drain(40..) {

@@ -2,19 +2,11 @@
 //! call is passed to Vulkan.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
-use crate::common::host::{borrow, borrow_through, once, open, open_with};
-use crate::common::{device, shapes};
-use ash::vk;
+use crate::calls::Layer;
+use crate::common::host::{borrow, once, open, open_with, opened};
+use crate::common::prelude::*;
 use ash::vk::Handle as _;
-use glam::DVec3;
-use revmap::error::ErrorKind::{self, Unsupported, Usage};
-use revmap::gpu::{
-    ComputeTarget, Device, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer, View,
-};
-use revmap::scene::{Camera, Lighting, Object, Offset, Placement, Shadow};
-use revmap::settings::{Planes, SearchSettings, Solver};
-use std::sync::Arc;
+use revmap::error::ErrorKind::{Unsupported, Usage};
 
 const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const FLOAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -23,10 +15,7 @@ const BOTH: vk::Format = vk::Format::D32_SFLOAT_S8_UINT;
 const NONE: vk::Format = vk::Format::UNDEFINED;
 
 fn pass(begun: PassKind, samples: u32, planes: Planes) -> Output {
-    Output::Pass(PassFormats {
-        samples,
-        ..PassFormats::new(begun, planes)
-    })
+    Output::Pass(PassFormats::new(begun, planes).with(|p| p.samples = samples))
 }
 
 fn dynamic(
@@ -42,6 +31,15 @@ fn dynamic(
         stencil,
     };
     pass(begun, samples, planes)
+}
+
+/// A pass of colours and depths.
+fn color() -> Output {
+    dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1)
+}
+
+fn renderer(device: &Device) -> Renderer {
+    Renderer::new(device, color(), &SearchSettings::exact(), 1).unwrap()
 }
 
 fn single_subpass(color: &[vk::Format], depth: vk::Format, planes: Planes, samples: u32) -> Output {
@@ -135,14 +133,8 @@ fn samples_that_the_device_has_not_are_refused() {
         let output = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, samples);
         assert_refused(device(), output, Usage, Some("samples"));
     }
-    let layer = Layer::take();
-    let host = open();
-    let mask = Mask {
-        samples: true,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
+    let (layer, host) = (Layer::take(), open());
+    let poorer = layer.poorer(&host, |m| m.samples = true).unwrap();
     let own = PassKind::RenderPass {
         // SAFETY: the renderer refuses this handle before any use.
         pass: unsafe { HostPass::new(vk::RenderPass::from_raw(1)) },
@@ -154,8 +146,7 @@ fn samples_that_the_device_has_not_are_refused() {
         let output = pass(own.clone(), samples, Planes::Color);
         assert_refused(&poorer, output, Unsupported, Some("samples"));
     }
-    let output = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
-    assert_eq!(refused(&poorer, output), None);
+    assert_eq!(refused(&poorer, color()), None);
 }
 
 #[test]
@@ -164,13 +155,11 @@ fn all_planes_need_their_feature_and_their_buffer() {
     let bare = open_with(|_| vk::PhysicalDeviceFeatures::default());
     assert_refused(&borrow(&bare), all(), Unsupported, None);
 
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let camera = Camera::new(DVec3::new(2.0, 0.0, 0.5), DVec3::new(0.0, 0.0, 0.5));
     let view = View::from_camera(&camera, (16, 16), [1.0, 4.0]).unwrap();
     // The renderer refuses these handles before any use.
     let (words, image) = (vk::Buffer::from_raw(1), vk::ImageView::from_raw(1));
-    let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
     let (compute, none) = (Output::Compute, vk::ImageView::null());
     for (output, words, images, key) in [
         (all(), vk::Buffer::null(), &[][..], "words"),
@@ -207,9 +196,7 @@ fn all_planes_need_their_feature_and_their_buffer() {
 /// Two renderers number their objects alike.
 #[test]
 fn another_renderers_object_is_refused() {
-    let color = || dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
-    let make = || Renderer::new(device(), color(), &SearchSettings::exact(), 1).unwrap();
-    let (mut one, mut other) = (make(), make());
+    let [mut one, mut other] = [(); 2].map(|()| renderer(device()));
     let object = Object::new("vase", shapes::vase().into());
     let id = one.add(object.clone()).unwrap();
     let twin = other.add(object.clone()).unwrap();
@@ -240,33 +227,26 @@ fn another_renderers_object_is_refused() {
 /// A message about values names the object: its key, with its place among all, and its name.
 #[test]
 fn setters_name_the_object() {
-    let color = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
-    let mut renderer = Renderer::new(device(), color, &SearchSettings::exact(), 1).unwrap();
+    let mut renderer = renderer(device());
     let profile = Arc::new(shapes::vase());
     let mut add = |name: &str| renderer.add(Object::new(name, profile.clone())).unwrap();
     let [first, _, vase] = ["first", "second", "vase"].map(&mut add);
     renderer.remove(first).unwrap();
     let mut flat = Object::new("another name", profile.clone());
     flat.placement.scale.y = 0.0;
-    let offset = Offset {
-        extend: f64::NAN,
-        ..Offset::default()
-    };
-    let (copies, name) = (vec![Placement::default(), flat.placement], "vase");
-    for (found, key, name) in [
-        (renderer.set_offset(vase, offset), "extend", name),
-        (renderer.set_placement(vase, flat.placement), "scale", name),
-        (
-            renderer.set_instances(vase, copies),
-            "instances.1.scale",
-            name,
-        ),
-        (renderer.set(vase, flat.clone()), "scale", name),
+    let offset = Offset::default().with(|o| o.extend = f64::NAN);
+    let copies = vec![Placement::default(), flat.placement];
+    let last = "instances.1.scale";
+    for (found, key) in [
+        (renderer.set_offset(vase, offset), "extend"),
+        (renderer.set_placement(vase, flat.placement), "scale"),
+        (renderer.set_instances(vase, copies), last),
+        (renderer.set(vase, flat.clone()), "scale"),
     ] {
         let error = found.unwrap_err();
         assert_eq!(error.kind, ErrorKind::Content);
         assert_eq!(error.key, Some(format!("object.1.{key}")), "{error}");
-        assert!(error.message.contains(name), "{error}");
+        assert!(error.message.contains("vase"), "{error}");
     }
     let error = renderer.add(flat).unwrap_err();
     assert_eq!(error.key.as_deref(), Some("object.2.scale"));
@@ -288,31 +268,20 @@ fn setters_name_the_object() {
 /// More copies than the device takes are those of an object.
 #[test]
 fn too_many_copies_name_the_object() {
-    let layer = Layer::take();
-    let host = open();
-    let mask = Mask {
-        storage: 1 << 20,
-        ..Mask::default()
-    };
-    let instance = layer.instance(&host.entry, &host.instance, mask);
-    let poorer = borrow_through(&host, &instance, &host.device).unwrap();
-    let color = dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1);
-    let mut renderer = Renderer::new(&poorer, color, &SearchSettings::exact(), 1).unwrap();
+    let (layer, host) = (Layer::take(), open());
+    let poorer = layer.poorer(&host, |m| m.storage = 1 << 20).unwrap();
+    let mut renderer = renderer(&poorer);
     let mut object = Object::new("vase", shapes::vase().into());
     let id = renderer.add(object.clone()).unwrap();
     let many = vec![Placement::default(); 100_000];
     object.instances = many.clone().into();
-    for (error, key) in [
-        (
-            renderer.set_instances(id, many).unwrap_err(),
-            "object.0.instances",
-        ),
-        (
-            renderer.set(id, object.clone()).unwrap_err(),
-            "object.0.instances",
-        ),
-        (renderer.add(object).unwrap_err(), "object.1.instances"),
+    for (refused, number) in [
+        (renderer.set_instances(id, many), 0),
+        (renderer.set(id, object.clone()), 0),
+        (renderer.add(object).map(|_| ()), 1),
     ] {
+        let error = refused.unwrap_err();
+        let key = &*format!("object.{number}.instances");
         assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
         assert_eq!(error.key.as_deref(), Some(key), "{error}");
         assert!(error.message.contains("vase"), "{error}");
@@ -323,16 +292,8 @@ fn too_many_copies_name_the_object() {
 /// lights stay as they were set, so no other change is lost with them.
 #[test]
 fn a_refusal_repeats_until_it_is_mended() {
-    let mut renderer = Renderer::new(
-        device(),
-        dynamic(&[COLOR], DEPTH, NONE, Planes::Color, 1),
-        &SearchSettings {
-            solver: Solver::Live,
-            ..SearchSettings::exact()
-        },
-        1,
-    )
-    .unwrap();
+    let live = SearchSettings::exact().with(|s| s.solver = Solver::Live);
+    let mut renderer = Renderer::new(device(), color(), &live, 1).unwrap();
     for n in 0..13 {
         let mut object = Object::new(format!("{n}"), Arc::new(shapes::sphere()));
         object.placement.position.y = f64::from(n);
@@ -342,10 +303,7 @@ fn a_refusal_repeats_until_it_is_mended() {
     let view = View::from_camera(&camera, (64, 48), [0.1, 100.0]).unwrap();
     renderer.plan(&view).unwrap();
     let before = renderer.lighting().clone();
-    let shadows = Lighting {
-        shadow: Shadow::Hard,
-        ..before.clone()
-    };
+    let shadows = before.clone().with(|l| l.shadow = Shadow::Hard);
     renderer.set_lighting(&shadows).unwrap();
     for _ in 0..2 {
         let refused = renderer.plan(&view).unwrap_err();

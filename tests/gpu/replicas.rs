@@ -2,12 +2,7 @@
 //! (`lab/reference/src/tests/crowds.rs`).
 
 use crate::common::passing::count;
-use crate::common::{draw, hits, placement, reference, scene_of, shapes, sized};
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::maps::MapFormat;
-use revmap::scene::{Object, Placement, Scene};
-use revmap::settings::{Settings, Solver};
+use crate::common::prelude::*;
 
 const COUNT: [u32; 3] = [3, 3, 2];
 const ROWS: u32 = 512;

@@ -5,17 +5,12 @@
 use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open_with};
 use crate::common::passing::count;
+use crate::common::prelude::*;
 use crate::common::ways::apart;
-use crate::common::{eye, offset, reference, scene_of, shapes, sized};
 use crate::spirv::{Arithmetic, edited};
-use ash::vk;
-use revmap::frame::Frame;
-use revmap::maps::MapFormat;
-use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_searches::CIRCLE;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::SeqCst;
 
 static HOW: Mutex<Option<Arithmetic>> = Mutex::new(None);
 static EDITS: AtomicUsize = AtomicUsize::new(0);
@@ -44,10 +39,7 @@ struct Edited {
 
 /// Draws a scene on a device that computes in some way.
 fn drawn(scene: &Scene, settings: &Settings, how: Option<Arithmetic>) -> Edited {
-    let host = open_with(|features| vk::PhysicalDeviceFeatures {
-        shader_float64: vk::TRUE,
-        ..features
-    });
+    let host = open_with(|features| features.with(|p| p.shader_float64 = vk::TRUE));
     let raw = planted_device(&host.instance, &host.device, edits);
     *HOW.lock().unwrap() = how;
     EDITS.store(0, SeqCst);
@@ -72,15 +64,9 @@ fn scenes() -> [(&'static str, Scene); 2] {
 }
 
 const ROWS: u32 = 256;
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 
 fn settings(stage: DrawStage, solver: Solver) -> Settings {
-    Settings {
-        map_rows: Some(ROWS),
-        solver,
-        stage,
-        ..sized(240, 180)
-    }
+    sized(240, 180).with(|s| (s.map_rows, s.solver, s.stage) = (Some(ROWS), solver, stage))
 }
 
 /// Faults that no rounding explains. Pixels: the ray goes more than a texel into the solid before the hit,
@@ -189,10 +175,7 @@ fn coarse_samplers_change_no_search_of_the_library() {
                 assert!(wanted.first_difference(&planted).is_some());
             }
         }
-        let settings = Settings {
-            map_format: MapFormat::Rgba8,
-            ..settings(stage, CIRCLE)
-        };
+        let settings = settings(stage, CIRCLE).with(|s| s.map_format = MapFormat::Rgba8);
         let [fine, coarse] =
             [1024.0, 4.0].map(|parts| drawn(&scene, &settings, Some(Arithmetic::Sampled(parts))));
         assert!(coarse.edits > 0 && fine.frame.first_difference(&coarse.frame).is_some());

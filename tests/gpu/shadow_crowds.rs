@@ -1,14 +1,8 @@
 //! Shadows between ten thousand copies, and between more objects and shapes than a search on maps
 //! can draw.
 
-use crate::common::ways::STAGES;
-use crate::common::{assert_sound, draw, placement, reference, shapes, sized};
+use crate::common::prelude::*;
 use crate::shadows::otherwise_lit;
-use glam::{DQuat, DVec3};
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Placement, Scene, Shadow};
-use revmap::settings::{Settings, Solver};
-use std::sync::Arc;
 
 /// A plate of 10 x 10 under one low light.
 fn plate() -> Scene {
@@ -90,11 +84,7 @@ fn shadows_have_no_limit_on_objects_and_shapes() {
     let settings = sized(120, 90);
     let truth = reference(&scene, &settings);
     for stage in STAGES {
-        let settings = Settings {
-            stage,
-            solver: Solver::Quadric,
-            ..settings
-        };
+        let settings = settings.with(|s| (s.stage, s.solver) = (stage, Solver::Quadric));
         let [off, dark, all] = otherwise_lit(&truth, &draw(&scene, &settings));
         println!("{stage:?}: {off} of {all} lit otherwise, {dark} dark");
         assert!(dark > 500 && 200 * off <= all, "{stage:?}: {off} of {all}");

@@ -1,12 +1,12 @@
 //! The host of `examples/shadowed`: its sun's shadow map over meshes and solids.
 
-use glam::{DVec2, DVec3};
+use crate::common::prelude::*;
 use revmap::cast::RayCaster;
+use shadowed::map::TEXEL;
+use shadowed::{OPTIONS, scene};
 
 #[path = "../../examples/shadowed/main.rs"]
 mod shadowed;
-
-use shadowed::{OPTIONS, map::TEXEL, scene};
 
 /// Distance from the edge of a shadow, in texels: the filter reaches 2, the host's move along the
 /// normal 2.83.

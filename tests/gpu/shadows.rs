@@ -1,17 +1,7 @@
 //! Shadows between solids: each follows the caster's own offset and replicas, whatever the
 //! receiver.
 
-use crate::common::ways::STAGES;
-use crate::common::{
-    assert_sound, draw, drawn_by, from_boxes, in_compute, placement, reference, shapes, sized,
-};
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Scene, Shadow};
-use revmap::settings::{Settings, Solver};
-use revmap_searches::CIRCLE;
-use std::sync::Arc;
+use crate::common::prelude::*;
 
 /// A plain round table with `casters` on it, under one light.
 fn scene(casters: Vec<Object>) -> Scene {

@@ -1,13 +1,8 @@
 //! Close pictures of outlines with short edges: cells lose no pixels that lists find.
 
 use crate::common::outlines::outline;
-use crate::common::ways::STAGES;
-use crate::common::{draw, drawn_by, scene_of};
+use crate::common::prelude::*;
 use crate::random::Random;
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::profile::Profile;
-use revmap::settings::{Settings, Solver};
 use std::f64::consts::TAU;
 
 const SIZE: (u32, u32) = (400, 300);

@@ -1,13 +1,7 @@
 //! Copies smaller than a pixel: coverage and colour are right on average.
 
-use crate::common::ways::STAGES;
-use crate::common::{device, drawn_by, next_frame, placement, scene_of, shapes};
+use crate::common::prelude::*;
 use crate::random::Random;
-use glam::DVec3;
-use revmap::frame::Frame;
-use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
-use revmap_offscreen::Offscreen;
 
 const SIZE: (u32, u32) = (480, 360);
 /// Pixels of the finer picture in a pixel, along each side.

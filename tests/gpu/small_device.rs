@@ -3,18 +3,12 @@
 
 use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open};
-use crate::common::{next_frame, sized};
+use crate::common::prelude::*;
 use crate::embedding::three;
-use ash::vk;
-use glam::DVec3;
-use revmap::error::ErrorKind;
-use revmap::gpu::MemoryUse;
-use revmap::scene::Placement;
-use revmap::settings::{DrawStage, Planes, Settings};
-use revmap_offscreen::{Offscreen, OffscreenOptions};
 use std::collections::HashMap;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::SeqCst;
 
 /// Bytes of the device.
 const BYTES: u64 = 4 << 30;
@@ -61,10 +55,9 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     let raw = planted_device(&host.instance, &host.device, memory);
     let device = borrow_through(&host, &host.instance, &raw).unwrap();
     let mut scene = three();
-    let place = |n: u32| Placement {
-        position: DVec3::new(f64::from(n / 300), f64::from(n % 300) - 150.0, 0.0) * -0.4,
-        scale: DVec3::splat(0.4),
-        ..Placement::default()
+    let place = |n: u32| {
+        let (x, y) = (f64::from(n / 300), f64::from(n % 300) - 150.0);
+        scaled([-0.4 * x, -0.4 * y, 0.0], 0.4)
     };
     scene.objects[1].instances = (0..90_000).map(place).collect();
     let settings = sized(160, 120);
@@ -72,7 +65,7 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     let before = next_frame(&mut small);
     let fits = live();
     assert!(
-        fits > 0 && fits < 256 << 20,
+        (1..256 << 20).contains(&fits),
         "{fits} bytes for 90,000 copies"
     );
     assert_eq!(REFUSED.load(SeqCst), 0);
@@ -85,10 +78,7 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
         planes: Planes::Color,
         ..settings
     };
-    let options = OffscreenOptions {
-        samples: 4,
-        ..OffscreenOptions::default()
-    };
+    let options = OffscreenOptions::default().with(|o| o.samples = 4);
     let with = || Offscreen::with(&device, &scene, &large, options);
     let first = with().unwrap();
     let (used, full) = (device.memory_use(), live());

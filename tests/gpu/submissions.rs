@@ -1,11 +1,7 @@
 //! Frames in several submissions, as on a GPU whose system limits the time of one.
 
-use crate::common::{device, sized};
+use crate::common::prelude::*;
 use crate::embedding::{hundred, three};
-use revmap::frame::Frame;
-use revmap::scene::{Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings};
-use revmap_offscreen::{Offscreen, OffscreenOptions};
 
 /// Three solids, with copies of one, or in each other's shadows.
 fn scenes() -> [(&'static str, Scene); 3] {

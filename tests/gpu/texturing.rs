@@ -1,25 +1,14 @@
 //! Texture coordinates compared with their formulas, the seam, the colours of the reference.
 
-use crate::common::ways::STAGES;
-use crate::common::{draw, eye, placement, reference, scene_of, shapes, sized};
-use glam::{DQuat, DVec3};
-use revmap::frame::Frame;
-use revmap::maps::{ArcLength, ColorMap, DisplacementMap, MapFormat, Projection};
-use revmap::profile::Profile;
-use revmap::scene::{BumpForm, CameraFrame, Scene};
-use revmap::settings::Settings;
+use crate::common::prelude::*;
 use revmap_offscreen::samples::averaged;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// Half a texel of a map of 720 x 360.
 const HALF: [f64; 2] = [0.5 / 720.0, 0.5 / 360.0];
 
 fn settings() -> Settings {
-    Settings {
-        map_format: MapFormat::R32,
-        ..sized(120, 90)
-    }
+    sized(120, 90).with(|s| s.map_format = MapFormat::R32)
 }
 
 /// The point visible at a pixel, computed from its distance.
@@ -279,10 +268,7 @@ fn an_offset_moves_the_texture_around_and_up() {
         object.texturing.color_map = Some(waves(256, 128, 1.0));
         object.texturing.offset = offset;
         object.placement.rotation = DQuat::from_rotation_z(TAU * turn);
-        let settings = Settings {
-            stage,
-            ..settings()
-        };
+        let settings = settings().with(|s| s.stage = stage);
         draw(&scene, &settings)
     };
     let apart = |a: &Frame, b: &Frame| {

@@ -1,14 +1,7 @@
 //! Levels of surfaces: errors stay below the tolerance, and pictures depend only on the view.
 
-use crate::common::ways::STAGES;
-use crate::common::{
-    device, draw, drawn_by, eye, next_frame, placement, reference, scene_of, shapes, updated,
-};
-use revmap::gpu::{Device, INSTANCE_BYTES};
-use revmap::scene::{Scene, Shadow};
-use revmap::settings::{DrawStage, Settings, Solver, Tolerance};
+use crate::common::prelude::*;
 use revmap_compare::pixel_errors;
-use revmap_offscreen::Offscreen;
 
 fn settings(stage: DrawStage, pixels: f64) -> Settings {
     Settings {

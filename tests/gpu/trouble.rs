@@ -3,19 +3,11 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, Host, borrow_through, open, open_with};
+use crate::common::host::{Checked, Host, borrow, borrow_through, open, open_with};
+use crate::common::prelude::*;
 use crate::common::ways::apart;
-use crate::common::{device, eye, next_frame, scene_of, shapes, updated};
 use crate::embedding::three;
 use crate::memory_types::simulated;
-use ash::vk;
-use glam::DVec3;
-use revmap::error::ErrorKind;
-use revmap::frame::Frame;
-use revmap::gpu::{Device, DrawPath};
-use revmap::scene::{Placement, Scene, Shadow};
-use revmap::settings::{DrawStage, Planes, Settings, Solver};
-use revmap_offscreen::Offscreen;
 
 pub fn settings(stage: DrawStage) -> Settings {
     Settings {
@@ -74,10 +66,7 @@ fn fail_each_call(
         (DrawStage::Fragment, Solver::Exact),
         (DrawStage::Compute, Solver::Live),
     ] {
-        let settings = Settings {
-            solver,
-            ..settings(stage)
-        };
+        let settings = settings(stage).with(|s| s.solver = solver);
         layer.fail_at(usize::MAX);
         work(host, of, &settings).unwrap();
         let all = layer.made();
@@ -253,10 +242,7 @@ fn a_device_without_what_is_needed_is_refused() {
         (|m| m.compute = true, "a queue for graphics and compute"),
     ];
     for (change, lack) in lacks {
-        let mut mask = Mask::default();
-        change(&mut mask);
-        let instance = layer.instance(&host.entry, &host.instance, mask);
-        let Err(error) = borrow_through(&host, &instance, &host.device) else {
+        let Err(error) = layer.poorer(&host, change) else {
             panic!("taken without {lack}");
         };
         assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
@@ -272,27 +258,20 @@ fn a_device_without_what_is_optional_draws_the_same() {
     let mut scene = three();
     scene.shadow = Shadow::Hard;
     for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let settings = Settings {
-            width: 160,
-            height: 120,
-            ..settings(stage)
-        };
-        let whole = borrow_through(&host, &host.instance, &host.device).unwrap();
+        let settings = settings(stage).with(|s| (s.width, s.height) = (160, 120));
+        let whole = borrow(&host);
         let wanted = picture(&whole, &scene, &settings);
-        let changes: [fn(&mut Mask); 3] = [
-            |m| m.anisotropy = true,
-            |m| m.timestamps = true,
-            |m| m.varyings = true,
-        ];
-        for change in changes {
-            let mut mask = Mask::default();
-            change(&mut mask);
-            let instance = layer.instance(&host.entry, &host.instance, mask);
-            let poorer = borrow_through(&host, &instance, &host.device).unwrap();
+        for optional in ["anisotropy", "timestamps", "varyings"] {
+            let is = |name| optional == name;
+            let lacks = |m: &mut Mask| {
+                (m.anisotropy, m.timestamps) = (is("anisotropy"), is("timestamps"));
+                m.varyings = is("varyings");
+            };
+            let poorer = layer.poorer(&host, lacks).unwrap();
             let mut drawn = Offscreen::new(&poorer, &scene, &settings).unwrap();
             let times = drawn.draw().unwrap();
-            assert_eq!(times.gpu_ms.is_none(), mask.timestamps);
-            if mask.varyings && stage == DrawStage::Fragment {
+            assert_eq!(times.gpu_ms.is_none(), is("timestamps"));
+            if is("varyings") && stage == DrawStage::Fragment {
                 // Cells need more varyings, so tiles are drawn; the visible solids are the same.
                 assert_eq!(drawn.renderer().draw_paths(), [DrawPath::Tiles; 3]);
                 let frame = drawn.read().unwrap();
@@ -321,16 +300,8 @@ fn subgroups_of_any_size_draw_the_same() {
             ..settings(stage)
         };
         let [small, wide @ ..] = [4, 16, 32, 64].map(|subgroup| {
-            let mask = Mask {
-                subgroup,
-                ..Mask::default()
-            };
-            let instance = layer.instance(&host.entry, &host.instance, mask);
-            picture(
-                &borrow_through(&host, &instance, &host.device).unwrap(),
-                &scene,
-                &settings,
-            )
+            let device = layer.poorer(&host, |m| m.subgroup = subgroup).unwrap();
+            picture(&device, &scene, &settings)
         });
         wide.iter().for_each(|frame| assert_same(frame, &wide[0]));
         let (hits, edges, far) = apart(&wide[0], &small);
@@ -350,11 +321,8 @@ fn subgroups_of_any_size_draw_the_same() {
 fn colour_is_drawn_on_a_device_opened_without_features() {
     let _layer = Layer::take();
     let host = open_with(|_| vk::PhysicalDeviceFeatures::default());
-    let bare = borrow_through(&host, &host.instance, &host.device).unwrap();
-    let settings = Settings {
-        planes: Planes::Color,
-        ..settings(DrawStage::Fragment)
-    };
+    let bare = borrow(&host);
+    let settings = settings(DrawStage::Fragment).with(|s| s.planes = Planes::Color);
     // The squares of a crowd are triangles on devices without points of several pixels.
     let mut crowd = three();
     for (number, object) in (0..).zip(&mut crowd.objects) {
@@ -405,11 +373,7 @@ fn a_thousand_renderers_leave_nothing_behind() {
     let mut alive = [0; 2];
     for cycle in 0..1000 {
         let stage = [DrawStage::Fragment, DrawStage::Compute][cycle % 2];
-        let settings = Settings {
-            width: 8,
-            height: 8,
-            ..settings(stage)
-        };
+        let settings = settings(stage).with(|s| (s.width, s.height) = (8, 8));
         let mut drawn = Offscreen::new(&device, &scenes[cycle / 2 % 2], &settings).unwrap();
         // Each kind of picture at first, then some: objects made by a frame end with the renderer,
         // too.

@@ -4,38 +4,28 @@
 
 use crate::calls::Layer;
 use crate::common::host::{
-    Attachments, COLOR, Host, HostBuffer, add, barrier, borrow, borrow_through, color_pass, never,
-    once, open, target, view_of,
+    Attachments, COLOR, Host, HostBuffer, add, barrier, borrow_through, color_pass, never, once,
+    open, opened, target, view_of,
 };
-use crate::embedding::{options, three};
-use ash::vk;
-use revmap::gpu::{Device, ObjectId, Output, Renderer, View};
-use revmap::maps::{ColorMap, DisplacementMap, MapFormat, SlopeFilter};
-use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Planes, SearchSettings, Solver};
-use std::sync::Arc;
+use crate::common::prelude::*;
+use crate::embedding::{far_words, options, three};
 
 const SIZE: u32 = 16;
-const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 const CLEAR: vk::ClearColorValue = vk::ClearColorValue { float32: [0.0; 4] };
 
 /// The three solids, with a colour map and a displacement map on the first.
 fn textured() -> Scene {
     let mut scene = three();
-    scene.objects[0] = with_maps(scene.objects[0].clone(), 0);
-    scene
-}
-
-fn with_maps(mut object: Object, seed: u32) -> Object {
+    let object = &mut scene.objects[0];
     let pixels = 0..SIZE * SIZE;
-    let texel = |n: u32| [(37 * (n + seed)) as u8, 255 - (91 * n) as u8, 40, 255];
+    let texel = |n: u32| [(37 * n) as u8, 255 - (91 * n) as u8, 40, 255];
     let colors = ColorMap::from_texels(SIZE, SIZE, pixels.clone().map(texel).collect());
     let heights: Vec<f32> = pixels.map(|n| (n * 29 % 64) as f32 / 64.0).collect();
     let slopes = DisplacementMap::from_heights(SIZE, SIZE, &heights, SlopeFilter::Scharr);
     object.texturing.color_map = Some(Arc::new(colors.unwrap()));
     object.texturing.displacement_map = Some(Arc::new(slopes.unwrap()));
     object.texturing.bump = 0.02;
-    object
+    scene
 }
 
 /// A renderer with its target: an attachment, or words of compute.
@@ -85,11 +75,9 @@ impl<'a> Drawn<'a> {
             view: view_of(scene, &options),
             into: match compute {
                 true => Into::Words(cleared(host)),
-                false => Into::Pass(
-                    Attachments::new(host, options, &[(COLOR, 4)])
-                        .unwrap()
-                        .into(),
-                ),
+                false => Into::Pass(Box::new(
+                    Attachments::new(host, options, &[(COLOR, 4)]).unwrap(),
+                )),
             },
             host,
         };
@@ -151,8 +139,7 @@ impl<'a> Drawn<'a> {
 
 /// Words of depths, all far, then words of colours, all 0.
 fn cleared(host: &Host) -> HostBuffer<'_> {
-    let pixels = (options().width * options().height) as usize;
-    let words = [vec![1.0f32; pixels], vec![0.0; pixels]].concat();
+    let words = far_words(&options());
     HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap()
 }
 
@@ -189,12 +176,8 @@ fn a_retry_after_a_failed_call_draws_everything() {
             let object = drawn.renderer.object(drawn.ids[0]).unwrap().clone();
             drawn.renderer.set(drawn.ids[0], object).unwrap();
             for slot in [0, 1] {
-                let found = drawn.picture(slot);
-                assert_eq!(
-                    differ(&found, &wanted),
-                    0,
-                    "{stage:?}, call {n}, slot {slot}"
-                );
+                let pixels = differ(&drawn.picture(slot), &wanted);
+                assert_eq!(pixels, 0, "{stage:?}, call {n}, slot {slot}");
             }
             if !failed {
                 break;
@@ -208,8 +191,7 @@ fn a_retry_after_a_failed_call_draws_everything() {
 /// The budget of memory refuses a frame. Once there is memory, everything is drawn.
 #[test]
 fn a_retry_after_a_refusal_of_memory_draws_everything() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let scene = textured();
     for stage in STAGES {
         let wanted = Drawn::new(&host, &device, stage, &scene).picture(0);
@@ -232,8 +214,7 @@ fn a_retry_after_a_refusal_of_memory_draws_everything() {
 /// are drawn then, without being set again.
 #[test]
 fn one_wrong_object_hides_no_other() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let search = SearchSettings {
         solver: Solver::Live,
         map_format: MapFormat::Rgba8,

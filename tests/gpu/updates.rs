@@ -1,16 +1,7 @@
 //! A renderer from update to update: a failed update leaves nothing half done, and unchanged parts
 //! are not made again.
 
-use crate::common::ways::STAGES;
-use crate::common::{
-    device, draw, drawn_by, eye, next_frame, placement, scene_of, shapes, updated,
-};
-use revmap::error::ErrorKind;
-use revmap::gpu::DrawPath;
-use revmap::profile::Profile;
-use revmap::scene::{Object, Scene};
-use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_offscreen::Offscreen;
+use crate::common::prelude::*;
 use revmap_searches::CONE;
 
 fn settings(stage: DrawStage) -> Settings {
@@ -48,10 +39,7 @@ fn what_is_refused_changes_nothing() {
     ];
     for stage in STAGES {
         for (word, solver, spoil) in cases {
-            let settings = Settings {
-                solver,
-                ..settings(stage)
-            };
+            let settings = settings(stage).with(|s| s.solver = solver);
             let scene = vase();
             let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
             let before = next_frame(&mut renderer);
@@ -119,10 +107,7 @@ fn only_what_has_changed_is_cut() {
         (CONE, DrawStage::Fragment),
         (Solver::Live, DrawStage::Fragment),
     ] {
-        let settings = Settings {
-            solver,
-            ..settings(stage)
-        };
+        let settings = settings(stage).with(|s| s.solver = solver);
         let mut scene = three();
         let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
         let mut check = |scene: &Scene, cuts: u64, what: &str| {

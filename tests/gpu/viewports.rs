@@ -2,20 +2,10 @@
 //! range of their own.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    self, Attachments, Host, Mesh, MeshPipeline, MeshShaders, Options, borrow, once, open,
-};
-use crate::embedding::{hundred, options, three};
+use crate::common::host::{Attachments, Host, Mesh, MeshPipeline, MeshShaders, once, opened};
+use crate::common::prelude::*;
+use crate::embedding::{Picture, first_frame, hundred, matrices, options, three};
 use crate::embedding_outputs::{by_proxies_of, depth_only, parallel};
-use ash::vk;
-use glam::{DMat4, DVec3, DVec4, Vec3};
-use revmap::error::ErrorKind;
-use revmap::gpu::{DepthOrder, Device, Output, PassFormats, Renderer, View, Viewport};
-use revmap::scene::{Scene, Shadow};
-use revmap::settings::{Planes, SearchSettings};
-
-/// Bytes of colours, and depths.
-type Picture = (Vec<u8>, Vec<f32>);
 
 /// The host's `VkViewport` and scissor.
 #[derive(Clone, Copy)]
@@ -52,17 +42,14 @@ impl Port {
 
     /// Sets viewport and scissor.
     unsafe fn set(&self, host: &Host, cmd: vk::CommandBuffer) {
-        let [x, y, width, height, min_depth, max_depth] = {
-            let (v, [min, max]) = (&self.place, self.depths);
-            [v.x, v.y, v.width, v.height, min, max].map(|number| number as f32)
-        };
+        let (v, [min, max]) = (&self.place, self.depths);
         let viewport = vk::Viewport {
-            x,
-            y,
-            width,
-            height,
-            min_depth,
-            max_depth,
+            x: v.x as f32,
+            y: v.y as f32,
+            width: v.width as f32,
+            height: v.height as f32,
+            min_depth: min as f32,
+            max_depth: max as f32,
         };
         let [first, end] = self.rows;
         let scissor = vk::Rect2D {
@@ -91,10 +78,7 @@ fn in_pass(
     (port, matrices): (&Port, [DMat4; 2]),
     mesh: Option<&Mesh>,
 ) -> Picture {
-    let options = Options {
-        reversed: pass.depth == DepthOrder::Reversed,
-        ..options()
-    };
+    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
     let formats: &[_] = match pass.planes {
         Planes::Color => &[(host::COLOR, 4)],
         _ => &[],
@@ -124,25 +108,13 @@ fn in_pass(
             into.copy(cmd);
         }
     });
-    let color = if formats.is_empty() {
-        Vec::new()
-    } else {
-        into.color(0)
-    };
-    (color, into.depths())
+    let color = formats.first().map(|_| into.color(0));
+    (color.unwrap_or_default(), into.depths())
 }
 
 /// Draws the solids in compute.
 fn in_compute(host: &Host, renderer: &mut Renderer, view: &View) -> Picture {
-    let pixels = (options().width * options().height) as usize;
-    let mut words = vec![1f32.to_bits(); pixels];
-    words.resize(2 * pixels, 0);
-    let words = host::draw_words(host, &words, renderer, view, None);
-    let (depths, colors) = words.split_at(pixels);
-    (
-        bytemuck::cast_slice(colors).to_vec(),
-        depths.iter().map(|bits| f32::from_bits(*bits)).collect(),
-    )
+    first_frame(host, options(), None, (renderer, view), None)
 }
 
 fn color_renderer(device: &Device, scene: &Scene, compute: bool) -> Renderer {
@@ -166,10 +138,9 @@ fn compare_moved(found: &Picture, whole: &Picture, [dx, dy]: [i32; 2]) -> [usize
         hits += usize::from(depth < 1.0);
         let mut same = (found.1[at] - depth).abs() < 1e-5;
         if let Some(color) = found.0.get(4 * at..4 * at + 4) {
-            let wanted = if inside {
-                &whole.0[4 * from..4 * from + 4]
-            } else {
-                &[0; 4]
+            let wanted = match inside {
+                true => &whole.0[4 * from..4 * from + 4],
+                false => &[0; 4],
             };
             same &= color.iter().zip(wanted).all(|(a, b)| a.abs_diff(*b) <= 2);
         }
@@ -200,8 +171,7 @@ fn assert_moved(found: &Picture, whole: &Picture, by: [i32; 2], what: &str) {
 /// The visible part of a viewport is that of the same picture drawn in place, in both stages.
 #[test]
 fn viewports_beside_the_framebuffer_draw_what_shows() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut shadows = hundred();
     shadows.shadow = Shadow::Hard;
     for (name, scene) in [
@@ -209,8 +179,7 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
         ("copies", hundred()),
         ("shadows", shadows),
     ] {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let matrices = host::view_and_projection(eye, target, &options());
+        let matrices = matrices(&scene);
         for compute in [false, true] {
             let mut renderer = color_renderer(&device, &scene, compute);
             let mut drawn = |port: &Port| match compute {
@@ -219,13 +188,10 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
                     let rows = port.rows[0]..port.rows[1];
                     in_compute(&host, &mut renderer, &view.with_rows(rows))
                 }
-                false => in_pass(
-                    &host,
-                    &host::color_pass(),
-                    &mut renderer,
-                    (port, matrices),
-                    None,
-                ),
+                false => {
+                    let pass = host::color_pass();
+                    in_pass(&host, &pass, &mut renderer, (port, matrices), None)
+                }
             };
             let what = format!("{name}, compute {compute}");
             let whole = drawn(&Port::new([0, 0], false));
@@ -254,8 +220,7 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
 /// The same for a shadow map of parallel rays.
 #[test]
 fn parallel_views_beside_the_framebuffer_draw_what_shows() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let from = DVec3::new(2.0, 1.0, 2.5);
     let look = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let pass = depth_only(true);
@@ -263,13 +228,8 @@ fn parallel_views_beside_the_framebuffer_draw_what_shows() {
         let output = Output::Pass(pass.clone());
         let mut renderer = host::renderer_of(&device, output, &by_proxies_of(0), 1, &scene);
         let mut drawn = |port: &Port| {
-            in_pass(
-                &host,
-                &pass,
-                &mut renderer,
-                (port, [look, parallel()]),
-                None,
-            )
+            let shown = (port, [look, parallel()]);
+            in_pass(&host, &pass, &mut renderer, shown, None)
         };
         let whole = drawn(&Port::new([0, 0], false));
         for by in MOVES {
@@ -283,11 +243,9 @@ fn parallel_views_beside_the_framebuffer_draw_what_shows() {
 /// A viewport that the device does not have is refused by name, and so is its plan.
 #[test]
 fn viewports_beyond_the_device_are_refused() {
-    let host = open();
-    let device = borrow(&host);
+    let (_host, device) = opened();
     let scene = three();
-    let (eye, target) = (scene.camera.eye, scene.camera.target);
-    let matrices = host::view_and_projection(eye, target, &options());
+    let matrices = matrices(&scene);
     for compute in [false, true] {
         let mut renderer = color_renderer(&device, &scene, compute);
         for [x, y, width, height] in [
@@ -318,8 +276,7 @@ fn lens(is_parallel: bool, reversed: bool) -> DMat4 {
     let mut lens = parallel();
     if !is_parallel {
         let scene = three();
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        lens = host::view_and_projection(eye, target, &options())[1];
+        lens = matrices(&scene)[1];
         let (near, far) = (0.1, 3.1);
         lens.z_axis.z = far / (near - far);
         lens.w_axis.z = near * far / (near - far);
@@ -362,16 +319,14 @@ fn compare_ranges(
 #[test]
 fn solids_and_meshes_share_the_depth_range() {
     const RANGE: [f32; 2] = [0.2, 0.7];
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mesh = Mesh::sphere(&host, 64, Vec3::new(0.3, -0.1, 0.45), 0.3, Vec3::Z).unwrap();
     for (name, scene, least) in [
         ("cells", three(), 0),
         ("boxes", three(), u32::MAX),
         ("copies", hundred(), 0),
     ] {
-        let (eye, target) = (scene.camera.eye, scene.camera.target);
-        let look = host::view_and_projection(eye, target, &options())[0];
+        let look = matrices(&scene)[0];
         for (is_parallel, reversed) in [(false, false), (false, true), (true, false), (true, true)]
         {
             let pass = PassFormats {
@@ -389,10 +344,7 @@ fn solids_and_meshes_share_the_depth_range() {
             let mut renderer = host::renderer_of(&device, output, &by_proxies_of(least), 1, &scene);
             let matrices = [look, lens(is_parallel, reversed)];
             let mut drawn = |depths: [f64; 2], mesh| {
-                let port = Port {
-                    depths,
-                    ..Port::new([0, 0], false)
-                };
+                let port = Port::new([0, 0], false).with(|p| p.depths = depths);
                 in_pass(&host, &pass, &mut renderer, (&port, matrices), mesh)
             };
             for mesh in [None, Some(&mesh)] {
@@ -405,10 +357,7 @@ fn solids_and_meshes_share_the_depth_range() {
             }
         }
         let view = |depths| {
-            let port = Port {
-                depths,
-                ..Port::new([0, 0], false)
-            };
+            let port = Port::new([0, 0], false).with(|p| p.depths = depths);
             port.view([look, lens(false, false)], DepthOrder::Normal)
         };
         let mut renderer = color_renderer(&device, &scene, true);

@@ -1,6 +1,6 @@
 //! Faults that random hosts found, each as a fixed sequence of calls.
 
-use crate::common::host::{self, Attachments, Options, borrow, color_pass, open, view_of};
+use crate::common::host::{self, Attachments, Options, color_pass, opened, view_of};
 use crate::common::shapes;
 use ash::vk;
 use glam::DVec3;
@@ -33,8 +33,7 @@ fn picture(host: &host::Host, renderer: &mut Renderer, view: &View) -> Vec<u8> {
 /// removed, the others are drawn as if it had never been there.
 #[test]
 fn a_removed_solid_leaves_no_search_behind() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     let mut scene = Scene::new(Camera::new(DVec3::new(2.0, 0.8, 1.2), DVec3::Z * 0.5));
     scene.shadow = Shadow::Hard;
     let vase = Object::new("vase", Arc::new(shapes::vase()));

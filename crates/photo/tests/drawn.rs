@@ -43,6 +43,13 @@ impl Default for Scene {
     }
 }
 
+/// The usual scene with a change.
+fn changed(change: impl FnOnce(&mut Scene)) -> Scene {
+    let mut scene = Scene::default();
+    change(&mut scene);
+    scene
+}
+
 impl Scene {
     /// Height of the thing, pixels.
     const TALL: f64 = 170.0;
@@ -180,33 +187,18 @@ fn tones_and_grounds_are_named() {
         (dark.tone, dark.half, &dark.left_out[..]),
         (Tone::Darker, Half::Both, &[][..])
     );
-    let pale = Scene {
-        color: [0.9, 0.86, 0.8],
-        ground: [0.2, 0.2, 0.22],
-        ..Scene::default()
-    };
+    let pale = changed(|s| (s.color, s.ground) = ([0.9, 0.86, 0.8], [0.2, 0.2, 0.22]));
     assert_eq!(assert_sure(&pale.plain(), 0.96).tone, Tone::Lighter);
-    let hue = Scene {
-        color: [0.62, 0.35, 0.35],
-        ground: [0.34, 0.42, 0.34],
-        ..Scene::default()
-    };
+    let hue = changed(|s| (s.color, s.ground) = ([0.62, 0.35, 0.35], [0.34, 0.42, 0.34]));
     assert_sure(&hue.plain(), 0.96);
-    let table = Scene {
-        table: Some([0.4, 0.3, 0.2]),
-        color: [0.3, 0.4, 0.6],
-        ..Scene::default()
-    };
+    let table = changed(|s| (s.table, s.color) = (Some([0.4, 0.3, 0.2]), [0.3, 0.4, 0.6]));
     let table = assert_sure(&table.plain(), 0.95).to_string();
     assert!(table.starts_with("read as a photograph: "), "{table}");
 }
 
 #[test]
 fn what_is_left_out_is_named() {
-    let shadowed = Scene {
-        shadow: Some((0.2, 0.35)),
-        ..Scene::default()
-    };
+    let shadowed = changed(|s| s.shadow = Some((0.2, 0.35)));
     let shadowed = assert_sure(&shadowed.plain(), 0.95);
     assert!(shadowed.left_out.contains(&LeftOut::Shadow), "{shadowed}");
     let scene = Scene::default();
@@ -247,10 +239,7 @@ fn bands_of_the_grounds_colour_belong_to_the_thing() {
 
 #[test]
 fn a_half_that_the_edge_cuts_is_not_used() {
-    let scene = Scene {
-        axis: 0.12,
-        ..Scene::default()
-    };
+    let scene = changed(|s| s.axis = 0.12);
     let cut = assert_sure(&scene.plain(), 0.93);
     assert_eq!((cut.half, cut.cut), (Half::Right, true));
     assert!(
@@ -267,13 +256,8 @@ fn transparency_is_the_ground() {
         let [u, z] = scene.place((i % SIZE[0]) as f64 + 0.5, (i / SIZE[0]) as f64 + 0.5);
         pixel[3] = match (u.abs() < radius(z), (u - 0.1).abs() < radius(z)) {
             (true, _) => 255,
-            (_, shadow) => {
-                if shadow {
-                    90
-                } else {
-                    0
-                }
-            }
+            (_, true) => 90,
+            _ => 0,
         };
     }
     let reading = assert_sure(&pixels, 0.95);
@@ -282,11 +266,7 @@ fn transparency_is_the_ground() {
 
 #[test]
 fn a_faint_edge_is_doubted() {
-    let scene = Scene {
-        color: [0.8, 0.78, 0.74],
-        noise: 0.004,
-        ..Scene::default()
-    };
+    let scene = changed(|s| (s.color, s.noise) = (s.ground, 0.004));
     // The light falls from the left: only the right side is darker than the ground.
     let faint = scene.draw(|[u, z], inside, color| match inside {
         true => scene
@@ -335,20 +315,12 @@ fn things_that_were_not_turned_are_refused_or_doubted() {
 
 #[test]
 fn drawings_are_told_from_photographs() {
-    let scene = Scene {
-        color: [0.1, 0.1, 0.1],
-        ground: [0.9, 0.9, 0.9],
-        noise: 0.02,
-        ..Scene::default()
-    };
+    let scene = changed(|s| (s.color, s.ground, s.noise) = ([0.1; 3], [0.9; 3], 0.02));
     let flat = scene.draw(|_, inside, _| if inside { scene.color } else { scene.ground });
     assert!(is_drawing(&photo(&flat)));
-    let colored = scene.draw(|_, inside, _| {
-        if inside {
-            [0.1, 0.1, 0.4]
-        } else {
-            scene.ground
-        }
+    let colored = scene.draw(|_, inside, _| match inside {
+        true => [0.1, 0.1, 0.4],
+        false => scene.ground,
     });
     assert!(!is_drawing(&photo(&colored)));
     let lit = Scene {

@@ -16,6 +16,10 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+#[path = "../../../src/shader/tests/kept.rs"]
+mod kept;
+use kept::assert_kept;
+
 pub(super) fn contour(points: &[[f64; 2]], offset: &Offset) -> Contour {
     let profile = Profile::polygon(points, 0.5).unwrap();
     let source = ContourSource::new(&profile.outline).unwrap();
@@ -280,6 +284,7 @@ fn shadow_maps_agree_with_rays() {
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/spirv");
+<<<<<<< HEAD
     let kept = |name: &str| std::fs::read(format!("{folder}/{name}")).unwrap();
     let hashes = String::from_utf8(kept("sources.fnv")).unwrap();
     let [sources, compiler] = [g::SOURCES_HASH, g::COMPILER_HASH].map(|h| format!("{h:#018x}"));
@@ -300,4 +305,16 @@ fn kept_spirv_is_what_the_sources_give() {
             "{name} differs"
         );
     }
+=======
+    let hashes = [g::SOURCES_HASH, g::COMPILER_HASH];
+    let names = ["mesh.vert", "mesh_color.frag", "mesh_planes.frag"];
+    let all = names.into_iter().enumerate();
+    let all = all.map(|(n, name)| (name.to_owned(), shader(n)));
+    assert_kept(
+        (folder, "as build.rs says"),
+        hashes,
+        all.collect(),
+        unpacked,
+    );
+>>>>>>> tests
 }

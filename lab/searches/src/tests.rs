@@ -4,6 +4,10 @@ use crate::modules::generated as g;
 use revmap::search::unpacked;
 use std::collections::BTreeSet;
 
+#[path = "../../../src/shader/tests/kept.rs"]
+mod kept;
+use kept::assert_kept;
+
 /// Fixes the number of modules, so that an addition is noticed.
 #[test]
 fn modules_are_few() {
@@ -18,21 +22,9 @@ fn modules_are_few() {
 #[test]
 fn kept_spirv_is_what_the_sources_give() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/spirv");
-    let kept = |name: &str| std::fs::read(format!("{folder}/{name}")).unwrap();
-    let hashes = String::from_utf8(kept("sources.fnv")).unwrap();
-    let hashes: Vec<&str> = hashes.lines().collect();
-    assert_eq!(
-        hashes[0],
-        format!("{:#018x}", g::SOURCES_HASH),
-        "shaders changed; renew spirv/ with REVMAP_KEEP_SPIRV=1 cargo build -p revmap-searches --features shaderc"
-    );
-    if hashes[1] == format!("{:#018x}", g::COMPILER_HASH) {
-        for (listed, packed) in modules().iter().zip(g::MODULES) {
-            let name = listed.name();
-            let same = unpacked(&kept(&format!("{name}.spv.z"))) == unpacked(packed);
-            assert!(same, "{name}: kept words differ from the compiled");
-        }
-    }
-    let files = std::fs::read_dir(folder).unwrap().count();
-    assert_eq!(files, modules().len() + 1, "files that nothing reads");
+    let renew = "with REVMAP_KEEP_SPIRV=1 cargo build -p revmap-searches --features shaderc";
+    let all = modules().into_iter().zip(g::MODULES);
+    let all = all.map(|(listed, packed)| (listed.name(), unpacked(packed)));
+    let hashes = [g::SOURCES_HASH, g::COMPILER_HASH];
+    assert_kept((folder, renew), hashes, all.collect(), unpacked);
 }

@@ -4,31 +4,53 @@
 use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
+use revmap::scene::Scene;
 use revmap::settings::{Settings, Solver};
 use revmap_offscreen::Offscreen;
 use revmap_searches::CIRCLE;
-use revmap_stability::case::Step;
+use revmap_stability::case::{Case, Step};
 use revmap_stability::judge::{Judged, Truth};
-use revmap_stability::run::{Plan, STAGES, Verdict, run};
+use revmap_stability::run::{Outcome, Plan, STAGES, Verdict, run};
 use revmap_stability::{cases, random, report};
 
 const BALL: &str = "polygon = [[0.0, 0.1], [0.3, 0.1], [0.4, 0.5], [0.3, 0.9], [0.0, 0.9]]";
+
+fn tried(device: &Device, cases: &[Case], solver: Solver, quick: bool) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = Plan {
+        cases,
+        solvers: &[solver],
+        quick,
+        folder: folder.path(),
+    };
+    run(device, &plan, &mut |_, _, _| true).unwrap()
+}
+
+/// What a search draws of one case, with some of its values.
+fn judged(name: &str, solver: Solver, values: Option<Vec<f64>>) -> Vec<Judged> {
+    let device = Device::open_validated(None).unwrap();
+    let mut cases = cases::named(&[name.to_owned()]).unwrap();
+    if let Some(values) = values {
+        cases[0].values = values;
+    }
+    let trials = tried(&device, &cases, solver, false).trials;
+    device.check().unwrap();
+    trials
+        .into_iter()
+        .map(|trial| trial.judged.unwrap())
+        .collect()
+}
+
+fn read(step: &Step) -> Scene {
+    step.read(std::path::Path::new("")).unwrap()
+}
 
 /// Neither a failure that is not listed, nor one that is listed and has healed.
 #[test]
 fn the_default_fails_what_is_known_and_nothing_else() {
     let device = Device::open_validated(None).unwrap();
-    let folder = tempfile::tempdir().unwrap();
     let all = cases::named(&[]).unwrap();
-    let tried = |cases: &[_], solver| {
-        let plan = Plan {
-            cases,
-            solvers: &[solver],
-            quick: true,
-            folder: folder.path(),
-        };
-        run(&device, &plan, &mut |_, _, _| true).unwrap()
-    };
+    let tried = |cases: &[_], solver| tried(&device, cases, solver, true);
     let outcome = tried(&all, Solver::DEFAULT);
     let table = report::table(&all, &[Solver::DEFAULT], &outcome);
     println!("{}", table.aligned());
@@ -52,7 +74,7 @@ fn the_default_fails_what_is_known_and_nothing_else() {
 /// A ball's truth and the pixels that it hits.
 fn with_ball(test: impl FnOnce(&Truth, &[usize])) {
     let step = Step::seen([2.0, 0.3, 0.9], [0.0, 0.0, 0.5]).object(BALL);
-    let scene = step.read(std::path::Path::new("")).unwrap();
+    let scene = read(&step);
     let truth = Truth::new(&scene, &step).unwrap();
     let all = 0..truth.frame.pixels();
     let hit: Vec<usize> = all.filter(|&k| truth.frame.hits(k)).collect();
@@ -139,45 +161,22 @@ fn planted_flicker_is_counted() {
 /// The map search takes no step over a flat box: of a solid of 1000:1 every pixel is hit.
 #[test]
 fn flat_solids_are_drawn_from_their_map() {
-    let device = Device::open_validated(None).unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    let plan = Plan {
-        cases: &cases::named(&["flat".to_owned()]).unwrap(),
-        solvers: &[Solver::Live],
-        quick: false,
-        folder: folder.path(),
-    };
-    let outcome = run(&device, &plan, &mut |_, _, _| true).unwrap();
-    for trial in &outcome.trials {
-        let judged = trial.judged.as_ref().unwrap();
+    for judged in judged("flat", Solver::Live, None) {
         assert!(100 * judged.missed < judged.hits, "{judged:?}");
         assert!(10 * judged.wrong < judged.hits, "{judged:?}");
     }
-    device.check().unwrap();
 }
 
 /// A ball of flat segments is closed: of a million rays through edges and between them, none passes.
 #[test]
 fn a_million_rays_at_edges_miss_none() {
-    let device = Device::open_validated(None).unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    let mut cases = cases::named(&["million-edge-rays".to_owned()]).unwrap();
-    cases[0].values = vec![384.0];
-    let plan = Plan {
-        cases: &cases,
-        solvers: &[Solver::DEFAULT],
-        quick: false,
-        folder: folder.path(),
-    };
-    let outcome = run(&device, &plan, &mut |_, _, _| true).unwrap();
-    assert_eq!(outcome.trials.len(), 2);
-    for trial in &outcome.trials {
-        let judged = trial.judged.as_ref().unwrap();
+    let all = judged("million-edge-rays", Solver::DEFAULT, Some(vec![384.0]));
+    assert_eq!(all.len(), 2);
+    for judged in all {
         assert_eq!(judged.hits, 1152 * 868, "{judged:?}");
         let leaks = (judged.missed, judged.faults());
         assert_eq!(leaks, (0, 0), "{judged:?}");
     }
-    device.check().unwrap();
 }
 
 /// A seed gives one scene; its text is one that the program reads.
@@ -245,7 +244,7 @@ fn a_flat_tip_has_no_holes() {
     ];
     let step = Step::through([0.0195, 0.008, -1.58], [0.0, 0.0, 0.53], 2.0);
     let step = step.solid(&polygon, "").sized(242, 322);
-    let scene = step.read(std::path::Path::new("")).unwrap();
+    let scene = read(&step);
     let truth = Truth::new(&scene, &step).unwrap();
     for stage in STAGES {
         let settings = Settings {
@@ -267,7 +266,7 @@ fn a_solid_seen_from_within_is_judged_in_its_units() {
         let at = |p: [f64; 3]| p.map(|x| scale * x);
         let empty = Step::through(at([0.0, 0.0, 0.5]), at([1.0, 0.3, 0.6]), 80.0);
         let step = empty.object(&format!("{BALL}\nscale = {:?}", [scale; 3]));
-        let scene = step.read(std::path::Path::new("")).unwrap();
+        let scene = read(&step);
         let truth = Truth::new(&scene, &step).unwrap();
         let moved = |by: f64| {
             let mut frame = truth.frame.clone();
@@ -288,7 +287,7 @@ fn a_solid_within_another_is_judged_by_its_own_surface() {
     let step = step
         .object(BALL)
         .object(&format!("{BALL}\nscale = [0.2, 0.2, 0.2]"));
-    let scene = step.read(std::path::Path::new("")).unwrap();
+    let scene = read(&step);
     let mut alone = scene.clone();
     alone.objects.truncate(1);
     let both = Truth::new(&scene, &step).unwrap();

@@ -1,16 +1,8 @@
 //! Wrong arguments give errors, and leave what was there as it was.
 
-use revmap_capi::device::*;
-use revmap_capi::enums::*;
-use revmap_capi::fault::*;
-use revmap_capi::object::*;
-use revmap_capi::offscreen::*;
-use revmap_capi::profile::*;
-use revmap_capi::texture::*;
-use revmap_capi::values::*;
+use crate::names::*;
 use std::ffi::CStr;
 use std::mem::{offset_of, zeroed};
-use std::ptr::{null, null_mut};
 
 type Is = RevmapResult;
 

@@ -1,18 +1,7 @@
 //! Structures are laid out in C as in Rust, Vulkan's types among them.
 
+use crate::names::*;
 use crate::programs::{compile, folder};
-use revmap_capi::device::{
-    RevmapDeviceInfo, RevmapHostDevice, RevmapMemoryUse, RevmapRequirements,
-};
-use revmap_capi::object::RevmapObjectInfo;
-use revmap_capi::offscreen::{RevmapPicture, RevmapScene, RevmapTimes};
-use revmap_capi::rays::{RevmapBounds, RevmapRay, RevmapRayHit};
-use revmap_capi::renderer::statistics::{RevmapFrameStatistics, RevmapStatistics};
-use revmap_capi::renderer::{RevmapComputeTarget, RevmapPass};
-use revmap_capi::values::{
-    RevmapCamera, RevmapLight, RevmapLighting, RevmapOffset, RevmapPlacement, RevmapSearch,
-    RevmapView,
-};
 use std::fmt::Write;
 use std::mem::offset_of;
 

@@ -5,22 +5,9 @@ use crate::host::{
     Attachments, COLOR, DEPTH, Host, Options, borrow, dynamic, once, open, open_with,
     view_and_projection, viewport,
 };
+use crate::names::*;
 use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
-use ash::vk;
-use glam::{DMat4, DVec3};
-use revmap::gpu::{DepthOrder, ObjectId, Output, PassFormats, Renderer, View};
-use revmap::scene::{Material, Object, Placement};
-use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
-use revmap_capi::device::*;
-use revmap_capi::enums::*;
-use revmap_capi::object::*;
-use revmap_capi::profile::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::*;
-use revmap_capi::values::*;
 use std::cell::RefCell;
-use std::ptr::{null, null_mut};
 
 type F = vk::Format;
 type A = RevmapAttachment;

@@ -71,6 +71,19 @@ macro_rules! defaults {
     };
 }
 
+/// The names that most of these tests use.
+mod names {
+    #![allow(unused_imports)] // each file takes what it needs
+    pub use ash::vk;
+    pub use glam::{DMat4, DVec3, Vec3};
+    pub use revmap::{gpu::*, profile::*, scene::*, settings::*};
+    pub use revmap_capi::renderer::{frame::*, objects::*, statistics::*, *};
+    pub use revmap_capi::{device::*, enums::*, fault::*, object::*, offscreen::*};
+    pub use revmap_capi::{profile::*, rays::*, shading::*, texture::*, values::*};
+    pub use std::ptr::{null, null_mut};
+    pub use std::sync::Arc;
+}
+
 mod arguments;
 mod header;
 #[cfg(unix)]

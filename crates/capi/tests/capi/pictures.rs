@@ -1,16 +1,11 @@
 //! The programs' pictures are those of the Rust renderer, bit for bit.
 
 use crate::host::{self, Options, Stage};
+use crate::names::*;
 use crate::programs::{SANITIZED, STRICT, compile, folder, prefix, root, run, validated};
-use glam::{DMat4, DVec3};
-use revmap::gpu::{DepthOrder, Device, View};
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Object, Offset, Placement, Scene};
-use revmap::settings::{Planes, SearchSettings, Settings};
 use revmap_files::{Picture, ProfileAxis};
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
 
 const OPTIONS: Options = Options {
     width: 640,

@@ -1,18 +1,9 @@
 //! Rays through the C interface: what the Rust ray caster returns.
 
 use crate::arguments::spindle;
+use crate::names::*;
 use crate::recording::{BESIDE, POINTS};
 use revmap::cast::RayCaster;
-use revmap::profile::Profile;
-use revmap::scene::{Object, Placement};
-use revmap_capi::device::*;
-use revmap_capi::object::*;
-use revmap_capi::profile::*;
-use revmap_capi::rays::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::*;
-use revmap_capi::values::*;
-use std::ptr::{null, null_mut};
 
 const ONE: RevmapPlacement = RevmapPlacement {
     position: [0.0; 3],

@@ -1,24 +1,7 @@
 //! Recording through the C interface into a render pass: what the Rust renderer draws.
 
 use crate::host::{Host, Options, Stage, borrow, frame, open, renderer};
-use ash::vk;
-use glam::{DMat4, DVec3, Vec3};
-use revmap::gpu::View;
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Object, Placement, Scene};
-use revmap::settings::SearchSettings;
-use revmap_capi::device::*;
-use revmap_capi::enums::*;
-use revmap_capi::fault::*;
-use revmap_capi::object::*;
-use revmap_capi::profile::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::statistics::*;
-use revmap_capi::renderer::*;
-use revmap_capi::values::*;
-use std::ptr::{null, null_mut};
-use std::sync::Arc;
+use crate::names::*;
 
 pub const OPTIONS: Options = Options {
     width: 240,

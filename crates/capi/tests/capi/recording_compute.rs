@@ -1,20 +1,10 @@
 //! Recording through the C interface in compute: what the Rust renderer draws.
 
 use crate::host::{HostBuffer, Stage, barrier, open};
+use crate::names::*;
 use crate::recording::{OPTIONS, RANGE, add, camera, lend, scene};
-use ash::vk;
-use glam::{DMat4, Vec3};
-use revmap::gpu::Device;
-use revmap::settings::{DrawStage, Planes, Settings};
-use revmap_capi::device::*;
-use revmap_capi::enums::*;
-use revmap_capi::fault::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::statistics::*;
-use revmap_capi::renderer::*;
 use revmap_files::Picture;
 use revmap_offscreen::Offscreen;
-use std::ptr::{null, null_mut};
 
 const PIXELS: usize = (OPTIONS.width * OPTIONS.height) as usize;
 

@@ -1,24 +1,10 @@
 //! A host's shading and images through the C interface: what the Rust renderer draws.
 
 use crate::host::{Host, Stage, Texture, UniformSet, borrow, open};
+use crate::names::*;
 use crate::recording::{OPTIONS, POINTS, RANGE, camera, lend, render_pass, scene};
-use ash::vk;
-use glam::{DMat4, Vec3};
-use revmap::gpu::{self, HostPass, HostShading, Output, PassFormats, PassKind, Renderer, View};
-use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
-use revmap_capi::device::*;
-use revmap_capi::enums::*;
-use revmap_capi::fault::*;
-use revmap_capi::object::*;
-use revmap_capi::profile::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::*;
-use revmap_capi::shading::*;
 use std::cell::RefCell;
-use std::ptr::{null, null_mut};
-use std::sync::Arc;
 
 const BYTES: &[u8] = include_bytes!("../../../../examples/forward/shade.shading");
 const GRAPHICS: vk::PipelineBindPoint = vk::PipelineBindPoint::GRAPHICS;
@@ -32,7 +18,7 @@ fn lights(host: &Host) -> UniformSet<'_> {
 }
 
 /// What the Rust renderer draws with the shading and the image.
-fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &gpu::HostImage) -> Vec<u8> {
+fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &HostImage) -> Vec<u8> {
     let device = borrow(host);
     let begun = PassKind::RenderPass {
         // SAFETY: the stage outlives the renderer.

@@ -1,7 +1,7 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On
 //! a real device, small and brief.
 
-use crate::run::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, holds, lines};
 use revmap_bench::table::Table;
 use revmap_bench::table::columns;
 use std::process::{Command, Stdio};
@@ -56,9 +56,11 @@ fn a_brief_run_measures_every_combination() {
     assert!(raw >= passes, "four passes of two rounds");
     bench.has(&["a/b/report.html", "a/b/pictures/sphere@10.png"]);
     let version = bench.said("--version");
-    let note = String::from_utf8(bench.read("a/b/machine.txt")).unwrap();
-    assert!(note.contains(&format!("\nprogram: {version}")), "{note}");
-    assert!(said.contains("RBM baseline"), "{said}");
+    holds(
+        &bench.text("a/b/machine.txt"),
+        &[&format!("\nprogram: {version}")],
+    );
+    holds(&said, &["RBM baseline"]);
 
     // It is there to stay, unless it may be replaced; and a scene within it is no place for
     // results.
@@ -69,7 +71,7 @@ fn a_brief_run_measures_every_combination() {
 
     // Against itself nothing has changed.
     let said = bench.said("bench --compare a/b a/b");
-    assert!(said.contains(" 0 slower, 0 faster,"), "{said}");
+    holds(&said, &[" 0 slower, 0 faster,"]);
 }
 
 /// A mesh has neither a budget nor a map, and no place in compute.
@@ -85,15 +87,12 @@ fn meshes_that_are_left_out_are_named_first() {
         "shadow",
         "--set 'shadow=\"off\"'",
     ];
-    words
-        .iter()
-        .for_each(|word| assert!(said.contains(word), "{said}"));
+    holds(&said, &words);
     let set = "--set shadow=\"off\"";
     let said = lines(&bench.done(&format!("{command} --out n {set}"))).join("\n");
     assert!(!said.contains("left out of"), "{said}");
-    assert!(
-        load(&bench, "n/results.csv").records.len() > load(&bench, "m/results.csv").records.len()
-    );
+    let [more, fewer] = ["n", "m"].map(|run| load(&bench, &format!("{run}/results.csv")).records);
+    assert!(more.len() > fewer.len());
 }
 
 #[test]
@@ -103,17 +102,12 @@ fn a_mesh_stands_beside_the_searches() {
     let command = format!("bench {SPHERE} --quick --size 64x48 --solver {solvers} --out m");
     bench.done(&command);
     let results = load(&bench, "m/results.csv");
-    let rows: Vec<_> = results
-        .records
-        .iter()
-        .filter(|r| r[results.column("solver").unwrap()] == "mesh:16x32")
-        .collect();
+    let is_mesh = |r: &&Vec<String>| r[results.column("solver").unwrap()] == "mesh:16x32";
+    let rows: Vec<_> = results.records.iter().filter(is_mesh).collect();
     assert_eq!(rows.len(), 1);
     let field = |column| rows[0][results.column(column).unwrap()].as_str();
-    let (none, some) = (
-        "max_steps map_rows map_source map_format steps_mean steps_max",
-        "frame_ms_median depth_p99_texels missed",
-    );
+    let none = "max_steps map_rows map_source map_format steps_mean steps_max";
+    let some = "frame_ms_median depth_p99_texels missed";
     for (columns, empty) in [(none, true), (some, false)] {
         for column in columns.split(' ') {
             assert_eq!(field(column).is_empty(), empty, "{column}");
@@ -149,19 +143,15 @@ fn a_plan_of_ones_own_is_measured() {
         let line = format!("{name} ");
         assert!(listed.lines().any(|l| l.starts_with(&line)), "{name}");
     }
-    let own = bench.said("bench --list quick");
-    let own = own.replace(
-        "methods = [\"live\", \"quadric\", \"exact\"]",
-        "methods = [\"exact\"]\nsizes = [\"64x48\"]",
-    );
-    let own = own.replace(
-        "methods = [\"baseline\", \"floor\"]",
-        "methods = [\"baseline\"]\nsizes = [\"64x48\"]",
-    );
-    let own = own.replace(
-        "methods = [\"mesh:0.25px\"]",
-        "methods = [\"mesh:8x16\"]\nsizes = [\"64x48\"]",
-    );
+    let mut own = bench.said("bench --list quick");
+    for (from, to) in [
+        ("\"live\", \"quadric\", \"exact\"", "exact"),
+        ("\"baseline\", \"floor\"", "baseline"),
+        ("\"mesh:0.25px\"", "mesh:8x16"),
+    ] {
+        let to = format!("methods = [\"{to}\"]\nsizes = [\"64x48\"]");
+        own = own.replace(&format!("methods = [{from}]"), &to);
+    }
     bench.file("mine.toml", &own);
     bench.done("bench --plan mine.toml --passes 2 --rounds 1 --out p");
     // Two stages by the search, exact and within a tolerance, and the RBM baseline; one mesh.
@@ -209,17 +199,16 @@ fn ended(bench: &Bench, command: &str, signal: &str, file: &str) -> (String, Opt
     let results = bench.path("kept").join(file);
     let begin = Instant::now();
     while !results.exists() {
+        let runs = child.try_wait().unwrap().is_none();
         assert!(
-            begin.elapsed() < Duration::from_secs(600) && child.try_wait().unwrap().is_none(),
+            runs && begin.elapsed().as_secs() < 600,
             "nothing was measured"
         );
         std::thread::sleep(Duration::from_millis(5));
     }
-    let sent = Command::new("kill")
-        .args([signal, &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    let mut kill = Command::new("kill");
+    let sent = kill.args([signal, &child.id().to_string()]).status();
+    assert!(sent.unwrap().success());
     let out = child.wait_with_output().unwrap();
     (lines(&out).join(" "), out.status.code())
 }
@@ -232,14 +221,10 @@ fn an_interrupt_keeps_what_was_measured() {
     let command = format!("bench {SPHERE} --size 800x600 --solver circle");
     let (said, code) = ended(&bench, &command, "-INT", "results.csv");
     assert_eq!(code, Some(130), "{said}");
-    assert!(
-        said.contains("interrupted") && said.contains("--overwrite"),
-        "{said}"
-    );
+    holds(&said, &["interrupted", "--overwrite"]);
     let floors = if cfg!(feature = "shaderc") { 2 } else { 0 };
     assert_eq!(load(&bench, "kept/results.csv").records.len(), 4 + floors);
-    let report = String::from_utf8(bench.read("kept/report.html")).unwrap();
-    assert!(report.contains("was interrupted"));
+    holds(&bench.text("kept/report.html"), &["was interrupted"]);
 }
 
 /// A run that is ended before its first result leaves no folder, so that the same command works again.
@@ -274,7 +259,7 @@ fn a_run_that_is_ended_by_the_system_has_its_report() {
             format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100");
         let (said, code) = ended(&bench, &command, signal, "results.csv");
         assert_eq!(code, Some(wanted), "{said}");
-        assert!(said.contains("interrupted"), "{said}");
+        holds(&said, &["interrupted"]);
         bench.has(&["kept/report.html", "kept/machine.txt", "kept/excluded.csv"]);
     }
 }

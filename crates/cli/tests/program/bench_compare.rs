@@ -1,6 +1,6 @@
 //! `revmap bench --compare` with planted runs.
 
-use crate::run::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, holds, lines};
 use revmap_bench::plan::suite::{self, Extent};
 use revmap_bench::table::Table;
 use revmap_bench::table::columns;
@@ -63,14 +63,11 @@ fn runs_in_other_surroundings_bring_warnings() {
     assert!(lines(&bench.done("bench --compare plain plain")).is_empty());
     let said = lines(&bench.done("bench --compare plain other"));
     assert_eq!(said.len(), 2, "{said:?}");
-    assert!(
-        said[0].contains("differ in GALLIVM_PERF: old not set, new \"nopt\""),
-        "{said:?}"
+    holds(
+        &said[0],
+        &["differ in GALLIVM_PERF: old not set, new \"nopt\""],
     );
-    assert!(
-        said[1].contains("differ in niceness: old \"0\", new \"10\""),
-        "{said:?}"
-    );
+    holds(&said[1], &["differ in niceness: old \"0\", new \"10\""]);
 }
 
 /// A file of the repository.
@@ -103,10 +100,8 @@ fn judged(bench: &Bench, kept: &str, new: &str, methods: &str) -> (Vec<String>, 
         .filter(|line| !line.contains("no drawn.toml"));
     let failed = output.status.code() == Some(1);
     assert_eq!(said_of_it.count(), usize::from(failed), "{said}");
-    (
-        said.lines().map(str::to_owned).collect(),
-        output.status.code(),
-    )
+    let said = said.lines().map(str::to_owned).collect();
+    (said, output.status.code())
 }
 
 /// A copy of the kept run with another text in some fields of its results.
@@ -132,10 +127,8 @@ fn a_run_that_contradicts_is_told_from_one_that_judges_nothing() {
     assert_eq!(code, Some(0), "{said:?}");
     let (claims, sum) = said.split_at(said.len() - 2);
     let all = claims.len();
-    assert!(
-        claims.iter().all(|line| line.starts_with("repeated ")),
-        "{said:?}"
-    );
+    let repeated = |line: &String| line.starts_with("repeated ");
+    assert!(claims.iter().all(repeated), "{said:?}");
     assert_eq!(sum[1], format!("{all} of {all} claims repeated"));
 
     copied(&bench, "other", &kept, "depth_p99_texels", |depth| {
@@ -194,58 +187,41 @@ fn runs_of_different_scenes_are_not_compared() {
     let bench = Bench::new();
     bench.file("other.toml", bench.read("scene.toml"));
     let measure = |out: &str, more: &str| {
+        let brief = "--quick --size 64x48 --passes 2 --rounds 1 --quiet";
+        let by = "--solver exact --stage fragment";
         bench.done(&format!(
-            "bench scene.toml other.toml --quick --size 64x48 --solver exact --stage fragment \
-             --passes 2 --rounds 1 --quiet --out {out} {more}"
+            "bench scene.toml other.toml {brief} {by} --out {out} {more}"
         ));
     };
     measure("old", "");
     measure("set", "--set camera.fov_y=30");
-    let drawn = String::from_utf8(bench.read("set/drawn.toml")).unwrap();
-    assert!(
-        drawn.contains("[view.file.camera]") && drawn.contains("fov_y = 30"),
-        "{drawn}"
+    holds(
+        &bench.text("set/drawn.toml"),
+        &["[view.file.camera]", "fov_y = 30"],
     );
     let told = "different scenes as other and 1 other view: camera.fov_y (old 40.0, new 30.0)";
-    bench.refused(
-        "bench --compare old set",
-        1,
-        &["set: drew ", told, "measure the same scenes"],
-    );
-    bench.refused("bench --drivers old set", 1, &["set: drew ", told]);
+    let words = ["set: drew ", told, "measure the same scenes"];
+    bench.refused("bench --compare old set", 1, &words);
+    bench.refused("bench --drivers old set", 1, &words[..2]);
 
     bench.file(
         "scene.toml",
         format!("{CAMERA}{}", CONE.replace("0.9", "0.8")),
     );
     measure("new", "");
-    let output = bench.done("bench --compare old new");
-    let warned = lines(&output);
     let told = "warning: the runs drew different scenes as scene: object.0.profile (old \"";
-    assert!(
-        warned.len() == 1 && warned[0].starts_with(told),
-        "{warned:?}"
-    );
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        (2..=4).any(|n| said.contains(&format!("{n} in common"))),
-        "{said}"
-    );
-    let output = bench
-        .command("bench --compare old set --repeats exact")
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(4));
-    assert!(lines(&output)[0].contains("camera.fov_y"));
+    bench.warned_once("bench --compare old new", &[told]);
+    let said = bench.said("bench --compare old new");
+    let common = (2..=4).any(|n| said.contains(&format!("{n} in common")));
+    assert!(common, "{said}");
+    let (code, said) = bench.ended("bench --compare old set --repeats exact");
+    assert_eq!(code, Some(4));
+    holds(&said[0], &["camera.fov_y"]);
 
     // A run of an earlier version does not say what it drew.
     std::fs::remove_file(bench.path("old/drawn.toml")).unwrap();
     for command in ["bench --compare old set", "bench --drivers old set"] {
-        let warned = lines(&bench.done(command));
-        assert!(
-            warned.len() == 1 && warned[0].contains("no drawn.toml in "),
-            "{warned:?}"
-        );
+        bench.warned_once(command, &["no drawn.toml in "]);
     }
 }
 

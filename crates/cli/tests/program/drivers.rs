@@ -66,66 +66,54 @@ fn variables_without_a_driver_are_named() {
             bench.refused_by(&mut with(&bench, RENDER, &[(name, value)]), 3, &words);
         }
     }
-    // A missing folder of layers hides no driver.
-    let both = [
-        ("VK_LAYER_PATH", "/none"),
-        ("VK_LOADER_DRIVERS_SELECT", "nothing*"),
-    ];
-    bench.refused_by(
-        &mut with(&bench, RENDER, &both),
-        3,
-        &["chosen by VK_LOADER_DRIVERS_SELECT"],
-    );
-    // Of two lists the loader reads the first.
-    let both = [
-        ("VK_DRIVER_FILES", "/none.json"),
-        ("VK_ICD_FILENAMES", "text.json"),
-    ];
-    bench.refused_by(
-        &mut with(&bench, "devices", &both),
-        3,
-        &["VK_DRIVER_FILES names /none.json"],
-    );
-    // A damaged file among others keeps the loader from all drivers.
-    for (name, value) in [
+    let damaged = [
         ("VK_ADD_DRIVER_FILES", "text.json"),
         ("VK_ADD_DRIVER_FILES", "gone.json:several"),
         ("VK_LAYER_PATH", "text.json"),
         ("VK_ADD_LAYER_PATH", "several"),
-    ] {
-        bench.refused_by(
-            &mut with(&bench, RENDER, &[(name, value)]),
-            3,
-            &[name, not_json],
-        );
-    }
-    for (name, value) in [
+    ];
+    let hidden = [
         ("VK_LOADER_DRIVERS_SELECT", "nothing*"),
         ("VK_LOADER_DRIVERS_DISABLE", "*"),
-    ] {
-        let words = [&format!("{name}={value}"), "none of them answers"];
-        bench.refused_by(&mut with(&bench, RENDER, &[(name, value)]), 3, &words);
+    ];
+    let no_layers = ("VK_LAYER_PATH", "/none");
+    let both = [
+        ("VK_DRIVER_FILES", "/none.json"),
+        ("VK_ICD_FILENAMES", "text.json"),
+    ];
+    let refused = |arguments, set: &[_], words: &[&str]| {
+        bench.refused_by(&mut with(&bench, arguments, set), 3, words);
+    };
+    // A missing folder of layers hides no driver.
+    let words = "chosen by VK_LOADER_DRIVERS_SELECT";
+    refused(RENDER, &[no_layers, hidden[0]], &[words]);
+    // Of two lists the loader reads the first.
+    refused("devices", &both, &["VK_DRIVER_FILES names /none.json"]);
+    // A damaged file among others keeps the loader from all drivers.
+    for set in damaged {
+        refused(RENDER, &[set], &[set.0, not_json]);
+    }
+    for set in hidden {
+        let words = format!("{}={}", set.0, set.1);
+        refused(RENDER, &[set], &[&words, "none of them answers"]);
     }
 }
 
 #[test]
 fn variables_that_hide_the_layers_are_named() {
     let bench = Bench::new();
+    let chosen = "the layers are chosen by";
     for (name, value, words) in [
         (
             "VK_LAYER_PATH",
             "/nonexistent",
             "/nonexistent, which does not exist",
         ),
-        (
-            "VK_LAYER_PATH",
-            "",
-            "the layers are chosen by VK_LAYER_PATH=",
-        ),
+        ("VK_LAYER_PATH", "", &format!("{chosen} VK_LAYER_PATH=")),
         (
             "VK_LOADER_LAYERS_DISABLE",
             "*",
-            "the layers are chosen by VK_LOADER_LAYERS_DISABLE=*",
+            &format!("{chosen} VK_LOADER_LAYERS_DISABLE=*"),
         ),
     ] {
         let set = [(name, value), ("REVMAP_VALIDATION", "1")];

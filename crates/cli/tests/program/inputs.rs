@@ -3,6 +3,8 @@
 
 use crate::run::{Bench, SVG, lines};
 use std::path::PathBuf;
+#[cfg(target_os = "linux")]
+use std::process::Stdio;
 
 const SMALL: &str = "--size 32x24";
 
@@ -21,9 +23,8 @@ fn names_that_are_no_text_are_names() {
     let name = |bytes: &[u8]| PathBuf::from(OsStr::from_bytes(bytes));
     let (read, written) = (name(b"in\xff.svg"), name(b"out\xff.png"));
     std::fs::write(bench.path("").join(&read), SVG).unwrap();
-    let mut command = bench.command(&format!(
-        "render {SMALL} --json --set object.0.profile_axis=left"
-    ));
+    let left = "--set object.0.profile_axis=left";
+    let mut command = bench.command(&format!("render {SMALL} --json {left}"));
     let output = command.arg(&read).arg("-o").arg(&written).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
     let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -37,30 +38,27 @@ fn files_are_told_by_their_content() {
     input(&bench, "vase.jpg");
     let picture = bench.read("vase.jpg");
     let scene = bench.read("scene.toml");
-    for name in ["vase.jfif", "vase", "vase.toml"] {
-        bench.file(name, &picture);
-        bench.done(&format!("render {name} -o out.png {SMALL}"));
-    }
-    for name in ["scene", "scene.txt", "scene.png"] {
-        bench.file(name, &scene);
-        bench.done(&format!("render {name} -o out.png {SMALL}"));
-    }
     // As a byte order mark of UTF-16 and PowerShell write it.
-    let wide = String::from_utf8(scene).unwrap();
-    let wide = wide.encode_utf16().flat_map(u16::to_le_bytes);
-    bench.file(
-        "wide.toml",
-        [0xff, 0xfe].into_iter().chain(wide).collect::<Vec<u8>>(),
-    );
-    bench.done(&format!("render wide.toml -o out.png {SMALL}"));
+    let text = bench.text("scene.toml");
+    let wide = text.encode_utf16().flat_map(u16::to_le_bytes);
+    let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(wide).collect();
+    let pictures = ["vase.jfif", "vase", "vase.toml"].map(|name| (name, &picture));
+    let scenes = ["scene", "scene.txt", "scene.png"].map(|name| (name, &scene));
+    for (name, bytes) in pictures
+        .into_iter()
+        .chain(scenes)
+        .chain([("wide.toml", &wide)])
+    {
+        bench.file(name, bytes);
+        bench.done(&format!("render {name} -o out.png {SMALL}"));
+    }
     bench.file("words.svg", "no drawing");
-    bench.refused(
-        "render words.svg -o no.png",
-        1,
-        &["words.svg", "PNG, JPEG or SVG"],
-    );
     bench.file("noise", [0xff, 0x80, 0x81]);
-    bench.refused("render noise -o no.png", 1, &["noise", "TOML", "JPEG"]);
+    bench.refuses(
+        1,
+        "render words.svg -o no.png | words.svg | PNG, JPEG or SVG
+         render noise -o no.png     | noise     | TOML | JPEG",
+    );
 }
 
 #[cfg(target_os = "linux")]
@@ -68,17 +66,13 @@ fn files_are_told_by_their_content() {
 fn a_pipe_is_read_once() {
     use std::io::Write;
     let bench = Bench::new();
-    let arguments =
-        format!("render /dev/stdin -o out.png {SMALL} --set object.0.profile_axis=left");
-    let mut command = bench.command(&arguments);
-    let piped = command.stdin(std::process::Stdio::piped());
-    let mut child = piped.stderr(std::process::Stdio::piped()).spawn().unwrap();
-    child
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(SVG.as_bytes())
-        .unwrap();
+    let left = "--set object.0.profile_axis=left";
+    let mut command = bench.command(&format!("render /dev/stdin -o out.png {SMALL} {left}"));
+    let piped = command.stdin(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = piped.spawn().unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    pipe.write_all(SVG.as_bytes()).unwrap();
+    drop(pipe);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
 }
@@ -91,10 +85,9 @@ fn transparent_texels_show_the_color() {
     bench.file("a.svg", SVG);
     bench.object("profile = \"a.svg\"\nprofile_axis = \"left\"\ncolor = [1, 0, 0]\ncolor_map = \"band-colors.png\"");
     let light = "background=[0,0,0,1] --set ambient=[1,1,1] --set light=[]";
-    bench.done(&format!(
-        "render scene.toml -o out.png --size 64x48 --antialias off --set {light}"
-    ));
-    let picture = image::open(bench.path("out.png")).unwrap().to_rgba8();
+    let render = "render scene.toml -o out.png --size 64x48 --antialias off";
+    bench.done(&format!("{render} --set {light}"));
+    let picture = bench.picture("out.png");
     // Above and below the band, whose texels in between are blue.
     for y in [13, 37] {
         assert_eq!(picture.get_pixel(32, y).0, [255, 0, 0, 255]);
@@ -109,26 +102,18 @@ fn frames_of_an_earlier_turntable_are_not_mixed_with_new_ones() {
     let animate = |frames: u32| format!("animate scene.toml --frames {frames} {SMALL} -o t");
     bench.done(&animate(3));
     bench.file("t/own.png", "kept");
-    bench.refused(
-        &animate(2),
-        2,
-        &["t", "--output", "3 frames", "--overwrite"],
-    );
+    let words = ["t", "--output", "3 frames", "--overwrite"];
+    bench.refused(&animate(2), 2, &words);
     bench.done(&format!("{} --overwrite", animate(2)));
-    let mut names: Vec<_> = std::fs::read_dir(bench.path("t"))
-        .unwrap()
-        .map(|e| e.unwrap().file_name())
-        .collect();
+    let entries = std::fs::read_dir(bench.path("t")).unwrap();
+    let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name()).collect();
     names.sort();
     assert_eq!(names, ["frame-0000.png", "frame-0001.png", "own.png"]);
     // A frame that the scene reads is not removed.
     bench.half("t/frame-0001.png");
     bench.object("profile = \"t/frame-0001.png\"\nprofile_axis = \"left\"");
-    bench.refused(
-        &format!("{} --overwrite", animate(1)),
-        2,
-        &["frame-0001.png", "is read as well"],
-    );
+    let again = format!("{} --overwrite", animate(1));
+    bench.refused(&again, 2, &["frame-0001.png", "is read as well"]);
     bench.has(&["t/frame-0000.png", "t/frame-0001.png"]);
 }
 
@@ -138,22 +123,16 @@ fn outputs_keep_their_mode_follow_links_and_spare_inputs() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let bench = Bench::new();
     let mode = |name: &str| {
-        std::fs::metadata(bench.path(name))
-            .unwrap()
-            .permissions()
-            .mode()
-            & 0o777
+        let metadata = std::fs::metadata(bench.path(name)).unwrap();
+        metadata.permissions().mode() & 0o777
     };
     bench.file("out.png", "");
     std::fs::set_permissions(bench.path("out.png"), PermissionsExt::from_mode(0o600)).unwrap();
     bench.done(&format!("render scene.toml -o out.png {SMALL}"));
     assert_eq!(mode("out.png"), 0o600);
     symlink("later.png", bench.path("link.png")).unwrap();
-    bench.refused(
-        "render scene.toml -o link.png -o later.png",
-        2,
-        &["later.png", "named twice"],
-    );
+    let twice = "render scene.toml -o link.png -o later.png";
+    bench.refused(twice, 2, &["later.png", "named twice"]);
     bench.done(&format!("render scene.toml -o link.png {SMALL}"));
     assert!(bench.path("link.png").is_symlink() && bench.read("later.png").len() > 50);
 
@@ -191,18 +170,12 @@ fn numbers_are_read_as_people_type_them() {
     bench.done(&format!("{} --set object.0.color=[.5,.5,1.]", set("01.")));
     let no = "render scene.toml -o no.png --set object.0.extend=0,05";
     bench.refused(no, 1, &["object.0.extend", "write 0.05"]);
-    for option in [
-        "--tolerance 0,05",
-        "--turn 0,05",
-        "--vary object.0.extend=0:0,1",
-    ] {
-        let (command, frames) = if option.starts_with("--tol") {
-            ("render", "-o no.png")
-        } else {
-            ("animate", "--frames 2")
-        };
-        bench.refused(&format!("{command} scene.toml {frames} {option}"), 2, &[]);
-    }
+    bench.refuses(
+        2,
+        "render scene.toml -o no.png --tolerance 0,05
+         animate scene.toml --frames 2 --turn 0,05
+         animate scene.toml --frames 2 --vary object.0.extend=0:0,1",
+    );
 }
 
 #[test]
@@ -211,23 +184,16 @@ fn a_number_is_the_index_of_a_device() {
     let render = |device: &str| format!("render scene.toml -o no.png {SMALL} --device {device}");
     // The name of the software driver has a 5, a 6 and 256.
     for device in ["5", "6", "256", "99"] {
-        bench.refused(
-            &render(device),
-            2,
-            &[&format!(
-                "--device: there is no device {device}; there are: 0 "
-            )],
-        );
+        let words = format!("--device: there is no device {device}; there are: 0 ");
+        bench.refused(&render(device), 2, &[&words]);
     }
-    bench.refused(
-        &render("amd-nvidia"),
-        2,
-        &["no device is called 'amd-nvidia'"],
-    );
-    let mut command = bench.command(&render("0").replace(" --device 0", ""));
-    bench.refused_by(
-        command.env("REVMAP_DEVICE", "5"),
-        2,
-        &["revmap: REVMAP_DEVICE: there is no device 5"],
-    );
+    let words = "no device is called 'amd-nvidia'";
+    bench.refused(&render("amd-nvidia"), 2, &[words]);
+    for (device, words) in [
+        ("5", "revmap: REVMAP_DEVICE: there is no device 5"),
+        ("no-such-card", "no-such-card"),
+    ] {
+        let mut command = bench.command(&render("0").replace(" --device 0", ""));
+        bench.refused_by(command.env("REVMAP_DEVICE", device), 2, &[words]);
+    }
 }

@@ -34,33 +34,18 @@ fn refused_at(bench: &Bench, limits: &[u32], arguments: &str) {
 fn large_maps_and_pictures() {
     let bench = Bench::new();
     bench.file("rod.svg", SVG);
-    refused_at(
-        &bench,
-        &[250, 600, 1000],
-        "bake rod.svg -o m.exr --map-rows 16384",
-    );
-    refused_at(
-        &bench,
-        &[250, 800],
-        "bake rod.svg -o m.png --map-rows 16384 --map-source binary",
-    );
-    let solid = |x, y| x < 6000 && y > 300;
-    bench.grey(
-        "big.png",
-        16_384,
-        16_384,
-        |x, y| if solid(x, y) { 0 } else { 255 },
-    );
-    refused_at(
-        &bench,
-        &[250, 500, 1200],
-        "bake big.png -o m.png --map-rows 64",
-    );
+    let bake = "bake rod.svg --map-rows 16384";
+    refused_at(&bench, &[250, 600, 1000], &format!("{bake} -o m.exr"));
+    let binary = format!("{bake} -o m.png --map-source binary");
+    refused_at(&bench, &[250, 800], &binary);
+    let shade = |x, y| if x < 6000 && y > 300 { 0 } else { 255 };
+    bench.grey("big.png", 16_384, 16_384, shade);
+    let big = "bake big.png -o m.png --map-rows 64";
+    refused_at(&bench, &[250, 500, 1200], big);
     let render = "render scene.toml -o out.png --stage reference --size 16x12";
     for key in ["color_map", "height_map"] {
-        bench.object(&format!(
-            "polygon = [[0, 0], [0.3, 0.5], [0, 1]]\n{key} = \"big.png\""
-        ));
+        let polygon = "polygon = [[0, 0], [0.3, 0.5], [0, 1]]";
+        bench.object(&format!("{polygon}\n{key} = \"big.png\""));
         refused_at(&bench, &[250, 500, 1200], render);
     }
 }

@@ -1,6 +1,6 @@
 //! `revmap mesh`: what it writes, says and refuses.
 
-use crate::run::{Bench, CAMERA, CONE, lines};
+use crate::run::{Bench, CAMERA, CONE, holds, lines};
 
 /// Triangles that a run says it wrote.
 fn triangles(bench: &Bench, arguments: &str) -> usize {
@@ -19,12 +19,10 @@ fn meshes_are_as_fine_as_they_are_seen() {
     let near = count("--pixels 0.5");
     let far = count("--pixels 0.5 --distance 17");
     assert!(2 * far < near, "{far} {near}");
-    assert_eq!(near, count("--pixels 0.5 --rows 1080"));
-    assert_eq!(near, count("--pixels 1 --rows 2160"));
-    assert_eq!(
-        near,
-        count("--pixels 0.5 --set object.0.rotation=[0,0,1,0]")
-    );
+    let turned = "--pixels 0.5 --set object.0.rotation=[0,0,1,0]";
+    for same in ["--pixels 0.5 --rows 1080", "--pixels 1 --rows 2160", turned] {
+        assert_eq!(near, count(same), "{same}");
+    }
     assert!(near < count("--pixels 0.5 --set object.0.scale=[1,3,1]"));
     bench.refuses(
         2,
@@ -52,10 +50,8 @@ fn all_files_are_named_and_inputs_spared() {
     bench.half("map.png");
     bench.object("profile = \"map.png\"\nprofile_axis = \"left\"\ncolor_map = \"map.png\"\nheight_map = \"map.png\"\nbump = 0.1");
     let output = bench.done("mesh scene.toml -o a.obj");
-    let said = lines(&output).join("\n");
-    for word in ["a.mtl", "a.0.png", "object.0.height_map"] {
-        assert!(said.contains(word), "{said}");
-    }
+    let words = ["a.mtl", "a.0.png", "object.0.height_map"];
+    holds(&lines(&output).join("\n"), &words);
     bench.has(&["a.obj", "a.mtl", "a.0.png"]);
     bench.half("b.0.png");
     bench.object("profile = \"map.png\"\nprofile_axis = \"left\"\ncolor_map = \"b.0.png\"");
@@ -71,47 +67,39 @@ fn all_files_are_named_and_inputs_spared() {
 #[test]
 fn far_objects_are_refused_as_stl_or_moved() {
     let bench = Bench::new();
-    bench.file(
-        "copies.csv",
-        "1e6,2e6,0,0,0,0,1,1,1,1\n1000002,2000000,0,0,0,0,1,1,1,1\n",
-    );
-    let beside =
-        "[[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\nposition = [1000000, 2000003, 1]\n";
-    bench.file(
-        "far.toml",
-        format!("{CAMERA}{CONE}instances = \"copies.csv\"\n{beside}"),
-    );
+    let scene = |name: &str, copies: &str, beside: &str| {
+        bench.file(&format!("{name}.csv"), copies);
+        let cone = format!("{CAMERA}{CONE}instances = \"{name}.csv\"\n");
+        let beside =
+            format!("[[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\nposition = {beside}\n");
+        bench.file(&format!("{name}.toml"), cone + &beside);
+    };
+    let copies = "1e6,2e6,0,0,0,0,1,1,1,1\n1000002,2000000,0,0,0,0,1,1,1,1\n";
+    scene("far", copies, "[1000000, 2000003, 1]");
     let words = [
-        "far.toml",
         "object.0.position",
         "--at-origin",
         "up to coordinates of 1024",
     ];
-    bench.refused("mesh far.toml -o a.stl", 1, &words[1..]);
+    bench.refused("mesh far.toml -o a.stl", 1, &words);
     bench.done("mesh far.toml -o a.stl --at-origin");
-    bench.file("near.csv", "0,0,0,0,0,0,1,1,1,1\n2,0,0,0,0,0,1,1,1,1\n");
-    let beside = beside.replace("[1000000, 2000003, 1]", "[0, 3, 1]");
-    bench.file(
-        "near.toml",
-        format!("{CAMERA}{CONE}instances = \"near.csv\"\n{beside}"),
+    scene(
+        "near",
+        "0,0,0,0,0,0,1,1,1,1\n2,0,0,0,0,0,1,1,1,1\n",
+        "[0, 3, 1]",
     );
     bench.done("mesh near.toml -o b.stl");
     assert!(bench.read("a.stl") == bench.read("b.stl"));
     let pixels = "--pixels 1 --set camera.eye=[1000003,2000000,0] --at-origin";
     let far = triangles(&bench, &format!("far.toml -o a.glb {pixels}"));
     let pixels = "--pixels 1 --set camera.eye=[3,0,0]";
-    assert_eq!(
-        far,
-        triangles(&bench, &format!("near.toml -o b.glb {pixels}"))
-    );
+    let near = triangles(&bench, &format!("near.toml -o b.glb {pixels}"));
+    assert_eq!(far, near);
     // No option helps where copies are far from each other.
     let spread = "near.toml -o a.stl --set object.1.position=[1e6,0,0] --at-origin";
-    let output = bench.command(&format!("mesh {spread}")).output().unwrap();
-    let said = lines(&output).join(" ");
-    assert!(
-        said.contains("object.1.position") && !said.contains("--at-origin"),
-        "{said}"
-    );
+    let said = bench.ended(&format!("mesh {spread}")).1.join(" ");
+    holds(&said, &["object.1.position"]);
+    assert!(!said.contains("--at-origin"), "{said}");
     bench.done("mesh far.toml -o a.obj");
 }
 
@@ -120,10 +108,6 @@ fn what_a_material_cannot_hold_is_named() {
     let bench = Bench::new();
     let mesh = "mesh scene.toml -o a.obj --set object.0.color=[3,0.5,0]";
     let said = lines(&bench.done(mesh)).join("\n");
-    assert!(
-        said.contains("object.0.color") && said.contains("above 1"),
-        "{said}"
-    );
-    let text = String::from_utf8(bench.read("a.mtl")).unwrap();
-    assert!(text.contains("Kd 1.00000 0.73536 0.00000"), "{text}");
+    holds(&said, &["object.0.color", "above 1"]);
+    holds(&bench.text("a.mtl"), &["Kd 1.00000 0.73536 0.00000"]);
 }

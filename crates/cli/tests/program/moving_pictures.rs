@@ -1,6 +1,6 @@
 //! `revmap animate`: moving pictures, read again, and how things move in them.
 
-use crate::run::{Bench, CAMERA, CONE, SVG, lines};
+use crate::run::{Bench, CAMERA, CONE, SVG, holds, lines};
 use std::fs::File;
 use std::io::BufReader;
 
@@ -61,8 +61,11 @@ fn moving_pictures_show_the_frames_of_a_folder() {
     let opaque = "--set background=[0.2,0.3,0.4,1]";
     animate(&format!("-o folder {opaque}"));
     let folder: Vec<Vec<u8>> = (0..6)
-        .map(|n| image::open(bench.path(&format!("folder/frame-000{n}.png"))).unwrap())
-        .map(|picture| picture.to_rgba8().into_raw())
+        .map(|n| {
+            bench
+                .picture(&format!("folder/frame-000{n}.png"))
+                .into_raw()
+        })
         .collect();
     animate(&format!("-o a.gif --fps 7 --loops 3 {opaque}"));
     animate(&format!("-o a.webp --fps 7 --quality 100 {opaque}"));
@@ -77,21 +80,14 @@ fn moving_pictures_show_the_frames_of_a_folder() {
     }
     assert_eq!(apng[5].0, 857);
     let webp = read_webp(&bench, "a.webp");
-    assert_eq!(
-        webp.iter().map(|(_, f)| f).collect::<Vec<_>>(),
-        folder.iter().collect::<Vec<_>>()
-    );
+    assert!(webp.iter().map(|(_, f)| f).eq(&folder));
     assert_eq!(webp[5].0, 857);
     let (gif, repeat) = read_gif(&bench, "a.gif");
-    assert_eq!(
-        (gif.len(), gif[5].0, repeat),
-        (6, 860, gif::Repeat::Finite(2))
-    );
+    let twice = gif::Repeat::Finite(2);
+    assert_eq!((gif.len(), gif[5].0, repeat), (6, 860, twice));
     let mean = |read: &[(u32, Vec<u8>)]| {
-        let pairs = read
-            .iter()
-            .zip(&folder)
-            .flat_map(|((_, a), b)| a.iter().zip(b));
+        let frames = read.iter().zip(&folder);
+        let pairs = frames.flat_map(|((_, a), b)| a.iter().zip(b));
         let off: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum();
         f64::from(off) / (6 * 48 * 36 * 4) as f64
     };
@@ -101,13 +97,6 @@ fn moving_pictures_show_the_frames_of_a_folder() {
     animate(&format!("-o ever.gif {opaque}"));
     assert_eq!(read_gif(&bench, "once.gif").1, gif::Repeat::Finite(0));
     assert_eq!(read_gif(&bench, "ever.gif").1, gif::Repeat::Infinite);
-}
-
-/// Warnings of a run that is done.
-fn warned(bench: &Bench, arguments: &str) -> Vec<String> {
-    let said = lines(&bench.done(arguments));
-    let is = |line: &String| line.starts_with("warning: ");
-    said.into_iter().filter(is).collect()
 }
 
 #[test]
@@ -141,14 +130,11 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
         ),
     ] {
         for output in outputs {
-            let found = warned(&bench, &format!("{film} {arguments} -o {output}"));
+            let found = bench.warned(&format!("{film} {arguments} -o {output}"));
             assert_eq!(found.len(), 1, "{arguments} {output}: {found:?}");
             for word in plain.iter().chain(words) {
-                assert_eq!(
-                    found[0].contains(word),
-                    words.contains(word),
-                    "{word}: {found:?}"
-                );
+                let wanted = words.contains(word);
+                assert_eq!(found[0].contains(word), wanted, "{word}: {found:?}");
             }
         }
     }
@@ -162,10 +148,7 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
         format!("scene.toml {vary}"),
     ] {
         for output in ["a.webp", "frames"] {
-            let found = warned(
-                &bench,
-                &format!("{film} --frames 6 {arguments} -o {output}"),
-            );
+            let found = bench.warned(&format!("{film} --frames 6 {arguments} -o {output}"));
             assert!(found.is_empty(), "{arguments}: {found:?}");
         }
     }
@@ -177,18 +160,14 @@ fn the_end_says_frames_length_and_size() {
     let bench = Bench::new();
     let opaque = "--set background=[1,1,1,1]";
     let said = |options: &str| bench.said(&format!("{SMALL} {opaque} {options}"));
+    let there = "--vary object.0.extend=0:0.1 --bounce --fps 10";
     for (options, wanted) in [
-        ("--turn 360 -o a.webp", "6 frames, 0.2 s a turn, "),
-        ("--turn 90 --fps 2 -o a.webp", "6 frames, 3.0 s, "),
-        (
-            "--vary object.0.extend=0:0.1 --bounce --fps 10 -o a.webp",
-            "6 frames, 0.6 s there and back, ",
-        ),
+        ("--turn 360", "6 frames, 0.2 s a turn, "),
+        ("--turn 90 --fps 2", "6 frames, 3.0 s, "),
+        (there, "6 frames, 0.6 s there and back, "),
     ] {
-        let line = said(options);
-        let rest = line
-            .strip_prefix(wanted)
-            .unwrap_or_else(|| panic!("{line}"));
+        let line = said(&format!("{options} -o a.webp"));
+        let rest = line.strip_prefix(wanted).expect(&line);
         let (size, file) = rest.trim_end().split_once(": ").unwrap();
         assert_eq!(file, "a.webp");
         let bytes = bench.read("a.webp").len() as f64;
@@ -202,9 +181,9 @@ fn the_end_says_frames_length_and_size() {
     assert!(said("--turn 90").contains("6 frames, median "));
     let costs = |options: &str| {
         let output = bench.done(&format!("{SMALL} {opaque} --turn 90 -o a.webp {options}"));
-        lines(&output)
-            .iter()
-            .any(|l| l.contains("pipelines compiled: ") && l.contains("surfaces made: "))
+        let tells =
+            |l: &String| l.contains("pipelines compiled: ") && l.contains("surfaces made: ");
+        lines(&output).iter().any(tells)
     };
     assert!(costs("--verbose") && !costs(""));
 }
@@ -217,8 +196,7 @@ fn a_turn_in_the_studio_is_evenly_bright() {
     for turn in ["--turn 360", "--turn 360 --turntable"] {
         bench.done(&format!("animate scene.toml {turn} {film} -o frames"));
         let mean = |n: u32| {
-            let path = bench.path(&format!("frames/frame-000{n}.png"));
-            let picture = image::open(path).unwrap().to_rgb8();
+            let picture = bench.picture(&format!("frames/frame-000{n}.png"));
             let solid = picture.pixels().filter(|p| p.0[0] / 2 > p.0[1]);
             let red: Vec<u32> = solid.map(|p| u32::from(p.0[0])).collect();
             assert!(red.len() > 200, "{}", red.len());
@@ -226,10 +204,8 @@ fn a_turn_in_the_studio_is_evenly_bright() {
         };
         let means: Vec<f64> = (0..6).map(mean).collect();
         let bright = means.iter().fold(0.0, |most: f64, m| most.max(*m));
-        assert!(
-            means.iter().all(|m| *m > 0.97 * bright),
-            "{turn}: {means:?}"
-        );
+        let even = means.iter().all(|m| *m > 0.97 * bright);
+        assert!(even, "{turn}: {means:?}");
     }
 }
 
@@ -259,19 +235,15 @@ fn the_fastest_rate_has_no_frame_of_ten_milliseconds() {
 fn edges_stay_soft_or_get_a_ground() {
     let bench = Bench::new();
     let said = lines(&bench.done(&format!("{SMALL} --turn 90 -o a.gif"))).join("\n");
-    assert!(
-        said.contains("background") && said.contains("white"),
-        "{said}"
-    );
+    holds(&said, &["background", "white"]);
     let (gif, _) = read_gif(&bench, "a.gif");
     let corner = |frame: &[u8]| frame[..4].to_vec();
     assert_eq!(corner(&gif[3].1), [255, 255, 255, 255]);
     let said = lines(&bench.done(&format!("{SMALL} --turn 90 -o a.webp --quality 100"))).join("\n");
     assert!(!said.contains("white"), "{said}");
-    for frame in [read_webp(&bench, "a.webp").remove(3).1, {
-        bench.done(&format!("{SMALL} --turn 90 -o a.apng"));
-        read_apng(&bench, "a.apng").0.remove(3).1
-    }] {
+    bench.done(&format!("{SMALL} --turn 90 -o a.apng"));
+    let all = [read_webp(&bench, "a.webp"), read_apng(&bench, "a.apng").0];
+    for frame in all.map(|mut read| read.remove(3).1) {
         assert_eq!(corner(&frame), [0, 0, 0, 0]);
         let soft = frame.chunks_exact(4).filter(|p| !matches!(p[3], 0 | 255));
         assert!(soft.count() > 20);
@@ -284,9 +256,8 @@ fn sweeps_go_there_and_back_while_the_scene_turns() {
     let frames = |options: &str| -> Vec<Vec<u8>> {
         let light = "light=[{direction=[-1,0.5,-1]}]";
         bench.done(&format!("{SMALL} -o f --overwrite --set {light} {options}"));
-        (0..6)
-            .map(|n| bench.read(&format!("f/frame-000{n}.png")))
-            .collect()
+        let frame = |n| bench.read(&format!("f/frame-000{n}.png"));
+        (0..6).map(frame).collect()
     };
     let sweep = "--vary object.0.extend=0:0.1";
     let [there, back] = [frames(sweep), frames(&format!("{sweep} --bounce"))];
@@ -322,9 +293,6 @@ fn what_does_not_move_is_refused_first() {
          animate scene.toml --frames 280 -o a.apng                 | --frames | 134400000 pixels | 134217728
          animate scene.toml --frames 2 -o a.gif --turntable        | --turn",
     );
-    bench.refused(
-        "animate scene.toml --frames 2 -o none/a.gif",
-        1,
-        &["none/a.gif", "--output"],
-    );
+    let none = "animate scene.toml --frames 2 -o none/a.gif";
+    bench.refused(none, 1, &["none/a.gif", "--output"]);
 }

@@ -1,6 +1,6 @@
 //! Photographs in place of a scene, and as profiles.
 
-use crate::run::{Bench, CAMERA, SVG, lines};
+use crate::run::{Bench, SVG, holds, lines};
 use image::{Rgb, RgbImage};
 
 /// A pale vase before a dark wall, at 0.45 of the width; with `flag`, a flag on a pole.
@@ -41,18 +41,16 @@ fn one_line_says_what_was_taken_and_a_picture_shows_it() {
         let words = "vase.png: read as a photograph: light on a darker ground";
         assert!(found.len() == 1 && found[0].starts_with(words), "{found:?}");
         assert!(found[0].contains("axis at 0.45"), "{found:?}");
-        let [vase, over] =
-            ["vase.png", "over.png"].map(|f| image::open(bench.path(f)).unwrap().to_rgb8());
+        let [vase, over] = ["vase.png", "over.png"].map(|f| bench.picture(f));
         let changed = vase.pixels().zip(over.pixels()).filter(|(a, b)| a != b);
         let changed: Vec<_> = changed.map(|(_, b)| b.0).collect();
         assert!((300..900).contains(&changed.len()), "{}", changed.len());
-        assert!(changed.iter().all(|c| *c == [255, 0, 64]));
+        assert!(changed.iter().all(|c| *c == [255, 0, 64, 255]));
         std::fs::remove_file(bench.path("over.png")).unwrap();
     }
     assert_eq!(said(&bench, "profile vase.png -o b.svg --quiet"), [""; 0]);
     // The outline in the picture's own units: radius, and the picture's height.
-    let svg = String::from_utf8(bench.read("b.svg")).unwrap();
-    assert!(svg.contains("<svg"), "{svg}");
+    holds(&bench.text("b.svg"), &["<svg"]);
     let again = said(&bench, "profile b.svg -o c.svg");
     assert_eq!(again, [""; 0]);
 }
@@ -64,38 +62,26 @@ fn a_scene_and_keys_of_the_threshold_keep_their_meaning() {
     let inverted = "warning: object.0.profile: the picture looks like a light solid";
     let light = |arguments: &str| {
         let found = said(&bench, arguments);
-        assert!(
-            found.len() == 1 && found[0].starts_with(inverted),
-            "{found:?}"
-        );
+        assert_eq!(found.len(), 1, "{found:?}");
+        holds(&found[0], &[inverted]);
     };
-    bench.file(
-        "scene.toml",
-        format!("{CAMERA}[[object]]\nprofile = \"vase.png\"\n"),
-    );
+    bench.object("profile = \"vase.png\"");
     light("render scene.toml -o a.png --size 32x24");
     light("render vase.png -o a.png --size 32x24 --set object.0.profile_threshold=0.5");
     let auto = "render scene.toml -o a.png --size 32x24 --set object.0.profile_read=auto";
     let found = said(&bench, auto);
-    assert!(
-        found.len() == 1 && found[0].contains("read as a photograph"),
-        "{found:?}"
-    );
+    assert_eq!(found.len(), 1, "{found:?}");
+    holds(&found[0], &["read as a photograph"]);
     let found = said(&bench, "profile vase.png -o a.svg --profile-read threshold");
-    assert!(
-        found.iter().all(|line| line.starts_with("warning: ")) && !found.is_empty(),
-        "{found:?}"
-    );
+    let warn = found.iter().all(|line| line.starts_with("warning: "));
+    assert!(warn && !found.is_empty(), "{found:?}");
+    let profile = "profile vase.png -o no.svg --profile-read";
     bench.refused(
-        "profile vase.png -o no.svg --profile-read auto --profile-invert",
+        &format!("{profile} auto --profile-invert"),
         1,
         &["--profile-read"],
     );
-    bench.refused(
-        "profile vase.png -o no.svg --profile-read both",
-        2,
-        &["threshold", "auto"],
-    );
+    bench.refused(&format!("{profile} both"), 2, &["threshold", "auto"]);
 }
 
 #[test]
@@ -105,19 +91,11 @@ fn what_shows_no_turned_thing_is_refused_by_name() {
     let words = ["flag.png", "axis of symmetry", "profile-read"];
     bench.refused("profile flag.png -o no.svg", 1, &words);
     bench.file("a.svg", SVG);
-    bench.refused(
-        "profile a.svg -o no.svg --show-outline no.png",
-        1,
-        &["a.svg", "pictures alone"],
-    );
-    bench.refused(
-        "mesh a.svg -o no.stl --show-outline no.png",
+    let a_drawing = "profile a.svg -o no.svg --show-outline no.png";
+    bench.refused(a_drawing, 1, &["a.svg", "pictures alone"]);
+    bench.refuses(
         2,
-        &["--show-outline"],
-    );
-    bench.refused(
-        "mesh flag.png -o no.stl --show-outline flag.png",
-        2,
-        &["flag.png", "is read as well"],
+        "mesh a.svg -o no.stl --show-outline no.png      | --show-outline
+         mesh flag.png -o no.stl --show-outline flag.png | flag.png | is read as well",
     );
 }

@@ -55,8 +55,11 @@ fn maps_are_written_and_weighed() {
     let said = lines(&bench.done(render));
     let line = said.iter().find(|l| l.contains("shape maps")).unwrap();
     let numbers: Vec<f64> = line.split(' ').filter_map(|w| w.parse().ok()).collect();
+    let &[shapes, covers] = &numbers[..] else {
+        panic!("{line}");
+    };
     assert!(
-        matches!(numbers[..], [shapes, covers] if shapes > 0.1 && shapes <= 10.0 && covers > 1.0 && covers <= 4.0),
+        shapes > 0.1 && shapes <= 10.0 && covers > 1.0 && covers <= 4.0,
         "{line}"
     );
 }
@@ -117,10 +120,8 @@ fn outlines_are_drawings_again() {
     let bench = Bench::new();
     let said = bench.said("profile @profiles/bottle.png -o clean.svg --tolerance 0.0001");
     let numbers: Vec<usize> = said.split(' ').filter_map(|w| w.parse().ok()).collect();
-    assert!(
-        matches!(numbers[..], [lines, curves, points] if 5 * (lines + curves) < points),
-        "{said}"
-    );
+    let few = matches!(numbers[..], [lines, curves, points] if 5 * (lines + curves) < points);
+    assert!(few, "{said}");
     let draw = |name: &str| {
         bench.done(&format!("render {name} -o a.exr --size 64x48 -q"));
         read_exr(bench.path("a.exr")).unwrap()

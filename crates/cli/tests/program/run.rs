@@ -107,9 +107,7 @@ impl Bench {
         let said = lines(&output);
         assert_eq!(output.status.code(), Some(code), "{said:?}");
         assert_eq!(said.len(), 1, "{said:?}");
-        for word in words {
-            assert!(said[0].contains(word), "no {word:?} in {:?}", said[0]);
-        }
+        holds(&said[0], words);
         assert!(!said[0].contains("a bug of revmap"), "{said:?}");
         assert!(output.stdout.is_empty());
         assert_eq!(self.names(), before);
@@ -139,6 +137,35 @@ impl Bench {
     pub fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
     }
+
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).unwrap()
+    }
+
+    pub fn picture(&self, name: &str) -> image::RgbaImage {
+        image::open(self.path(name)).unwrap().into_rgba8()
+    }
+
+    /// Warnings of a run that is done.
+    #[track_caller]
+    pub fn warned(&self, arguments: &str) -> Vec<String> {
+        let said = lines(&self.done(arguments)).into_iter();
+        said.filter(|l| l.starts_with("warning: ")).collect()
+    }
+
+    /// Wants one warning with all of `words`.
+    #[track_caller]
+    pub fn warned_once(&self, arguments: &str, words: &[&str]) {
+        let found = self.warned(arguments);
+        assert_eq!(found.len(), 1, "{found:?}");
+        holds(&found[0], words);
+    }
+
+    /// Exit code and lines on standard error of a run.
+    pub fn ended(&self, arguments: &str) -> (Option<i32>, Vec<String>) {
+        let output = self.command(arguments).output().unwrap();
+        (output.status.code(), lines(&output))
+    }
 }
 
 /// A file of `assets/`.
@@ -151,6 +178,13 @@ pub fn asset(name: &str) -> String {
 pub fn table(lines: &str) -> impl Iterator<Item = Vec<&str>> {
     let cells = |line| str::split(line, '|').map(str::trim).collect();
     lines.trim().lines().map(cells)
+}
+
+/// Wants all of these words in a text.
+#[track_caller]
+pub fn holds(text: &str, words: &[&str]) {
+    let missing = words.iter().find(|word| !text.contains(**word));
+    assert_eq!(missing, None, "not in {text}");
 }
 
 /// What a run wrote to standard error.

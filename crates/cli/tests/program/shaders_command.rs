@@ -14,43 +14,31 @@ type Row = HashMap<String, String>;
 /// The driver's manifest, where the loader looks for them. It belongs to the drivers that the tests
 /// run on.
 fn manifest() -> PathBuf {
-    let home = std::env::var_os("HOME")
-        .map(PathBuf::from)
-        .unwrap_or_default();
+    let home = PathBuf::from(std::env::var_os("HOME").unwrap_or_default());
     let folders = ["/etc", "/usr/local/etc", "/usr/local/share", "/usr/share"].map(PathBuf::from);
     let own = [".config", ".local/share"].map(|folder| home.join(folder));
-    let entries = own
-        .iter()
-        .chain(&folders)
-        .filter_map(|folder| std::fs::read_dir(folder.join("vulkan/icd.d")).ok());
+    let folders = own.iter().chain(&folders);
+    let entries = folders.filter_map(|f| std::fs::read_dir(f.join("vulkan/icd.d")).ok());
     let named = |path: &PathBuf| path.to_string_lossy().contains("/radeon_icd");
     let mut files = entries.flatten().map(|entry| entry.unwrap().path());
     let found = files.find(named);
-    found.unwrap_or_else(|| {
-        panic!("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
-    })
+    found.expect("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
 }
 
 fn rows(text: &str) -> Vec<Row> {
     // Cells with commas are quoted.
     let cells = |line: &str| -> Vec<String> {
-        let quoted = line.split('"').enumerate().map(|(i, part)| {
-            if i % 2 == 1 {
-                part.replace(',', ";")
-            } else {
-                part.to_owned()
-            }
+        let quoted = line.split('"').enumerate().map(|(i, part)| match i % 2 {
+            1 => part.replace(',', ";"),
+            _ => part.to_owned(),
         });
-        quoted
-            .collect::<String>()
-            .split(',')
-            .map(str::to_owned)
-            .collect()
+        let line: String = quoted.collect();
+        line.split(',').map(str::to_owned).collect()
     };
     let mut all = text.lines().map(cells);
     let head = all.next().unwrap();
-    all.map(|row| head.iter().cloned().zip(row).collect())
-        .collect()
+    let row = |row| head.iter().cloned().zip(row).collect();
+    all.map(row).collect()
 }
 
 fn compiled() -> &'static [Row] {
@@ -84,44 +72,31 @@ fn name(row: &Row) -> String {
 fn shaders_grow_by_a_tenth_at_most() {
     let kept = rows(include_str!("../../../../docs/shaders-navi21.csv"));
     let now = compiled();
-    let all = [
-        "VGPRs",
-        "Spilled VGPRs",
-        "Spilled SGPRs",
-        "Scratch size",
-        "Code size",
-        "Instructions",
-    ];
-    let (columns, most) = if kept[0]["driver"] == now[0]["driver"] {
-        (&all[..], 1.1)
-    } else {
-        (&all[5..], 1.5)
+    let all = "VGPRs,Spilled VGPRs,Spilled SGPRs,Scratch size,Code size,Instructions";
+    let all: Vec<&str> = all.split(',').collect();
+    let (columns, most) = match kept[0]["driver"] == now[0]["driver"] {
+        true => (&all[..], 1.1),
+        false => (&all[5..], 1.5),
     };
     let mut compared = 0;
     for row in now {
         // A shader without a row would grow unseen.
         // Vertices of small and of large tables share a module, and differ by a constant.
         let before: Vec<&Row> = kept.iter().filter(|k| name(k) == name(row)).collect();
-        assert!(
-            !before.is_empty(),
-            "{} is not in the file: {RENEW}",
-            name(row)
-        );
+        let name = name(row);
+        assert!(!before.is_empty(), "{name} is not in the file: {RENEW}");
         compared += 1;
         for column in columns {
             let before = before.iter().map(|row| number(row, column));
             let (before, now) = (before.fold(0.0, f64::max), number(row, column));
-            assert!(
-                now <= most * before,
-                "{}: {column} was {before}, is {now}; {RENEW}",
-                name(row)
-            );
+            let fits = now <= most * before;
+            assert!(fits, "{name}: {column} was {before}, is {now}; {RENEW}");
         }
     }
+    let all = kept.len();
     assert!(
-        2 * compared >= kept.len(),
-        "{compared} of {} rows are left; {RENEW}",
-        kept.len()
+        2 * compared >= all,
+        "{compared} of {all} rows are left; {RENEW}"
     );
 }
 
@@ -158,10 +133,8 @@ fn what_a_scene_does_not_use_costs_nothing() {
             };
             for (technique, &has) in techniques.iter().filter(|(t, _)| *t != "8-bit map") {
                 compared += 1;
-                assert!(
-                    bare <= 1.02 * has + 8.0,
-                    "{column} of {place:?} are {bare}, with {technique} {has}"
-                );
+                let what = format!("{column} of {place:?} are {bare}, with {technique} {has}");
+                assert!(bare <= 1.02 * has + 8.0, "{what}");
             }
         }
     }

@@ -14,14 +14,12 @@ fn bytes_of_a_shading_are_read_by_the_library() {
     bench.file("shade.glsl", GLSL);
     bench.file("lights.glsl", LIGHTS);
     bench.done("shading shade.glsl lights.glsl");
-    for (stage, name) in [
-        (DrawStage::Fragment, "fragment"),
-        (DrawStage::Compute, "compute"),
-    ] {
+    for stage in [DrawStage::Fragment, DrawStage::Compute] {
+        let name = stage.name();
         let line = format!("shading shade.glsl lights.glsl -o {name}.shading --stage {name}");
         let said = bench.said(&line);
         assert!(said.starts_with(&format!("{name}.shading: ")), "{said}");
-        let bytes = std::fs::read(bench.path(&format!("{name}.shading"))).unwrap();
+        let bytes = bench.read(&format!("{name}.shading"));
         assert_eq!(Shading::from_bytes(&bytes).unwrap().stage(), stage);
     }
 }

@@ -1,16 +1,15 @@
 //! `revmap stability`: its table, its files, its exit codes.
 
-use crate::run::{Bench, lines};
+use crate::run::{Bench, holds, lines};
 
 #[test]
 fn a_case_that_passes_leaves_a_report_and_its_scenes() {
     let bench = Bench::new();
     let table = bench.said("stability cone-tip --quick --solver hull --out kept --quiet");
-    let names = table.contains("cone-tip") && table.contains("exact");
-    assert!(names, "{table}");
+    holds(&table, &["cone-tip", "exact"]);
     bench.has(&["kept/report.html", "kept/scenes/cone-tip-0.toml"]);
     bench.has(&["kept/charts/cone-tip.svg"]);
-    let results = String::from_utf8(bench.read("kept/results.csv")).unwrap();
+    let results = bench.text("kept/results.csv");
     // Two scenes in two stages, below the header.
     assert_eq!(results.lines().count(), 5, "{results}");
 }
@@ -50,10 +49,9 @@ fn a_case_whose_map_is_too_large_is_named() {
         env!("CARGO_MANIFEST_DIR"),
         "/../../lab/searches/published/relief"
     );
-    let output = bench.done(&format!(
+    let said = lines(&bench.done(&format!(
         "stability large-outline --quick --solver {relief} --out kept --quiet"
-    ));
-    let said = lines(&output);
+    )));
     let warned =
         "warning: large-outline at 10000 is not drawn by relief (folder): its map is too large";
     assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");

@@ -1,11 +1,11 @@
 //! `--studio`, and the options of plain colours.
 
-use crate::run::{Bench, CAMERA, CONE, SVG};
+use crate::run::{Bench, CAMERA, CONE, SVG, table};
 use image::RgbaImage;
 
 fn draw(bench: &Bench, arguments: &str) -> RgbaImage {
     bench.done(&format!("render {arguments} -o a.png"));
-    image::open(bench.path("a.png")).unwrap().into_rgba8()
+    bench.picture("a.png")
 }
 
 /// Parts of the picture that are not transparent: left, right, top, bottom.
@@ -14,10 +14,8 @@ fn bounds(picture: &RgbaImage) -> [f64; 4] {
     let mut all = [1.0f64, 0.0, 1.0, 0.0];
     for (x, y, _) in solid {
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let at = [
-            x / f64::from(picture.width()),
-            y / f64::from(picture.height()),
-        ];
+        let (width, height) = picture.dimensions();
+        let at = [x / f64::from(width), y / f64::from(height)];
         for k in 0..2 {
             all[2 * k] = all[2 * k].min(at[k]);
             all[2 * k + 1] = all[2 * k + 1].max(at[k]);
@@ -32,36 +30,23 @@ const PLATE: &str = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 40
 fn a_thing_fills_four_fifths_of_the_picture() {
     let bench = Bench::new();
     bench.file("plate.svg", PLATE);
-    for (thing, size, wide) in [
-        ("@profiles/pawn.svg", "200x150", false),
-        ("@profiles/pawn.svg", "100x300", true),
-        ("plate.svg", "200x150", true),
-        (
-            "@profiles/pawn.svg --set object.0.rotation=[1,0,0,1]",
-            "200x100",
-            false,
-        ),
-        (
-            "@profiles/pawn.svg --set object.0.extend=0.2",
-            "200x150",
-            false,
-        ),
-        (
-            "plate.svg --set object.0.position=[3,-2,7]",
-            "150x150",
-            true,
-        ),
-    ] {
+    for row in table(
+        "@profiles/pawn.svg --size 200x150 | high
+         @profiles/pawn.svg --size 100x300 | wide
+         plate.svg --size 200x150          | wide
+         @profiles/pawn.svg --set object.0.rotation=[1,0,0,1] --size 200x100 | high
+         @profiles/pawn.svg --set object.0.extend=0.2 --size 200x150         | high
+         plate.svg --set object.0.position=[3,-2,7] --size 150x150           | wide",
+    ) {
+        let (thing, wide) = (row[0], row[1] == "wide");
         let picture = draw(
             &bench,
-            &format!("{thing} --studio --size {size} --background transparent"),
+            &format!("{thing} --studio --background transparent"),
         );
         let [left, right, top, bottom] = bounds(&picture);
         let [low, high] = if wide { [left, right] } else { [top, bottom] };
-        assert!(
-            (low - 0.1).abs() < 0.012 && (high - 0.9).abs() < 0.012,
-            "{thing}: {low} {high}"
-        );
+        let fills = (low - 0.1).abs() < 0.012 && (high - 0.9).abs() < 0.012;
+        assert!(fills, "{thing}: {low} {high}");
         let other = if wide { bottom - top } else { right - left };
         assert!(other < 0.8, "{thing}: {other}");
     }
@@ -74,19 +59,12 @@ fn a_film_is_framed_as_a_whole() {
     bench.file("a.svg", SVG);
     let film = "animate a.svg --frames 4 --size 120x90 --studio --background transparent -o f";
     bench.done(&format!("{film} --vary object.0.extend=0:0.3"));
-    let bounds = |n: u32| {
-        bounds(
-            &image::open(bench.path(&format!("f/frame-000{n}.png")))
-                .unwrap()
-                .into_rgba8(),
-        )
+    let high = |n: u32| {
+        let [.., top, bottom] = bounds(&bench.picture(&format!("f/frame-000{n}.png")));
+        bottom - top
     };
-    let (first, last) = (bounds(0), bounds(3));
-    assert!(
-        last[3] - last[2] > 0.75 && last[3] - last[2] < 0.82,
-        "{last:?}"
-    );
-    assert!(first[3] - first[2] < 0.7, "{first:?}");
+    let (first, last) = (high(0), high(3));
+    assert!(first < 0.7 && last > 0.75 && last < 0.82, "{first} {last}");
 }
 
 #[test]
@@ -96,12 +74,8 @@ fn a_camera_of_ones_own_stays() {
     bench.file("a.svg", SVG);
     let camera = "--set camera.eye=[3,1,2]";
     for thing in ["mine.toml".to_owned(), format!("a.svg {camera}")] {
-        let plain = draw(&bench, &format!("{thing} --size 80x60"));
-        let studio = draw(
-            &bench,
-            &format!("{thing} --size 80x60 --studio --background transparent"),
-        );
-        assert_eq!(bounds(&plain), bounds(&studio), "{thing}");
+        let of = |more: &str| bounds(&draw(&bench, &format!("{thing} --size 80x60 {more}")));
+        assert_eq!(of(""), of("--studio --background transparent"), "{thing}");
     }
 }
 
@@ -131,11 +105,10 @@ fn the_ground_has_a_soft_edge() {
 fn one_colour_all_round() {
     let bench = Bench::new();
     for stage in ["fragment", "compute", "reference"] {
+        let render = "@profiles/pawn.svg --studio --size 96x96 --antialias off";
         let picture = draw(
             &bench,
-            &format!(
-                "@profiles/pawn.svg --studio --size 96x96 --antialias off --background #cccccc --stage {stage}"
-            ),
+            &format!("{render} --background #cccccc --stage {stage}"),
         );
         // Above the thing, and right of it before the ground: no shadow reaches there.
         let edge = (0..96).map(|x| (x, 0)).chain((70..96).map(|x| (x, 95)));
@@ -152,15 +125,10 @@ fn one_colour_all_round() {
 #[test]
 fn a_rim_of_light_is_on_the_dark_side() {
     let bench = Bench::new();
-    let picture = draw(
-        &bench,
-        "@gallery/ring.svg --studio --size 200x200 --background transparent",
-    );
-    let row: Vec<u8> = (0..200)
-        .map(|x| picture.get_pixel(x, 90))
-        .filter(|p| p.0[3] == 255)
-        .map(|p| p.0[0])
-        .collect();
+    let ring = "@gallery/ring.svg --studio --size 200x200 --background transparent";
+    let picture = draw(&bench, ring);
+    let row = (0..200).map(|x| picture.get_pixel(x, 90).0);
+    let row: Vec<u8> = row.filter(|p| p[3] == 255).map(|p| p[0]).collect();
     let darkest = *row.iter().min().unwrap();
     let rim = *row[row.len() - 8..].iter().max().unwrap();
     assert!(rim > darkest + 25, "{rim} {darkest}");
@@ -179,23 +147,17 @@ fn colours_are_those_of_css() {
         let [r, g, b, _] = picture.get_pixel(20, 15).0;
         (r > g.saturating_add(30), b > g.saturating_add(30))
     };
-    for color in ["red", "#f00", "#ff0000", "hsl(0,100%,50%)", "rgb(255,0,0)"] {
-        assert_eq!(
-            tint(&format!("a.svg --studio --color {color}")),
-            (true, false),
-            "{color}"
-        );
+    let colors = ["red", "#f00", "#ff0000", "hsl(0,100%,50%)", "rgb(255,0,0)"];
+    let red = colors.map(|color| format!("a.svg --studio --color {color}"));
+    for arguments in &red {
+        assert_eq!(tint(arguments), (true, false), "{arguments}");
     }
     assert_eq!(tint("two.toml --color blue"), (false, true));
     // A key that is set says more.
-    assert_eq!(
-        tint("a.svg --color blue --set object.0.color=[1,0,0]"),
-        (true, false)
-    );
-    let corner = draw(&bench, "a.svg --size 40x30 --background teal")
-        .get_pixel(0, 0)
-        .0;
-    assert_eq!(corner, [0, 128, 128, 255]);
+    let set = tint("a.svg --color blue --set object.0.color=[1,0,0]");
+    assert_eq!(set, (true, false));
+    let teal = draw(&bench, "a.svg --size 40x30 --background teal");
+    assert_eq!(teal.get_pixel(0, 0).0, [0, 128, 128, 255]);
     bench.refuses(
         2,
         "render a.svg -o b.png --color greenish                            | --color | greenish | rgb(

@@ -1,6 +1,6 @@
 //! `revmap submit` and `revmap bench --gather` as they are run: files, privacy, refusals.
 
-use crate::run::{Bench, lines};
+use crate::run::{Bench, holds, lines};
 use revmap_bench::submission::Submission;
 use revmap_bench::table::Table;
 use std::path::Path;
@@ -30,12 +30,9 @@ fn a_file_has_nothing_personal_and_says_so() {
         .env("XDG_CACHE_HOME", &home);
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
-    let text = String::from_utf8(bench.read("mine.toml")).unwrap();
+    let text = bench.text("mine.toml");
     let second = text.lines().nth(1).unwrap();
-    assert!(
-        second.starts_with("# Nothing personal is in this file"),
-        "{second}"
-    );
+    holds(second, &["# Nothing personal is in this file"]);
     let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let own = ["planted-user", "planted-host", "mine.toml", host.as_str()];
     assert_eq!(personal(&text, &own), [""; 0]);
@@ -55,10 +52,7 @@ fn submissions_are_gathered() {
     assert_eq!(a.plan, "submit --quick");
     // Two searches and the baseline in both stages, one mesh.
     assert_eq!(a.pictures.len(), 7);
-    assert!(
-        said.contains("a.toml: ") && said.contains("7 pictures"),
-        "{said}"
-    );
+    holds(&said, &["a.toml: ", "7 pictures"]);
     let size = |one: &Submission| (one.size.clone(), one.device.clone());
     assert_eq!(size(&a), size(&b));
     // One device draws one picture, whatever it takes.
@@ -74,8 +68,7 @@ fn submissions_are_gathered() {
 
     let said = bench.said("bench --gather a.toml b.toml --out c");
     let report = Path::new("c").join("report.html");
-    let wanted = format!("{}: 2 submissions", report.display());
-    assert!(said.contains(&wanted), "{said}");
+    holds(&said, &[&format!("{}: 2 submissions", report.display())]);
     // Both have one device's name, so they are numbered. A column without values is left out: that of
     // a submission whose clocks disagree, beside one with lines.
     let no_line = a.lines.is_empty() && b.lines.is_empty();
@@ -93,7 +86,7 @@ fn submissions_are_gathered() {
 }
 
 fn refusals(bench: &Bench) {
-    let text = String::from_utf8(bench.read("a.toml")).unwrap();
+    let text = bench.text("a.toml");
     bench.file("changed.toml", text.replacen("wrong = 0", "wrong = 1", 1));
     bench.file("later.toml", text.replacen("format = 1", "format = 9", 1));
     bench.file("half.toml", &text[..text.len() / 2]);

@@ -8,24 +8,20 @@ use std::time::{Duration, Instant};
 
 const RENDER: &str = "render scene.toml --stage reference --size 16x12";
 
+#[track_caller]
+fn succeeds(command: &mut Command) {
+    assert!(command.status().unwrap().success());
+}
+
 /// Standard output that takes nothing fails a command; a reader that has gone does not.
 #[test]
 fn results_must_reach_standard_output() {
     let bench = Bench::new();
     bench.done(&format!("{RENDER} -o a.exr"));
-    for arguments in [
-        &format!("{RENDER} -o b.png --json"),
-        "searches",
-        "man",
-        "devices",
-        "completions bash",
-        "compare a.exr a.exr",
-        "bench --list",
-        "bench --list quick",
-        "--help",
-        "render --help",
-        "-V",
-    ] {
+    let render = format!("{RENDER} -o b.png --json");
+    let others = "searches|man|devices|completions bash|compare a.exr a.exr|bench --list|\
+        bench --list quick|--help|render --help|-V";
+    for arguments in others.split('|').chain([&*render]) {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let output = bench.command(arguments).stdout(full).output().unwrap();
         let said = lines(&output);
@@ -48,12 +44,8 @@ fn limits_and_signals_leave_no_parts() {
     bench.refused_by(&mut command, 1, &["out.exr: cannot be written"]);
 
     // A signal comes at any place of a file's writing.
-    for (round, signal) in ["-TERM", "-HUP", "-INT"]
-        .iter()
-        .cycle()
-        .take(12)
-        .enumerate()
-    {
+    for round in 0..12 {
+        let signal = ["-TERM", "-HUP", "-INT"][round % 3];
         let arguments =
             "animate scene.toml --frames 100000 --turn 360 --size 64x48 -o t --overwrite";
         let mut command = bench.heeding_signals(arguments);
@@ -64,14 +56,7 @@ fn limits_and_signals_leave_no_parts() {
             std::thread::sleep(Duration::from_millis(2));
         }
         std::thread::sleep(Duration::from_millis(3 * round as u64));
-        let id = child.id().to_string();
-        assert!(
-            Command::new("kill")
-                .args([*signal, &id])
-                .status()
-                .unwrap()
-                .success()
-        );
+        succeeds(Command::new("kill").args([signal, &child.id().to_string()]));
         assert!(!child.wait().unwrap().success());
         let entries = std::fs::read_dir(bench.path("t")).unwrap();
         let names = entries.map(|e| e.unwrap().file_name().into_string().unwrap());
@@ -92,11 +77,8 @@ fn outputs_that_are_more_than_plain_files() {
         ("circle.png", "cannot be written"),
         ("kept.png", "is read-only"),
     ] {
-        bench.refused(
-            &format!("{RENDER} -o {name}"),
-            1,
-            &[name, "--output", words],
-        );
+        let words = [name, "--output", words];
+        bench.refused(&format!("{RENDER} -o {name}"), 1, &words);
     }
     assert!(bench.path("circle.png").is_symlink());
     assert_eq!(bench.read("kept.png"), b"as it was");
@@ -107,13 +89,7 @@ fn outputs_that_are_more_than_plain_files() {
     assert!(bench.read("two.exr") == bench.read("whole.exr"));
 
     let pipe = bench.path("pipe.exr");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    succeeds(Command::new("mkfifo").arg(&pipe));
     let reader = std::thread::spawn(move || {
         let mut bytes = Vec::new();
         std::io::copy(&mut File::open(pipe).unwrap(), &mut bytes).unwrap();

@@ -1,49 +1,24 @@
 //! What looks unintended is said in one line each, and changes no exit code.
 
-use crate::run::{Bench, CAMERA, SVG, lines};
+use crate::run::{Bench, CAMERA, SVG, holds, lines, table};
 
 const RENDER: &str = "render scene.toml -o out.png --size 32x24";
-
-/// Warnings of a run that is done.
-#[track_caller]
-fn warned(bench: &Bench, arguments: &str) -> Vec<String> {
-    let said = lines(&bench.done(arguments));
-    said.into_iter()
-        .filter(|l| l.starts_with("warning: "))
-        .collect()
-}
-
-/// Wants one warning with all of `words`.
-#[track_caller]
-fn warned_once(bench: &Bench, arguments: &str, words: &[&str]) {
-    let found = warned(bench, arguments);
-    assert_eq!(found.len(), 1, "{found:?}");
-    assert!(
-        words.iter().all(|word| found[0].contains(word)),
-        "{found:?}"
-    );
-}
 
 #[test]
 fn scenes_that_look_unintended() {
     let bench = Bench::new();
-    assert_eq!(warned(&bench, RENDER), [""; 0]);
-    for (set, words) in [
-        ("camera.fov_y=0.7", "camera.fov_y"),
-        ("object.0.color=[200,100,0]", "object.0.color"),
-        ("camera.target=[9,0,0.5]", "nothing is in view"),
-        (
-            "object.0.scale=[1e-6,1e-6,1e-6]",
-            "object.0 is 0.00 pixels large",
-        ),
-        (
-            "camera.eye=[9000,0,0.5]",
-            "pixels large; move camera.eye nearer",
-        ),
-        ("object.0.polygon=[[0,0],[1e-3,0],[0,1e-3]]", "pixels large"),
-    ] {
+    assert_eq!(bench.warned(RENDER), [""; 0]);
+    for row in table(
+        "camera.fov_y=0.7                | camera.fov_y
+         object.0.color=[200,100,0]      | object.0.color
+         camera.target=[9,0,0.5]         | nothing is in view
+         object.0.scale=[1e-6,1e-6,1e-6] | object.0 is 0.00 pixels large
+         camera.eye=[9000,0,0.5]         | pixels large; move camera.eye nearer
+         object.0.polygon=[[0,0],[1e-3,0],[0,1e-3]] | pixels large",
+    ) {
+        let set = row[0];
         let arguments = format!("{RENDER} --set {set}");
-        warned_once(&bench, &arguments, &[words]);
+        bench.warned_once(&arguments, &row[1..]);
         assert!(lines(&bench.done(&format!("{arguments} --quiet"))).is_empty());
     }
 }
@@ -63,13 +38,11 @@ fn what_hovers_stands_by_a_key() {
         let thing = format!("[[object]]\nprofile = \"a.svg\"\n{copies}");
         let scene = |first: &str, own: &str| {
             bench.file("scene.toml", format!("{first}{CAMERA}{table}{thing}{own}"));
-            warned(&bench, RENDER)
+            bench.warned(RENDER)
         };
         let found = scene("", "");
-        assert!(
-            found.len() == 1 && found[0].contains("object.1.stand = true"),
-            "{found:?}"
-        );
+        assert_eq!(found.len(), 1, "{found:?}");
+        holds(&found[0], &["object.1.stand = true"]);
         assert_eq!(scene("", "stand = true\n"), [""; 0]);
         assert_eq!(scene("stand = true\n", ""), [""; 0]);
         assert_eq!(scene("stand = true\n", "stand = false\n").len(), 1);
@@ -86,21 +59,20 @@ fn pictures_that_show_nothing() {
     for set in ["-0.0499", "-0.0499 --stage reference"] {
         for more in ["", background] {
             let arguments = format!("{render} --set object.0.extend={set} {more}");
-            warned_once(&bench, &arguments, &["extend"]);
+            bench.warned_once(&arguments, &["extend"]);
         }
     }
     let small = "--size 32x24 --set object.0.scale=[1e-6,1e-6,1e-6]";
     for output in ["", " -o t"] {
         let animate = format!("animate scene.toml --frames 2 --turn 90 {small}{output}");
-        warned_once(
-            &bench,
+        bench.warned_once(
             &animate,
             &["frames are empty", "object.0 is 0.00 pixels large"],
         );
     }
     let still = "animate scene.toml --frames 2 --size 32x24";
-    warned_once(&bench, still, &["nothing moves, so all frames are equal"]);
-    warned_once(&bench, &format!("{still} --turn 0"), &["--turn or --vary"]);
+    bench.warned_once(still, &["nothing moves, so all frames are equal"]);
+    bench.warned_once(&format!("{still} --turn 0"), &["--turn or --vary"]);
 }
 
 /// Fins of 1 % of the height merge within 2 % of it.
@@ -115,9 +87,9 @@ fn a_coarse_outline_says_what_it_changed() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>";
     bench.file("fins.svg", format!("{svg}{path}</svg>"));
     let profile = "profile fins.svg -o clean.svg";
-    assert_eq!(warned(&bench, profile), [""; 0]);
+    assert_eq!(bench.warned(profile), [""; 0]);
     let words = ["--tolerance: ", " % of the solid's area changed"];
-    warned_once(&bench, &format!("{profile} --tolerance 0.02"), &words);
+    bench.warned_once(&format!("{profile} --tolerance 0.02"), &words);
     let words = ["--tolerance: is 1, which leaves no shape"];
     bench.refused("profile fins.svg -o a.svg --tolerance 1", 2, &words);
 }
@@ -125,28 +97,20 @@ fn a_coarse_outline_says_what_it_changed() {
 #[test]
 fn options_that_are_passed_over() {
     let bench = Bench::new();
-    for (options, words) in [
-        ("--max-steps 9", Some("--max-steps: --solver exact")),
-        ("--solver quadric --map-rows 64", Some("--map-rows")),
-        ("--solver mesh:8x8 --map-format r16", Some("--map-format")),
-        (
-            "--stage reference --solver live",
-            Some("--solver: --stage reference"),
-        ),
-        (
-            "--solver live --max-steps 99 --map-rows 64 --map-source exact --map-format r16",
-            None,
-        ),
-        ("--solver cone --map-rows 64", None),
-    ] {
-        let arguments = format!("{RENDER} {options}");
-        match words {
-            Some(words) => warned_once(&bench, &arguments, &[words]),
-            None => assert_eq!(warned(&bench, &arguments), [""; 0], "{options}"),
-        }
+    for row in table(
+        "--max-steps 9                             | --max-steps: --solver exact
+         --solver quadric --map-rows 64            | --map-rows
+         --solver mesh:8x8 --map-format r16        | --map-format
+         --stage reference --solver live           | --solver: --stage reference
+         --solver live --max-steps 99 --map-rows 64 --map-source exact --map-format r16
+         --solver cone --map-rows 64",
+    ) {
+        let found = bench.warned(&format!("{RENDER} {}", row[0]));
+        assert_eq!(found.len(), row.len() - 1, "{found:?}");
+        holds(&found.concat(), &row[1..]);
     }
     let animate = "animate scene.toml --frames 1 --size 32x24 --samples 4";
-    warned_once(&bench, animate, &["--samples"]);
+    bench.warned_once(animate, &["--samples"]);
 }
 
 #[test]
@@ -155,12 +119,12 @@ fn pictures_that_look_unintended_and_the_keys_that_mend_them() {
     let ball = |x: u32, y: u32| (f64::from(x) - 31.5).hypot(f64::from(y) - 31.5) < 20.0;
     bench.grey("light.png", 64, 64, |x, y| if ball(x, y) { 255 } else { 0 });
     let words = ["object.0.profile: ", "profile_invert = true"];
-    warned_once(&bench, "render light.png -o out.png --size 32x24", &words);
+    bench.warned_once("render light.png -o out.png --size 32x24", &words);
     let mended = "render light.png -o out.png --size 32x24 --set object.0.profile_invert=true";
-    assert_eq!(warned(&bench, mended), [""; 0]);
+    assert_eq!(bench.warned(mended), [""; 0]);
 
     let bake = "bake light.png -o map.png --map-rows 64";
-    warned_once(&bench, bake, &["--profile-invert if light"]);
+    bench.warned_once(bake, &["--profile-invert if light"]);
     bench.done(&format!("{bake} --profile-invert"));
     let bake = "bake light.png -o map2.png --profile-threshold 2";
     bench.refused(bake, 1, &["light.png", "--profile-threshold"]);

@@ -1,6 +1,6 @@
 //! What the program says to people, shells and programs.
 
-use crate::run::Bench;
+use crate::run::{Bench, holds};
 use serde_json::Value;
 
 const COMMANDS: &str = "render animate mesh profile bake bench chart stability submit shaders devices compare view completions man";
@@ -14,16 +14,10 @@ fn every_help_has_examples() {
     for command in COMMANDS.split(' ').filter(tried) {
         let help = bench.said(&format!("{command} --help"));
         let examples = help.split("Examples:\n").nth(1).unwrap();
-        let lines: Vec<_> = examples
-            .lines()
-            .map(str::trim)
-            .filter(|l| !l.is_empty())
-            .collect();
+        let lines = examples.lines().map(str::trim);
+        let lines: Vec<_> = lines.filter(|l| !l.is_empty()).collect();
         assert!(lines.len() >= 2, "{command}: {lines:?}");
-        let own = lines
-            .iter()
-            .filter(|l| l.contains(&format!("revmap {command}")));
-        assert!(own.count() >= 1, "{command}: {lines:?}");
+        holds(examples, &[&format!("revmap {command}")]);
         for line in lines {
             // With `--help` behind its options, each is read as far as it is sound.
             let words = line.split("revmap ").nth(1).unwrap();
@@ -42,15 +36,13 @@ fn shells_and_man_know_every_command() {
             assert!(script.contains(command), "{shell}: {command}");
         }
     }
-    let page = bench.said("man");
-    assert!(
-        page.contains(".TH revmap") && page.contains("render"),
-        "{page}"
-    );
+    holds(&bench.said("man"), &[".TH revmap", "render"]);
     bench.done("man -o pages");
     for command in COMMANDS.split(' ') {
-        let page = bench.path(&format!("pages/revmap-{command}.1"));
-        assert!(std::fs::read_to_string(page).unwrap().contains("Examples"));
+        holds(
+            &bench.text(&format!("pages/revmap-{command}.1")),
+            &["Examples"],
+        );
     }
 }
 
@@ -63,12 +55,10 @@ fn programs_get_json() {
     let preferred: Vec<_> = all.iter().filter(|d| d["preferred"] == true).collect();
     assert_eq!(preferred.len(), 1, "{devices}");
     let listed = bench.said("devices");
-    let marked: Vec<_> = listed
-        .lines()
-        .filter(|l| l.contains("taken unless"))
-        .collect();
+    let marked = listed.lines().filter(|l| l.contains("taken unless"));
+    let marked: Vec<_> = marked.collect();
     assert_eq!(marked.len(), 1, "{listed}");
-    assert!(marked[0].contains(preferred[0]["name"].as_str().unwrap()));
+    holds(marked[0], &[preferred[0]["name"].as_str().unwrap()]);
 
     let drawn = json("render scene.toml -o a.exr --size 32x24 --json --solver live");
     assert_eq!(drawn["device"]["name"], preferred[0]["name"]);
@@ -81,35 +71,24 @@ fn programs_get_json() {
     assert_eq!(drawn["warnings"], serde_json::json!([]));
 
     let truth = json("render scene.toml -o truth.exr --size 32x24 --json --stage reference");
-    assert_eq!(
-        (&truth["device"], &truth["solver"]),
-        (&Value::Null, &Value::Null)
-    );
+    assert!(truth["device"].is_null() && truth["solver"].is_null());
     let found = json("compare truth.exr a.exr --json");
     assert_eq!(found["hits"], truth["hits"]);
     assert!(found["depth_p99_texels"].as_f64().unwrap() < 0.5 && found["flip"].is_f64());
     let coarse = json("compare truth.exr a.exr --json --texel 0.0078125");
     let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
     // Texels are four times as long; h/512 stays.
-    assert_eq!(
-        number(&found, "depth_p99_texels"),
-        4.0 * number(&coarse, "depth_p99_texels")
-    );
-    for other in [
-        number(&found, "depth_p99_texels"),
-        number(&coarse, "depth_p99_h512"),
-    ] {
-        assert_eq!(number(&found, "depth_p99_h512"), other);
-    }
+    let [fine, four] = [&found, &coarse].map(|found| number(found, "depth_p99_texels"));
+    assert_eq!(fine, 4.0 * four);
+    let [fixed, same] = [&found, &coarse].map(|found| number(found, "depth_p99_h512"));
+    assert_eq!([fixed; 2], [fine, same]);
     let said = bench.said("compare truth.exr a.exr");
-    assert!(
-        said.contains("texels of 0.001953 world units")
-            && said.contains("h/512 (height h = 1 world unit)"),
-        "{said}"
-    );
+    let units = [
+        "texels of 0.001953 world units",
+        "h/512 (height h = 1 world unit)",
+    ];
+    holds(&said, &units);
     assert!(found["first_difference"].is_string());
-    assert_eq!(
-        json("compare a.exr a.exr --json")["first_difference"],
-        Value::Null
-    );
+    let same = json("compare a.exr a.exr --json");
+    assert!(same["first_difference"].is_null());
 }

@@ -17,6 +17,13 @@ mod scenes;
 mod seeming;
 mod shape_maps;
 
+/// Wants `words` in a text, such as that of an error.
+#[track_caller]
+fn holds(text: impl std::fmt::Display, words: &str) {
+    let text = text.to_string();
+    assert!(text.contains(words), "{words}: {text}");
+}
+
 /// A file of the repository's `assets`.
 fn asset(name: &str) -> std::path::PathBuf {
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");

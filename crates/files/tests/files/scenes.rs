@@ -57,11 +57,7 @@ fn pictures_of_their_solids_look_as_intended() {
     }
 }
 
-/// Half of a vase with the axis at the left edge of its page.
-const HALF: &[u8] = b"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 60 100'>\
-    <path d='M0 0 H40 L20 30 L45 70 L30 100 H0 Z'/></svg>";
-
-/// Values that are set count when a profile in place of a scene is first read, and for its camera.
+/// Values that are set count/// Values that are set count when a profile in place of a scene is first read, and for its camera.
 #[test]
 fn a_bare_profile_is_read_with_what_is_set() {
     let folder = tempfile::tempdir().unwrap();
@@ -83,14 +79,4 @@ fn a_bare_profile_is_read_with_what_is_set() {
     let own = scene(&[left, "camera.eye.0=9", "object.0.extend=0.5"]).unwrap();
     assert_eq!(own.camera.eye.x, 9.0);
     assert_eq!(own.camera.eye.y, far.camera.eye.y);
-}
-
-#[test]
-fn half_a_drawing_that_is_read_as_a_whole_one_brings_a_warning() {
-    let read = |bytes: &[u8], axis| revmap_files::profile_from_bytes(bytes, axis).unwrap();
-    let [warning] = &read(HALF, ProfileAxis::Center).warnings[..] else {
-        panic!("one warning");
-    };
-    assert!(warning.contains("profile_axis = \"left\""), "{warning}");
-    assert_eq!(read(HALF, ProfileAxis::Left).warnings, [""; 0]);
 }

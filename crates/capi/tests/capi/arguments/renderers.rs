@@ -1,10 +1,6 @@
 //! Wrong arguments of renderers and their objects; threads that use one at once.
 
 use super::*;
-use revmap_capi::renderer::frame::*;
-use revmap_capi::renderer::objects::*;
-use revmap_capi::renderer::statistics::*;
-use revmap_capi::renderer::*;
 
 #[test]
 fn renderers_and_objects() {
