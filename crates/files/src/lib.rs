@@ -37,7 +37,6 @@
 //! that are measured in pixels exist for comparison with the papers.
 
 mod atomic_file;
-mod exif;
 mod faults;
 mod jpeg_end;
 mod maps;

@@ -6,13 +6,17 @@ use super::tile::{Tile, overlap};
 use crate::content_fault;
 use crate::pixels::luminance;
 use glam::{DVec2, Vec2Swizzles as _};
-use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};
+use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Point, Shape, StrokeOpts};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use std::cell::Cell;
 
 /// Largest distance between a curve and its chords, object units.
 pub(crate) const FLATNESS: f64 = 1e-5;
+
+/// Most dashes of a stroke, and most pairs of round or square ones that overlap.
+const MOST_DASHES: f64 = 2e4;
+const MOST_OVERLAPS: f64 = 2e5;
 
 /// Paint is cut by an edge of the page if it reaches this far to both sides, object units.
 const CUT: f64 = 5e-3;
@@ -171,8 +175,8 @@ impl Canvas {
             to_profile = self.page;
         }
         check_reach(&curve, to_profile)?;
+        check_dashes(&curve, band)?;
         let mut style = band.style.clone();
-        check_dashes(&curve, &style.dash_pattern)?;
         // Half of the tolerance is for the stroke's outline, half for its flattening.
         let tolerance = 0.5 * FLATNESS / magnification(to_profile);
         let (lines, dots) = with_dots(&curve, &mut style);
@@ -348,11 +352,7 @@ fn with_dots(curve: &BezPath, style: &mut kurbo::Stroke) -> (BezPath, BezPath) {
 
 /// Largest factor by which lengths grow.
 fn magnification(t: Affine) -> f64 {
-    let [a, b, c, d, ..] = t.as_coeffs();
-    let (sum, det) = (a * a + b * b + c * c + d * d, a * d - b * c);
-    (0.5 * (sum + (sum * sum - 4.0 * det * det).max(0.0).sqrt()))
-        .sqrt()
-        .max(f64::MIN_POSITIVE)
+    Ellipse::from_affine(t).radii().x.max(f64::MIN_POSITIVE)
 }
 
 /// Refuses curves so large that flattening them would use up all memory; next to nothing of them is
@@ -370,17 +370,21 @@ fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
 }
 
 /// Refuses strokes with more dashes than can be seen.
-fn check_dashes(curve: &BezPath, dashes: &[f64]) -> Result<()> {
-    const MOST: f64 = 1e5;
+fn check_dashes(curve: &BezPath, Band { style, line, .. }: &Band) -> Result<()> {
+    let dashes = &style.dash_pattern;
     if dashes.is_empty() {
         return Ok(());
     }
-    let period: f64 = dashes.iter().sum();
-    let count = curve.perimeter(1.0) / period * dashes.len() as f64;
-    if count <= MOST {
+    let period = dashes.iter().sum::<f64>() / (0.5 * dashes.len() as f64);
+    let count = curve.perimeter(1e-3 * style.width.max(period)) / period;
+    let overlaps = match style.start_cap {
+        Cap::Butt => 0.0,
+        _ => count * (style.width / period).floor(),
+    };
+    if count <= MOST_DASHES && overlaps <= MOST_OVERLAPS {
         return Ok(());
     }
     Err(content_fault(format!(
-        "the drawing has a stroke of {count:.0} dashes; {MOST} are the most, make them longer"
+        "the drawing has a stroke of {count:.0} dashes (line {line}), which are too many; make them longer"
     )))
 }

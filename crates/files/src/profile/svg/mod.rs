@@ -29,7 +29,7 @@ mod tree;
 mod value;
 mod viewport;
 
-pub(super) use encoding::is_markup;
+pub(super) use encoding::{is_markup, is_narrow_markup};
 pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
 
 pub use color::css_color;
