@@ -1,11 +1,12 @@
 //! The drawing area: nodes of a drawing as regions of the half-plane.
 
+use super::gaps;
 use super::paint::{Paint, Rgba, is_dark, over_white};
 use super::svg::{Band, Clip, Group, Node, Path};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
 use crate::pixels::luminance;
-use glam::{DVec2, Vec2Swizzles as _};
+use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Point, Shape, StrokeOpts};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
@@ -49,8 +50,7 @@ impl Canvas {
 
     /// The dark outline of nodes.
     pub fn dark(&self, nodes: &[Node]) -> Result<Outline> {
-        let dark = self.tile().dark(&self.paints(nodes, self.page)?)?;
-        Ok(dark.outline(self.grid))
+        Ok(self.dark_region(nodes)?.outline(self.grid))
     }
 
     /// The drawing area with its surroundings.
@@ -75,10 +75,7 @@ impl Canvas {
 
     /// The edges that dark paint of an outline crosses.
     pub fn cut_edges(&self, outline: &Outline) -> Vec<&'static str> {
-        let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
-        let turned = Outline {
-            loops: outline.loops.iter().map(turned).collect(),
-        };
+        let turned = gaps::turned(outline);
         let (low, high) = (self.low, self.high);
         let edges = [
             ("top", outline, high.y, CUT, [low.x, high.x]),

@@ -29,17 +29,11 @@ const SMALL: f64 = 2e-3;
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Result<Profile> {
     let drawing = svg::read(bytes)?;
     let (width, height) = drawing.size;
-    let (left, radius, from) = match axis {
-        ProfileAxis::Left => (0.0, width / height, 0.0),
-        ProfileAxis::Center => (0.5 * width, 0.5 * width / height, -0.5 * width / height),
-        ProfileAxis::At(fraction) => {
-            let wide = width / height;
-            (fraction * width, (1.0 - fraction) * wide, -fraction * wide)
-        }
-    };
+    let (fraction, wide) = (axis.fraction(), width / height);
+    let (left, radius) = (fraction * width, (1.0 - fraction) * wide);
     let page = Affine::new([1.0 / height, 0.0, 0.0, -1.0 / height, -left / height, 1.0]);
     let canvas = Canvas {
-        low: DVec2::new(from, 0.0),
+        low: DVec2::new(-fraction * wide, 0.0),
         high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
         two_tone: !has_translucency(&drawing.content),
@@ -67,7 +61,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
         (drawing.to_user * page.inverse() * Point::new(x / DRAWING - left / height, 0.0)).x
     };
     let place = |x: f64| format!("x = {:.4}", user(x));
-    let page_at = [left / height, width / height];
+    let page_at = [left / height, wide];
     let strokes = canvas.thin_strokes(&drawing.content);
     let rest = match strokes.is_empty() {
         true => None,

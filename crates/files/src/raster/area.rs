@@ -34,15 +34,8 @@ pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Result<Raster> {
         }
     }
     let mut coverage = host_memory::filled(width * height, 0.0, super::PIXELS)?;
-    if width == 0 {
-        return Ok(Raster {
-            columns,
-            rows,
-            coverage,
-        });
-    }
     coverage
-        .par_chunks_mut(width)
+        .par_chunks_mut(width.max(1))
         .zip(&bins)
         .enumerate()
         .for_each(|(row, (out, bin))| {

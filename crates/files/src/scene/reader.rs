@@ -38,6 +38,7 @@ const RADIUS: f64 = 0.5;
 const MOST_COLORS: usize = 64;
 
 /// Files read so far: those named more than once are read once and shared.
+#[derive(Default)]
 pub(super) struct Reader {
     folder: PathBuf,
     profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
@@ -64,13 +65,7 @@ impl Reader {
     pub(super) fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
-            profiles: Vec::new(),
-            polygons: Vec::new(),
-            color_maps: HashMap::new(),
-            opaque_maps: HashMap::new(),
-            height_maps: HashMap::new(),
-            instances: Vec::new(),
-            kept: None,
+            ..Self::default()
         }
     }
 

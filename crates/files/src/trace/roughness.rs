@@ -43,25 +43,15 @@ pub(crate) fn roughness(raster: &Raster, split: bool) -> f64 {
         .map(|&link| nodes.link(link))
         .map(|[a, b]| if nodes.solid(a) { [a, b] } else { [b, a] })
         .collect();
-    let variance = |squares: Vec<f64>| {
-        let count = squares.len() as f64;
-        (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / count)
+    let variance = |[near, far]: [usize; 2]| {
+        let squares = links
+            .iter()
+            .flat_map(|ends| nodes.beside(ends[near], ends[far]));
+        let squares: Vec<f64> = squares.collect();
+        (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
     };
-    let noise = [
-        variance(
-            links
-                .iter()
-                .flat_map(|&[a, b]| nodes.beside(a, b))
-                .collect(),
-        ),
-        variance(
-            links
-                .iter()
-                .flat_map(|&[a, b]| nodes.beside(b, a))
-                .collect(),
-        ),
-    ];
-    let Some(noise) = noise.into_iter().flatten().reduce(f64::min) else {
+    let sides = [[0, 1], [1, 0]].into_iter();
+    let Some(noise) = sides.filter_map(variance).reduce(f64::min) else {
         return 0.0;
     };
     let mut steps: Vec<f64> = links

@@ -288,23 +288,17 @@ impl Declared {
                 }
             };
             let is_filled = d.value.contains("var(");
+            let unread =
+                |why: &str| Picked::Unread(format!("the drawing has {}, which is {why}", said()));
             let Some(value) = filled(&d.value, custom) else {
-                let text = format!(
-                    "the drawing has {}, which is not set; write the value itself",
-                    said()
-                );
-                return Picked::Unread(text);
+                return unread("not set; write the value itself");
             };
             if let Some(wide) = Wide::of(&value) {
                 return Picked::Wide(wide);
             }
             match read(&value, d.css) {
                 _ if value.eq_ignore_ascii_case("revert-layer") => {
-                    let text = format!(
-                        "the drawing has {}, which is not read; write the value",
-                        said()
-                    );
-                    return Picked::Unread(text);
+                    return unread("not read; write the value");
                 }
                 Value::Is(v) => {
                     if let Some(Picked::Unread(text)) = fault {
@@ -318,8 +312,7 @@ impl Declared {
                     return Picked::Is(v);
                 }
                 Value::Unread(remedy) => {
-                    let text = format!("the drawing has {}, which is not read; {remedy}", said());
-                    let unread = Picked::Unread(text);
+                    let unread = unread(&format!("not read; {remedy}"));
                     if !lenient {
                         return unread;
                     }

@@ -1,6 +1,7 @@
 //! Strokes: width, dashes, caps and joins.
 
 use super::notes::unsupported;
+use super::reader::Place;
 use super::shapes::Curve;
 use super::style::Style;
 use super::tree::{Band, Path};
@@ -19,8 +20,9 @@ pub(super) fn stroked(
     style: &Style,
     curve: &Curve,
     width: f64,
-    diagonal: f64,
+    place: Place,
 ) -> Result<Path> {
+    let diagonal = place.diagonal();
     if width > Profile::EXTENT * diagonal {
         let what = format!("a stroke {width} wide");
         return Err(unsupported(node, &what, "draw a rectangle instead"));
