@@ -70,15 +70,7 @@ fn add_segment(sums: &mut [f64], [x0, y0, x1, y1]: [f64; 4], top: f64) {
         (-1.0, [x1, y1, x0, y0])
     };
     let slope = (xb - xa) / (yb - ya);
-    let at = |y: f64| {
-        if y <= ya {
-            xa
-        } else if y >= yb {
-            xb
-        } else {
-            xa + (y - ya) * slope
-        }
-    };
+    let at = |y: f64| xa + (y - ya) * slope;
     let (from, to) = (ya.max(top), yb.min(top + 1.0));
     if to <= from {
         return;

@@ -19,6 +19,7 @@ mod paints;
 mod placed;
 mod properties;
 mod reader;
+mod reading;
 mod references;
 mod selector;
 mod shapes;

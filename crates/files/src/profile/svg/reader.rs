@@ -252,11 +252,9 @@ impl<'a> Reader<'a> {
         let (shows, remedy) = match name {
             "text" | "flowRoot" => (self.text_shows(node, style, place.depth)?, TO_PATHS),
             "image" => {
-                let shows = style.visible && href(node).is_some();
-                (
-                    shows && sides.all(|side| side != Some(0.0)),
-                    "trace it to paths",
-                )
+                let named = style.visible && href(node).is_some();
+                let shows = named && sides.all(|side| side != Some(0.0));
+                (shows, "trace it to paths")
             }
             _ => {
                 let filled = node.children().any(|c| c.is_element() || has_letters(c));
@@ -357,14 +355,11 @@ impl<'a> Reader<'a> {
             let what = format!("a path that crosses itself about {crossings:.0} times");
             return Err(misled(node, &what, "which is too often; simplify it"));
         }
-        match curve.path.is_finite() {
-            true => Ok(curve),
-            false => Err(misled(
-                node,
-                "a coordinate",
-                "which is beyond all numbers; correct it",
-            )),
+        if !curve.path.is_finite() {
+            let how = "which is beyond all numbers; correct it";
+            return Err(misled(node, "a coordinate", how));
         }
+        Ok(curve)
     }
 
     /// An element's content under its transform, clip and opacity.
