@@ -101,6 +101,12 @@ fn read_bytes(path: &std::path::Path) -> std::io::Result<Vec<u8>> {
     checked(bytes.len() as u64).map(|_| bytes)
 }
 
+/// What a file's name ends in, in small letters.
+fn ending(path: &std::path::Path) -> String {
+    let ending = path.extension().unwrap_or_default();
+    ending.to_string_lossy().to_lowercase()
+}
+
 /// A failure of a file.
 fn file_fault(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::File, message)

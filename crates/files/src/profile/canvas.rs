@@ -7,7 +7,7 @@ use super::tile::{Tile, overlap};
 use crate::content_fault;
 use crate::pixels::luminance;
 use glam::DVec2;
-use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Point, Shape, StrokeOpts};
+use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Shape, Size, StrokeOpts, Vec2};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use std::cell::Cell;
@@ -326,22 +326,13 @@ fn with_dots(curve: &BezPath, style: &mut kurbo::Stroke) -> (BezPath, BezPath) {
     }
     let (mut lines, mut dots) = (BezPath::new(), BezPath::new());
     for part in curve.subpaths() {
-        let Some(PathEl::MoveTo(start)) = part.first().copied() else {
-            continue;
-        };
-        let still = |p: Point| p == start;
-        let is_dot = part.len() > 1
-            && part.iter().all(|e| match *e {
-                PathEl::MoveTo(p) | PathEl::LineTo(p) => still(p),
-                PathEl::QuadTo(a, p) => still(a) && still(p),
-                PathEl::CurveTo(a, b, p) => still(a) && still(b) && still(p),
-                PathEl::ClosePath => true,
-            });
-        if is_dot {
-            dots.move_to(start - kurbo::Vec2::new(0.5 * length, 0.0));
-            dots.line_to(start + kurbo::Vec2::new(0.5 * length, 0.0));
+        let part = BezPath::from_vec(part.to_vec());
+        let (place, half) = (part.control_box(), Vec2::new(0.5 * length, 0.0));
+        if part.elements().len() > 1 && place.size() == Size::ZERO {
+            dots.move_to(place.center() - half);
+            dots.line_to(place.center() + half);
         } else {
-            lines.extend(part.iter().copied());
+            lines.extend(part);
         }
     }
     (lines, dots)

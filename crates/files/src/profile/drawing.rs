@@ -8,7 +8,7 @@
 //! are refused by name.
 
 use super::canvas::{Canvas, FLATNESS};
-use super::form::{DRAWING, Silhouette};
+use super::form::{DRAWING, Silhouette, loop_length};
 use super::paint::{Paint, gradients, lightened};
 use super::svg::has_translucency;
 use super::tile::Tile;
@@ -177,11 +177,8 @@ fn on_cylinder(mut outline: Outline, canvas: &Canvas) -> Outline {
 /// Drops loops thinner than the flattening tolerance. Rounding leaves cracks and specks between
 /// abutting shapes, and each would become a surface.
 fn without_slivers(outline: &mut Outline) {
-    outline.loops.retain(|points| {
-        let next = points.iter().cycle().skip(1);
-        let length: f64 = points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum();
-        loop_area(points).abs() > FLATNESS * length
-    });
+    let is_thick = |points: &Vec<DVec2>| loop_area(points).abs() > FLATNESS * loop_length(points);
+    outline.loops.retain(is_thick);
 }
 
 #[cfg(test)]

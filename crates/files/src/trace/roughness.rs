@@ -16,15 +16,10 @@ use revmap::profile::Raster;
 const BESIDE: std::ops::RangeInclusive<usize> = 3..=5;
 /// Half the side of the square around a measured pixel that the outline does not enter.
 const CLEAR: usize = 2;
-/// Weights of the high-pass filter; the sum of their squares is 1.
-const FILTER: [[f64; 3]; 3] = {
-    const A: f64 = 1.0 / 6.0;
-    [
-        [A, -2.0 * A, A],
-        [-2.0 * A, 4.0 * A, -2.0 * A],
-        [A, -2.0 * A, A],
-    ]
-};
+/// Weights of the high-pass filter, for rows and for columns.
+const FILTER: [f64; 3] = [1.0, -2.0, 1.0];
+/// Root of the sum of the squares of all products of two weights.
+const GAIN: f64 = 6.0;
 /// Variance of rounding to 8 bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
@@ -80,9 +75,10 @@ impl Nodes<'_> {
             .map_while(behind)
             .take_while(|&p| self.is_clear(p, side))
             .map(|(i, j)| {
-                let weighed =
-                    |k: usize| FILTER[k / 3][k % 3] * self.value(i + k % 3 - 1, j + k / 3 - 1);
-                (0..9).map(weighed).sum::<f64>().powi(2)
+                let weighed = |k: usize| {
+                    FILTER[k / 3] * FILTER[k % 3] * self.value(i + k % 3 - 1, j + k / 3 - 1)
+                };
+                ((0..9).map(weighed).sum::<f64>() / GAIN).powi(2)
             })
             .collect()
     }
