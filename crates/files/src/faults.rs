@@ -8,7 +8,7 @@ pub fn empty_fault(what: &str) -> Error {
     content_fault(format!(
         "the {what} is empty: nothing of the half right of the axis is darker than one half; draw the solid dark on \
          white, or set {}",
-        tonal_keys(what, "profile_axis")
+        keys(what)
     ))
 }
 
@@ -17,11 +17,11 @@ pub fn half_empty_fault(aside: &str) -> Error {
     content_fault(format!("the half right of the axis is empty: {aside}"))
 }
 
-/// Keys that may help, with those of tones, which drawings do not have.
-fn tonal_keys(what: &str, or: &str) -> String {
+/// Keys that may help. Drawings do not have those of tones.
+fn keys(what: &str) -> &'static str {
     match what {
-        "drawing" => or.to_owned(),
-        _ => format!("profile_threshold, profile_invert or {or}"),
+        "drawing" => "profile_axis",
+        _ => "profile_threshold, profile_invert or profile_axis",
     }
 }
 
@@ -30,6 +30,6 @@ pub fn full_fault(what: &str) -> Error {
     content_fault(format!(
         "the {what} is full: all of the half right of the axis is darker than one half; draw the solid dark on white \
          or set {} (a plain cylinder: use a polygon)",
-        tonal_keys(what, "profile_axis")
+        keys(what)
     ))
 }

@@ -37,7 +37,6 @@
 //! that are measured in pixels exist for comparison with the papers.
 
 mod atomic_file;
-mod exif;
 mod faults;
 mod jpeg_end;
 mod maps;
@@ -88,18 +87,24 @@ const MOST_BYTES: u64 = 1 << 30;
 
 /// All bytes of a file, which may be a pipe. A device without end is refused, too.
 fn read_bytes(path: &std::path::Path) -> std::io::Result<Vec<u8>> {
-    let most = |_| std::io::Error::new(std::io::ErrorKind::FileTooLarge, "holds more than 1 GiB");
+    let checked = |size: u64| match size <= MOST_BYTES {
+        true => Ok(size as usize),
+        false => Err(std::io::Error::new(
+            std::io::ErrorKind::FileTooLarge,
+            "holds more than 1 GiB",
+        )),
+    };
     let file = std::fs::File::open(path)?;
-    let size = file.metadata()?.len();
-    let size = (size <= MOST_BYTES)
-        .then_some(size)
-        .ok_or(())
-        .map_err(most)?;
     let mut bytes = Vec::new();
-    bytes.try_reserve(size as usize)?;
+    bytes.try_reserve(checked(file.metadata()?.len())?)?;
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    let fits = bytes.len() as u64 <= MOST_BYTES;
-    fits.then_some(bytes).ok_or(()).map_err(most)
+    checked(bytes.len() as u64).map(|_| bytes)
+}
+
+/// What a file's name ends in, in small letters.
+fn ending(path: &std::path::Path) -> String {
+    let ending = path.extension().unwrap_or_default();
+    ending.to_string_lossy().to_lowercase()
 }
 
 /// A failure of a file.

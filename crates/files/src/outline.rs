@@ -5,7 +5,7 @@ use crate::{ProfileAxis, profile_from_bytes, write_bytes};
 use glam::DVec2;
 use kurbo::PathEl;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
+use revmap::profile::{FillRule, Grid, Outline, Profile, Region, Segment};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -179,7 +179,7 @@ fn longest(points: &[DVec2], from: usize, tolerance: f64) -> (usize, Piece) {
 fn piece(points: &[DVec2], tolerance: f64) -> Option<Piece> {
     let [start, end] = [points[0], points[points.len() - 1]];
     let inner = &points[1..points.len() - 1];
-    let near = |p: &DVec2| to_segment(*p, start, end) <= tolerance;
+    let near = |p: &DVec2| distance(*p, start, end) <= tolerance;
     if inner.iter().all(near) {
         return Some(Piece { handles: None, end });
     }
@@ -270,16 +270,12 @@ fn is_near(curve: &Curve, points: &[DVec2], tolerance: f64) -> bool {
     });
     let all_near = |from: &[DVec2], to: &[DVec2]| {
         let mut ends = from.windows(2).flat_map(|p| [p[0], p[0].midpoint(p[1])]);
-        ends.all(|p| {
-            to.windows(2)
-                .any(|q| to_segment(p, q[0], q[1]) <= tolerance)
-        })
+        ends.all(|p| to.windows(2).any(|q| distance(p, q[0], q[1]) <= tolerance))
     };
     all_near(points, &lines) && all_near(&lines, points)
 }
 
-fn to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let along = b - a;
-    let t = (p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-    p.distance(a + along * t.clamp(0.0, 1.0))
+/// Distance of a point from the line between two others.
+fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    Segment { a, b }.nearest(p).0.distance(p)
 }

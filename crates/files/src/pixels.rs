@@ -1,8 +1,8 @@
 //! Pictures from files: PNG and JPEG.
 
-use crate::exif::Orientation;
 use crate::file_fault;
 use crate::jpeg_end;
+use image::metadata::Orientation;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::host_memory;
@@ -58,15 +58,18 @@ impl Pixels {
         self.map(|[r, g, b, _]| [r, g, b].map(|v| (v * 65_535.0).round() as u16))
     }
 
-    /// The picture as its EXIF data turns it.
+    /// The picture as its EXIF data turns it. Data that cannot be read turns nothing.
     fn upright(self, exif: Option<&[u8]>) -> Result<Self> {
-        let orientation = exif.map(Orientation::of_exif).unwrap_or_default();
+        let tiff = exif.map(|exif| exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
+        let turn = match tiff.and_then(Orientation::from_exif_chunk) {
+            None | Some(Orientation::NoTransforms) => return Ok(self),
+            Some(orientation) => Turn::of(orientation),
+        };
         let (size, channels) = ([self.width, self.height], self.channels);
-        let [width, height] = orientation.turned_size(size);
+        let [width, height] = turn.size(size);
         let samples = match self.samples {
-            samples if orientation == Orientation::default() => samples,
-            Samples::Byte(v) => Samples::Byte(orientation.turned(size, channels, &v)?),
-            Samples::Word(v) => Samples::Word(orientation.turned(size, channels, &v)?),
+            Samples::Byte(v) => Samples::Byte(turn.applied(size, channels, &v)?),
+            Samples::Word(v) => Samples::Word(turn.applied(size, channels, &v)?),
         };
         Ok(Self {
             width,
@@ -79,6 +82,56 @@ impl Pixels {
     /// Luminance of every pixel over black, in `[0, 1]`, as stored.
     pub fn luminance(&self) -> Result<Vec<f32>> {
         self.map(|[r, g, b, alpha]| alpha * luminance([r, g, b]))
+    }
+}
+
+/// A way to turn stored pixels into the upright picture.
+#[derive(Clone, Copy)]
+struct Turn {
+    /// Columns and rows change places, before the mirrors.
+    swapped: bool,
+    /// Left and right change places.
+    mirrored: bool,
+    /// Top and bottom change places.
+    flipped: bool,
+}
+
+impl Turn {
+    fn of(orientation: Orientation) -> Self {
+        // The tag's values, from 1: four ways without columns as rows, then four with.
+        let number = orientation.to_exif() - 1;
+        Self {
+            swapped: number >= 4,
+            mirrored: matches!(number, 1 | 2 | 5 | 6),
+            flipped: matches!(number, 2 | 3 | 6 | 7),
+        }
+    }
+
+    /// Width and height of the upright picture.
+    fn size(self, [width, height]: [u32; 2]) -> [u32; 2] {
+        match self.swapped {
+            true => [height, width],
+            false => [width, height],
+        }
+    }
+
+    /// The upright picture's samples, `channels` a pixel, from the stored ones.
+    fn applied<T: Copy>(self, size: [u32; 2], channels: usize, stored: &[T]) -> Result<Vec<T>> {
+        let [width, height] = self.size(size).map(|n| n as usize);
+        let from = |k: usize, count: usize, reversed: bool| match reversed {
+            true => count - 1 - k,
+            false => k,
+        };
+        let mut turned = host_memory::reserved(stored.len(), "the pixels of an upright picture")?;
+        for y in 0..height {
+            for x in 0..width {
+                let (x, y) = (from(x, width, self.mirrored), from(y, height, self.flipped));
+                let (column, row) = if self.swapped { (y, x) } else { (x, y) };
+                let pixel = row * size[0] as usize + column;
+                turned.extend(stored.iter().skip(pixel * channels).take(channels));
+            }
+        }
+        Ok(turned)
     }
 }
 

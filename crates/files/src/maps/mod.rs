@@ -50,13 +50,6 @@ pub fn mark_projection(path: impl AsRef<Path>, projection: Projection) -> PathBu
     }
 }
 
-/// A file's extension in lower case.
-fn extension(path: &Path) -> Option<String> {
-    path.extension()
-        .and_then(|e| e.to_str())
-        .map(str::to_ascii_lowercase)
-}
-
 /// A PNG with a header in its text.
 fn encode_png(
     writer: impl Write,

@@ -1,11 +1,11 @@
 //! Shape maps as image files, for viewing and for loading again.
 
+use super::encode_png;
 use super::header::{Header, KEYWORD, shape_header};
 use super::source::{BINARY, binary_distances};
-use super::{encode_png, extension};
 use crate::openexr::{first_layer, layer, layer_sizes, write_layer};
 use crate::pixels::{Pixels, Png, Samples};
-use crate::{file_fault, raster, read_bytes, write_atomically};
+use crate::{ending, file_fault, raster, read_bytes, write_atomically};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{FlatSamples, LayerAttributes, Text};
 use revmap::error::{Error, Result};
@@ -31,9 +31,9 @@ const MAP: &str = "the texels of a map";
 /// [`ErrorKind::File`](revmap::error::ErrorKind::File): another extension, or it cannot be written.
 pub fn write_shape_map(map: &ShapeMap, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
-    match extension(path).as_deref() {
-        Some("png") => write_png(map, path),
-        Some("exr") => write_exr(map, path),
+    match ending(path).as_str() {
+        "png" => write_png(map, path),
+        "exr" => write_exr(map, path),
         _ => Err(file_fault(
             "a shape map is written as .png (papers) or .exr (lossless); name it so",
         )),

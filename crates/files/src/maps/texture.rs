@@ -1,9 +1,9 @@
 //! Colour maps and displacement maps from pictures.
 
+use super::encode_png;
 use super::header::Header;
-use super::{encode_png, extension};
 use crate::pixels::decode;
-use crate::{file_fault, read_bytes, write_atomically};
+use crate::{ending, file_fault, read_bytes, write_atomically};
 use revmap::error::{Error, Result};
 use revmap::host_memory;
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
@@ -61,7 +61,7 @@ pub fn displacement_map(path: impl AsRef<Path>, filter: SlopeFilter) -> Result<D
 pub fn write_displacement_map(map: &DisplacementMap, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     let write = || {
-        if extension(path).as_deref() != Some("png") {
+        if ending(path) != "png" {
             return Err(file_fault(
                 "a displacement map is written as .png; name it so",
             ));

@@ -216,27 +216,6 @@ mod tests {
                 (0..rows * columns).map(|k| noise[k % noise.len()] < density * density).collect();
             prop_assert_eq!(squared_to_other(&form, columns).unwrap(), brute_force(&form, columns));
         }
-
-        /// The reference result searches all of a few solid pixels in a large picture.
-        #[test]
-        fn the_nearest_of_a_few_spots_is_found(
-            columns in 2usize..60,
-            rows in 2usize..60,
-            spots in prop::collection::vec((0usize..60, 0usize..60), 1..20),
-        ) {
-            let spots: Vec<_> = spots.iter().map(|(x, y)| (x % columns, y % rows)).collect();
-            let mut form = vec![false; columns * rows];
-            for (x, y) in &spots {
-                form[y * columns + x] = true;
-            }
-            for (k, ours) in squared_to_other(&form, columns).unwrap().into_iter().enumerate() {
-                let (x, y) = (k % columns, k / columns);
-                let to = |&(u, v): &(usize, usize)| u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2);
-                if !form[k] {
-                    prop_assert_eq!(Some(ours as usize), spots.iter().map(to).min());
-                }
-            }
-        }
     }
 
     #[test]
@@ -254,15 +233,5 @@ mod tests {
         form[0] = true;
         let d = squared_to_other(&form, columns).unwrap();
         assert_eq!(d[columns * 3 - 1], 29_999 * 29_999 + 4);
-    }
-
-    #[test]
-    fn the_same_on_any_number_of_threads() {
-        let form: Vec<bool> = (0..200 * 150)
-            .map(|k: usize| k.wrapping_mul(2_654_435_761) % 97 < 3)
-            .collect();
-        let many = squared_to_other(&form, 200);
-        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        assert!(one.is_ok_and(|pool| pool.install(|| squared_to_other(&form, 200)) == many));
     }
 }

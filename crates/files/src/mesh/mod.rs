@@ -12,7 +12,7 @@ mod stl;
 
 pub use stl::stl_rounding;
 
-use crate::{content_fault, write_bytes};
+use crate::{content_fault, ending, write_bytes};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::ColorMap;
@@ -115,11 +115,6 @@ fn map_owner(scene: &Scene, number: usize) -> Option<usize> {
     let map = |object: &Object| object.texturing.color_map.as_ref().map(Arc::as_ptr);
     let wanted = map(&scene.objects[number])?;
     scene.objects.iter().position(|o| map(o) == Some(wanted))
-}
-
-fn ending(path: &Path) -> String {
-    let ending = path.extension().unwrap_or_default();
-    ending.to_string_lossy().to_lowercase()
 }
 
 impl Solid<'_> {

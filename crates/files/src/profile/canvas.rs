@@ -1,18 +1,23 @@
 //! The drawing area: nodes of a drawing as regions of the half-plane.
 
+use super::gaps;
 use super::paint::{Paint, Rgba, is_dark, over_white};
 use super::svg::{Band, Clip, Group, Node, Path};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
 use crate::pixels::luminance;
-use glam::{DVec2, Vec2Swizzles as _};
-use kurbo::{Affine, BezPath, Cap, PathEl, Point, Shape, StrokeOpts};
+use glam::DVec2;
+use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Shape, Size, StrokeOpts, Vec2};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
 use std::cell::Cell;
 
 /// Largest distance between a curve and its chords, object units.
 pub(crate) const FLATNESS: f64 = 1e-5;
+
+/// Most dashes of a stroke, and most pairs of round or square ones that overlap.
+const MOST_DASHES: f64 = 2e4;
+const MOST_OVERLAPS: f64 = 2e5;
 
 /// Paint is cut by an edge of the page if it reaches this far to both sides, object units.
 const CUT: f64 = 5e-3;
@@ -45,8 +50,7 @@ impl Canvas {
 
     /// The dark outline of nodes.
     pub fn dark(&self, nodes: &[Node]) -> Result<Outline> {
-        let dark = self.tile().dark(&self.paints(nodes, self.page)?)?;
-        Ok(dark.outline(self.grid))
+        Ok(self.dark_region(nodes)?.outline(self.grid))
     }
 
     /// The drawing area with its surroundings.
@@ -71,10 +75,7 @@ impl Canvas {
 
     /// The edges that dark paint of an outline crosses.
     pub fn cut_edges(&self, outline: &Outline) -> Vec<&'static str> {
-        let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
-        let turned = Outline {
-            loops: outline.loops.iter().map(turned).collect(),
-        };
+        let turned = gaps::turned(outline);
         let (low, high) = (self.low, self.high);
         let edges = [
             ("top", outline, high.y, CUT, [low.x, high.x]),
@@ -171,8 +172,8 @@ impl Canvas {
             to_profile = self.page;
         }
         check_reach(&curve, to_profile)?;
+        check_dashes(&curve, band)?;
         let mut style = band.style.clone();
-        check_dashes(&curve, &style.dash_pattern)?;
         // Half of the tolerance is for the stroke's outline, half for its flattening.
         let tolerance = 0.5 * FLATNESS / magnification(to_profile);
         let (lines, dots) = with_dots(&curve, &mut style);
@@ -325,22 +326,13 @@ fn with_dots(curve: &BezPath, style: &mut kurbo::Stroke) -> (BezPath, BezPath) {
     }
     let (mut lines, mut dots) = (BezPath::new(), BezPath::new());
     for part in curve.subpaths() {
-        let Some(PathEl::MoveTo(start)) = part.first().copied() else {
-            continue;
-        };
-        let still = |p: Point| p == start;
-        let is_dot = part.len() > 1
-            && part.iter().all(|e| match *e {
-                PathEl::MoveTo(p) | PathEl::LineTo(p) => still(p),
-                PathEl::QuadTo(a, p) => still(a) && still(p),
-                PathEl::CurveTo(a, b, p) => still(a) && still(b) && still(p),
-                PathEl::ClosePath => true,
-            });
-        if is_dot {
-            dots.move_to(start - kurbo::Vec2::new(0.5 * length, 0.0));
-            dots.line_to(start + kurbo::Vec2::new(0.5 * length, 0.0));
+        let part = BezPath::from_vec(part.to_vec());
+        let (place, half) = (part.control_box(), Vec2::new(0.5 * length, 0.0));
+        if part.elements().len() > 1 && place.size() == Size::ZERO {
+            dots.move_to(place.center() - half);
+            dots.line_to(place.center() + half);
         } else {
-            lines.extend(part.iter().copied());
+            lines.extend(part);
         }
     }
     (lines, dots)
@@ -348,11 +340,7 @@ fn with_dots(curve: &BezPath, style: &mut kurbo::Stroke) -> (BezPath, BezPath) {
 
 /// Largest factor by which lengths grow.
 fn magnification(t: Affine) -> f64 {
-    let [a, b, c, d, ..] = t.as_coeffs();
-    let (sum, det) = (a * a + b * b + c * c + d * d, a * d - b * c);
-    (0.5 * (sum + (sum * sum - 4.0 * det * det).max(0.0).sqrt()))
-        .sqrt()
-        .max(f64::MIN_POSITIVE)
+    Ellipse::from_affine(t).radii().x.max(f64::MIN_POSITIVE)
 }
 
 /// Refuses curves so large that flattening them would use up all memory; next to nothing of them is
@@ -370,17 +358,21 @@ fn check_reach(curve: &BezPath, to_profile: Affine) -> Result<()> {
 }
 
 /// Refuses strokes with more dashes than can be seen.
-fn check_dashes(curve: &BezPath, dashes: &[f64]) -> Result<()> {
-    const MOST: f64 = 1e5;
+fn check_dashes(curve: &BezPath, Band { style, line, .. }: &Band) -> Result<()> {
+    let dashes = &style.dash_pattern;
     if dashes.is_empty() {
         return Ok(());
     }
-    let period: f64 = dashes.iter().sum();
-    let count = curve.perimeter(1.0) / period * dashes.len() as f64;
-    if count <= MOST {
+    let period = dashes.iter().sum::<f64>() / (0.5 * dashes.len() as f64);
+    let count = curve.perimeter(1e-3 * style.width.max(period)) / period;
+    let overlaps = match style.start_cap {
+        Cap::Butt => 0.0,
+        _ => count * (style.width / period).floor(),
+    };
+    if count <= MOST_DASHES && overlaps <= MOST_OVERLAPS {
         return Ok(());
     }
     Err(content_fault(format!(
-        "the drawing has a stroke of {count:.0} dashes; {MOST} are the most, make them longer"
+        "the drawing has a stroke of {count:.0} dashes (line {line}), which are too many; make them longer"
     )))
 }

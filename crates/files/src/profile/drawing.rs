@@ -8,7 +8,7 @@
 //! are refused by name.
 
 use super::canvas::{Canvas, FLATNESS};
-use super::form::{DRAWING, Silhouette};
+use super::form::{DRAWING, Silhouette, loop_length};
 use super::paint::{Paint, gradients, lightened};
 use super::svg::has_translucency;
 use super::tile::Tile;
@@ -29,17 +29,11 @@ const SMALL: f64 = 2e-3;
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Result<Profile> {
     let drawing = svg::read(bytes)?;
     let (width, height) = drawing.size;
-    let (left, radius, from) = match axis {
-        ProfileAxis::Left => (0.0, width / height, 0.0),
-        ProfileAxis::Center => (0.5 * width, 0.5 * width / height, -0.5 * width / height),
-        ProfileAxis::At(fraction) => {
-            let wide = width / height;
-            (fraction * width, (1.0 - fraction) * wide, -fraction * wide)
-        }
-    };
+    let (fraction, wide) = (axis.fraction(), width / height);
+    let (left, radius) = (fraction * width, (1.0 - fraction) * wide);
     let page = Affine::new([1.0 / height, 0.0, 0.0, -1.0 / height, -left / height, 1.0]);
     let canvas = Canvas {
-        low: DVec2::new(from, 0.0),
+        low: DVec2::new(-fraction * wide, 0.0),
         high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
         two_tone: !has_translucency(&drawing.content),
@@ -67,7 +61,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
         (drawing.to_user * page.inverse() * Point::new(x / DRAWING - left / height, 0.0)).x
     };
     let place = |x: f64| format!("x = {:.4}", user(x));
-    let page_at = [left / height, width / height];
+    let page_at = [left / height, wide];
     let strokes = canvas.thin_strokes(&drawing.content);
     let rest = match strokes.is_empty() {
         true => None,
@@ -183,11 +177,8 @@ fn on_cylinder(mut outline: Outline, canvas: &Canvas) -> Outline {
 /// Drops loops thinner than the flattening tolerance. Rounding leaves cracks and specks between
 /// abutting shapes, and each would become a surface.
 fn without_slivers(outline: &mut Outline) {
-    outline.loops.retain(|points| {
-        let next = points.iter().cycle().skip(1);
-        let length: f64 = points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum();
-        loop_area(points).abs() > FLATNESS * length
-    });
+    let is_thick = |points: &Vec<DVec2>| loop_area(points).abs() > FLATNESS * loop_length(points);
+    outline.loops.retain(is_thick);
 }
 
 #[cfg(test)]

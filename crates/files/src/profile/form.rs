@@ -7,7 +7,7 @@
 use super::ends::{ALIKE, Edge, Ends, Row};
 use super::{ProfileAxis, gaps};
 use glam::DVec2;
-use revmap::profile::{FillRule, Grid, Outline, Region, Segment, loop_area};
+use revmap::profile::{FillRule, Outline, Segment, loop_area};
 
 /// Most rows that are looked at.
 const ROWS: usize = 512;
@@ -37,8 +37,9 @@ const DASHES: usize = 8;
 /// A silhouette, pixels.
 pub(super) struct Silhouette<'a> {
     /// Rows from the top, `step` pixels apart.
-    pub rows: Vec<Row>,
-    pub step: f64,
+    rows: Vec<Row>,
+    step: f64,
+    ends: Ends,
     width: f64,
     /// The axis, from the left edge.
     axis: f64,
@@ -54,9 +55,11 @@ impl<'a> Silhouette<'a> {
         let height = solid.len() / width.max(1);
         let step = height.div_ceil(ROWS).max(1);
         let rows = solid.chunks_exact(width.max(1)).step_by(step);
+        let (rows, step): (Vec<Row>, _) = (rows.map(runs).collect(), step as f64);
         Self {
-            rows: rows.map(runs).collect(),
-            step: step as f64,
+            ends: Ends::of(&rows, step),
+            rows,
+            step,
             width: width as f64,
             axis,
             what: "picture",
@@ -74,9 +77,12 @@ impl<'a> Silhouette<'a> {
         let heights = (0..ROWS).map(|i| 1.0 - (i as f64 + 0.5) / ROWS as f64);
         let at = |r: f64| DRAWING * (r + left);
         let spans = |row: Vec<f64>| row.chunks_exact(2).map(|s| [at(s[0]), at(s[1])]).collect();
+        let rows: Vec<Row> = outline.crossings(heights).into_iter().map(spans).collect();
+        let step = DRAWING / ROWS as f64;
         Self {
-            rows: outline.crossings(heights).into_iter().map(spans).collect(),
-            step: DRAWING / ROWS as f64,
+            ends: Ends::of(&rows, step),
+            rows,
+            step,
             width: DRAWING * width,
             axis: DRAWING * left,
             what: "drawing",
@@ -114,22 +120,23 @@ impl<'a> Silhouette<'a> {
                 self.what
             ))];
         }
-        let is_low = Ends::of(&self.rows, self.step).rows.len() < LEAST_ROWS;
-        let hollow = || hollow(half).filter(|_| !is_low);
+        let hollow = || hollow(half).filter(|_| !self.is_low());
         let found = self.placed(axis).or_else(hollow);
         found.into_iter().chain(gaps::hints(half)).collect()
     }
 
     /// A warning about the place of the solid about the axis.
     pub(super) fn placed(&self, axis: ProfileAxis) -> Option<String> {
-        let ends = Ends::of(&self.rows, self.step);
         match axis {
-            _ if ends.rows.len() < LEAST_ROWS => None,
-            ProfileAxis::Left => self
-                .whole_as_half(&ends)
-                .or_else(|| self.half_in_the_page(&ends)),
-            ProfileAxis::Center | ProfileAxis::At(_) => self.beside_the_axis(&ends),
+            _ if self.is_low() => None,
+            ProfileAxis::Left => self.whole_as_half().or_else(|| self.half_in_the_page()),
+            ProfileAxis::Center | ProfileAxis::At(_) => self.beside_the_axis(),
         }
+    }
+
+    /// Returns true if too few rows are solid to show a form.
+    fn is_low(&self) -> bool {
+        self.ends.rows.len() < LEAST_ROWS
     }
 
     /// What [`Self::placed`] says of the axis, for a solid with lines beside it. They go before a tilt.
@@ -140,32 +147,31 @@ impl<'a> Silhouette<'a> {
 
     /// A solid that is even about a line well beside the axis. Its half has no meaning.
     pub(super) fn aside(&self, axis: ProfileAxis) -> Option<String> {
-        let ends = Ends::of(&self.rows, self.step);
-        if axis == ProfileAxis::Left || ends.rows.len() < LEAST_ROWS {
+        let ends = &self.ends;
+        if axis == ProfileAxis::Left || self.is_low() {
             return None;
         }
         let line = ends.middle_line();
         let is_half = ends.is_straight(Ends::left) || ends.is_straight(Ends::right);
         let is_even = line.residual <= ends.slack() && ends.one_sided(|row| line.at(row)) <= ALIKE;
         (is_even && !is_half)
-            .then(|| self.beside_the_axis(&ends))
+            .then(|| self.beside_the_axis())
             .flatten()
     }
 
     /// Why nothing is right of the axis: the solid is even about another line, or it is half a
     /// profile.
     pub(super) fn elsewhere(&self, axis: ProfileAxis) -> Option<String> {
-        let ends = Ends::of(&self.rows, self.step);
         let half = || {
-            let is_other = axis != ProfileAxis::Left && ends.rows.len() >= LEAST_ROWS;
-            let edge = || ends.edge().or_else(|| ends.long_edge());
-            Some(self.half(is_other.then(edge).flatten()?, &ends))
+            let is_other = axis != ProfileAxis::Left && !self.is_low();
+            let edge = || self.ends.edge().or_else(|| self.ends.long_edge());
+            Some(self.half(is_other.then(edge).flatten()?))
         };
         self.aside(axis).or_else(half)
     }
 
     /// What to do with half a profile whose axis is `edge`.
-    fn half(&self, edge: Edge, ends: &Ends) -> String {
+    fn half(&self, edge: Edge) -> String {
         let what = self.what;
         let (name, at, mirror) = match edge {
             Edge::Left(at) => ("left", at, ""),
@@ -177,13 +183,14 @@ impl<'a> Silhouette<'a> {
         };
         format!(
             "the {what} looks like half a profile, whose straight {name} edge is the axis; {remedy}{}",
-            ends.or_turn_it()
+            self.ends.or_turn_it()
         )
     }
 
     /// Half a profile, read with the left border as the axis: its edge is the right border, or it
     /// is in the middle of the page.
-    fn half_in_the_page(&self, ends: &Ends) -> Option<String> {
+    fn half_in_the_page(&self) -> Option<String> {
+        let ends = &self.ends;
         let [low, high] = ends.reach();
         let is_central = low > 1.0 && (low + high - self.width).abs() <= 2.0 * ends.slack();
         if is_central && let Some(lying) = self.lying_half(false) {
@@ -191,7 +198,7 @@ impl<'a> Silhouette<'a> {
         }
         let edge = ends.edge()?;
         let at_border = matches!(edge, Edge::Right(at) if at >= self.width - 1.0);
-        (is_central || at_border).then(|| self.half(edge, ends))
+        (is_central || at_border).then(|| self.half(edge))
     }
 
     /// A solid wider than high with one straight edge along it is half a profile on its side. Even
@@ -203,7 +210,7 @@ impl<'a> Silhouette<'a> {
             .edge()
             .filter(|_| columns.height() >= FLAT * height)?;
         let page = self.rows.len() as f64 * self.step;
-        let [low, high] = Ends::of(&self.rows, self.step).reach();
+        let [low, high] = self.ends.reach();
         let (free, below) = match edge {
             Edge::Left(at) => (at, columns.reach()[1]),
             Edge::Right(at) => (page - at, page - columns.reach()[0]),
@@ -223,7 +230,8 @@ impl<'a> Silhouette<'a> {
     }
 
     /// A solid about the middle of the page that leaves the left edge free is a whole one.
-    fn whole_as_half(&self, ends: &Ends) -> Option<String> {
+    fn whole_as_half(&self) -> Option<String> {
+        let ends = &self.ends;
         let line = ends.middle_line();
         let is_free = ends.rows.iter().all(|[_, left, _]| *left > 1.0);
         let is_central = (line.middle - 0.5 * self.width).abs() <= ends.slack();
@@ -240,7 +248,8 @@ impl<'a> Silhouette<'a> {
 
     /// Half a profile with another axis, or the middle of the rows is beside the axis, or tilted, or
     /// the halves are uneven.
-    fn beside_the_axis(&self, ends: &Ends) -> Option<String> {
+    fn beside_the_axis(&self) -> Option<String> {
+        let ends = &self.ends;
         let is_here = |at: f64| (at - self.axis).abs() <= ends.slack();
         let is_half = ends.is_straight(Ends::left) && is_here(ends.median(Ends::left));
         if is_half || matches!(ends.long_edge(), Some(Edge::Left(at)) if is_here(at)) {
@@ -252,7 +261,7 @@ impl<'a> Silhouette<'a> {
         let may_be_half = (is_tilted || !is_even) && ends.one_sided(|_| self.axis) > ONE_SIDED;
         let hollow_edge = || ends.long_edge().filter(|_| may_be_half);
         if let Some(edge) = ends.edge().or_else(hollow_edge) {
-            return Some(self.half(edge, ends));
+            return Some(self.half(edge));
         }
         if is_tilted {
             let angle = (line.drift / ends.height()).atan().to_degrees().abs();
@@ -350,19 +359,22 @@ fn whole(half: &Outline) -> (Outline, f64) {
     let right = || half.loops.iter().map(|l| l.iter().map(closed));
     let left = right().map(|l| l.rev().map(mirror).collect());
     let loops: Vec<Vec<DVec2>> = right().map(Iterator::collect).chain(left).collect();
-    let reach = |m: f64, p: &DVec2| m.max(p.abs().max_element());
-    let grid = Grid::for_extent(loops.iter().flatten().fold(1.0, reach));
-    let whole = Region::enclosed(grid, &loops, FillRule::NonZero).outline(grid);
+    let whole = Outline::enclosed(&loops, FillRule::NonZero);
     let hollow: f64 = whole.loops.iter().map(|l| (-loop_area(l)).max(0.0)).sum();
     (whole, hollow)
 }
 
 /// Returns true for a piece of a thin line: its area is small for its length.
 fn is_thin(points: &[DVec2]) -> bool {
-    let next = points.iter().cycle().skip(1);
-    let length: f64 = points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum();
-    2.0 * loop_area(points).abs() < 0.25 * THIN * length
+    2.0 * loop_area(points).abs() < 0.25 * THIN * loop_length(points)
 }
+
+/// Length of a closed loop of points.
+pub(super) fn loop_length(points: &[DVec2]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum()
+}
+
 /// Thickness of the solid behind a place of a segment, perpendicular to it.
 fn wall(segment: &Segment, part: f64, segments: &[Segment]) -> f64 {
     let from = segment.a.lerp(segment.b, part);

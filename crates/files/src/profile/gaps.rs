@@ -21,10 +21,7 @@ pub(crate) fn hints(half: &Outline) -> Vec<String> {
     let bore = even(bore.filter(|r| *r > 0.0 && *r < BORE)).map(|gap| {
         format!("the solid is {gap} of the height away from the axis, which makes a bore; move its points to the axis if none is meant")
     });
-    let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
-    let along = lines(&Outline {
-        loops: half.loops.iter().map(turned).collect(),
-    });
+    let along = lines(&turned(half));
     let seams = across.iter().chain(&along).flat_map(|line| {
         let between = line.get(1..).unwrap_or_default().chunks_exact(2);
         between.map(|pair| pair[1] - pair[0])
@@ -33,6 +30,14 @@ pub(crate) fn hints(half: &Outline) -> Vec<String> {
         format!("two parts of the solid are {gap} of the height apart; let them overlap if no groove is meant")
     });
     bore.into_iter().chain(seam).collect()
+}
+
+/// The outline with its axes exchanged.
+pub(super) fn turned(outline: &Outline) -> Outline {
+    let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
+    Outline {
+        loops: outline.loops.iter().map(turned).collect(),
+    }
 }
 
 /// Places at which lines cross the outline, from the lowest to the highest point.

@@ -21,31 +21,18 @@ pub(super) struct Mark {
     pub line: Option<u32>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Frame,
-    CentreLine,
-    Dimension,
-    Curve,
-}
-
-impl Kind {
-    /// Name and effect, with the place between them.
-    fn words(self) -> [&'static str; 2] {
-        match self {
-            Self::Frame => ["a frame", "becomes a closed can about the solid"],
-            Self::CentreLine => [
-                "a centre line",
-                "becomes a needle or a sheet beside the solid",
-            ],
-            Self::Dimension => [
-                "a dimension or extension line",
-                "becomes a tube or a disc beside the solid",
-            ],
-            Self::Curve => ["a thin line", "becomes a sheet beside the solid"],
-        }
-    }
-}
+/// A kind of lines: its name and effect, with the place between them.
+type Kind = [&'static str; 2];
+const FRAME: Kind = ["a frame", "becomes a closed can about the solid"];
+const CENTRE_LINE: Kind = [
+    "a centre line",
+    "becomes a needle or a sheet beside the solid",
+];
+const DIMENSION: Kind = [
+    "a dimension or extension line",
+    "becomes a tube or a disc beside the solid",
+];
+const CURVE: Kind = ["a thin line", "becomes a sheet beside the solid"];
 
 /// The lines about a solid in a box. `slack`: a distance that does not count.
 pub(super) struct Marks {
@@ -60,15 +47,15 @@ impl Marks {
     /// One warning for each kind. `remedy` follows it.
     pub fn warnings(&self, what: &str, remedy: &str) -> Vec<String> {
         let kind = |mark: &Mark| match mark {
-            _ if !mark.is_straight => Kind::Curve,
-            _ if self.is_frame(mark) => Kind::Frame,
-            _ if mark.has_dots || self.is_on_axis(mark) || self.passes(mark) => Kind::CentreLine,
-            _ => Kind::Dimension,
+            _ if !mark.is_straight => CURVE,
+            _ if self.is_frame(mark) => FRAME,
+            _ if mark.has_dots || self.is_on_axis(mark) || self.passes(mark) => CENTRE_LINE,
+            _ => DIMENSION,
         };
-        let kinds = [Kind::Frame, Kind::CentreLine, Kind::Dimension, Kind::Curve];
+        let kinds = [FRAME, CENTRE_LINE, DIMENSION, CURVE];
         let found = kinds.into_iter().filter_map(|wanted| {
             let first = self.all.iter().find(|mark| kind(mark) == wanted)?;
-            let [name, effect] = wanted.words();
+            let [name, effect] = wanted;
             let place = first
                 .line
                 .map_or(String::new(), |line| format!(" (line {line})"));

@@ -107,12 +107,5 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
 
 /// Returns true if the bytes are those of a picture or a drawing.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
-    is_picture(bytes) || is_drawing(bytes)
-}
-
-/// Returns true if the bytes are XML, after blanks and a byte order mark, or gzip.
-fn is_drawing(bytes: &[u8]) -> bool {
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let first = text.iter().find(|b| !b.is_ascii_whitespace());
-    first == Some(&b'<') || bytes.starts_with(&[0x1f, 0x8b])
+    is_picture(bytes) || svg::is_narrow_markup(bytes)
 }

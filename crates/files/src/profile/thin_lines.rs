@@ -3,10 +3,13 @@
 use super::ProfileAxis;
 use super::form::Silhouette;
 use super::marks::{Mark, Marks, SOLID, THIN};
-use glam::DVec2;
+use glam::{DVec2, Vec2Swizzles as _};
+use image::{GrayImage, Luma};
+use imageproc::distance_transform::Norm;
+use imageproc::morphology::open_mut;
 use revmap::error::Result;
 use revmap::host_memory;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// Least length of a line, in heights of the picture.
 const LONG: f64 = 0.05;
@@ -14,8 +17,6 @@ const LONG: f64 = 0.05;
 const DRAWN: f64 = 0.1;
 /// Larger pictures are not searched.
 const MOST_PIXELS: usize = 1 << 24;
-/// What needs memory, in messages.
-const PIXELS: &str = "the pixels of a picture";
 /// Least thickness that shows a solid, pixels.
 const LEAST: f64 = 2.0;
 
@@ -33,12 +34,17 @@ pub(super) fn warnings(
     let height = solid.len() / width.max(1);
     let most = (THIN * height as f64).max(LEAST) as usize;
     let least = LONG * height as f64;
-    let upright = lines(&runs(solid, width, true, most), least, true);
-    let level = lines(&runs(solid, width, false, most), least, false);
-    if upright.is_empty() && level.is_empty() {
+    let mut all = lines(solid, width, most, least);
+    let level = lines(&turned(solid, width).ok()?, height, most, least);
+    all.extend(level.into_iter().map(|line| Mark {
+        low: line.low.yx(),
+        high: line.high.yx(),
+        ..line
+    }));
+    if all.is_empty() {
         return None;
     }
-    let thick = opened(solid, width, most + 1).ok()?;
+    let thick = opened(solid, width, most);
     let area = thick.iter().filter(|is| **is).count() as f64;
     if area < SOLID * (height as f64).powi(2) {
         return None;
@@ -50,7 +56,7 @@ pub(super) fn warnings(
     });
     let slack = most as f64;
     let mut marks = Marks {
-        all: [upright, level].concat(),
+        all,
         solid: [low, high],
         axis: axis_at,
         slack,
@@ -61,106 +67,56 @@ pub(super) fn warnings(
     (!found.is_empty()).then(|| found.into_iter().chain(form.axis_hint(axis)).collect())
 }
 
-/// Solid runs of at most `most` pixels across lines: of rows for upright lines, of columns for level
-/// ones. From where to where they go, and in which row or column they are.
-fn runs(
-    solid: &[bool],
-    width: usize,
-    upright: bool,
-    most: usize,
-) -> HashMap<[usize; 2], Vec<usize>> {
+/// The pixels with rows and columns exchanged.
+fn turned(solid: &[bool], width: usize) -> Result<Vec<bool>> {
     let height = solid.len() / width.max(1);
-    let (across, along) = if upright {
-        (width, height)
-    } else {
-        (height, width)
-    };
-    let mut found: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
-    let mut starts = vec![None; along];
-    for i in 0..=across {
-        for (j, start) in starts.iter_mut().enumerate() {
-            let at = if upright {
-                j * width + i
-            } else {
-                i * width + j
-            };
-            match (i < across && solid[at], *start) {
-                (true, None) => *start = Some(i),
-                (false, Some(from)) => {
-                    *start = None;
-                    if i - from <= most {
-                        found.entry([from, i]).or_default().push(j);
-                    }
-                }
-                _ => {}
+    let pixels = (0..solid.len()).map(|i| solid[i % height * width + i / height]);
+    host_memory::collected(pixels, "the pixels of a picture")
+}
+
+/// The runs of at most `most` solid pixels in rows that follow each other at one place, as upright
+/// lines. `least`: of their length.
+fn lines(solid: &[bool], width: usize, most: usize, least: f64) -> Vec<Mark> {
+    let mut runs: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+    for (row, pixels) in solid.chunks_exact(width.max(1)).enumerate() {
+        let mut to = 0;
+        for part in pixels.chunk_by(|a, b| a == b) {
+            to += part.len();
+            if part[0] && part.len() <= most {
+                runs.entry([to - part.len(), to]).or_default().push(row);
             }
         }
     }
-    found
-}
-
-/// The runs that follow each other at one place, as lines.
-fn lines(runs: &HashMap<[usize; 2], Vec<usize>>, least: f64, upright: bool) -> Vec<Mark> {
-    let line = |([from, to], places): (&[usize; 2], &Vec<usize>)| {
-        let [first, last] = [*places.first()?, *places.last()? + 1];
-        let is_long = (places.len() as f64) >= least.max(DRAWN * (last - first) as f64);
-        let turned = |across: usize, along: usize| {
-            let p = DVec2::new(across as f64, along as f64);
-            if upright { p } else { DVec2::new(p.y, p.x) }
-        };
+    let line = |([from, to], rows): ([usize; 2], Vec<usize>)| {
+        let [first, last] = [*rows.first()?, *rows.last()? + 1];
+        let is_long = (rows.len() as f64) >= least.max(DRAWN * (last - first) as f64);
         is_long.then(|| Mark {
-            low: turned(*from, first),
-            high: turned(*to, last),
+            low: DVec2::new(from as f64, first as f64),
+            high: DVec2::new(to as f64, last as f64),
             is_straight: true,
             has_dots: false,
             line: None,
         })
     };
-    let mut found: Vec<Mark> = runs.iter().filter_map(line).collect();
-    found.sort_by(|a, b| {
-        a.low
-            .x
-            .total_cmp(&b.low.x)
-            .then(a.low.y.total_cmp(&b.low.y))
-    });
-    found
+    runs.into_iter().filter_map(line).collect()
 }
 
-/// The pixels that a solid square of `side` pixels covers.
-fn opened(solid: &[bool], width: usize, side: usize) -> Result<Vec<bool>> {
-    let mut mask = host_memory::collected(solid.iter().copied(), PIXELS)?;
-    for (upright, erodes) in [(false, true), (true, true), (false, false), (true, false)] {
-        let height = mask.len() / width.max(1);
-        let [lines, length] = if upright {
-            [width, height]
-        } else {
-            [height, width]
-        };
-        let mut counts = vec![0; lines];
-        for i in 0..length {
-            for (j, count) in counts.iter_mut().enumerate() {
-                // Squares shrink to their last pixel, and grow back from there.
-                let i = if erodes { i } else { length - 1 - i };
-                let at = if upright {
-                    i * width + j
-                } else {
-                    j * width + i
-                };
-                if erodes {
-                    *count = if mask[at] { *count + 1 } else { 0 };
-                    mask[at] = *count >= side;
-                } else {
-                    *count = if mask[at] {
-                        side
-                    } else {
-                        *count - usize::from(*count > 0)
-                    };
-                    mask[at] = *count > 0;
-                }
-            }
-        }
+/// The pixels that a solid square of more than `most` pixels covers.
+fn opened(solid: &[bool], width: usize, most: usize) -> Vec<bool> {
+    let [columns, rows] = [width, solid.len() / width.max(1)].map(|n| n as u32 + 2);
+    // Beyond the picture is nothing solid.
+    let place = |i: usize| ((i % width) as u32 + 1, (i / width) as u32 + 1);
+    let mut wide = GrayImage::new(columns, rows);
+    for (i, _) in solid.iter().enumerate().filter(|(_, is)| **is) {
+        let (x, y) = place(i);
+        wide.put_pixel(x, y, Luma([u8::MAX]));
     }
-    Ok(mask)
+    open_mut(&mut wide, Norm::LInf, most.div_ceil(2) as u8);
+    let is_left = |i| {
+        let (x, y) = place(i);
+        wide.get_pixel(x, y)[0] > 0
+    };
+    (0..solid.len()).map(is_left).collect()
 }
 
 /// The lines that are no part of a solid: a frame, centre lines that leave the solid at both ends,

@@ -34,15 +34,8 @@ pub fn rasterize(outline: &Outline, columns: u32, rows: u32) -> Result<Raster> {
         }
     }
     let mut coverage = host_memory::filled(width * height, 0.0, super::PIXELS)?;
-    if width == 0 {
-        return Ok(Raster {
-            columns,
-            rows,
-            coverage,
-        });
-    }
     coverage
-        .par_chunks_mut(width)
+        .par_chunks_mut(width.max(1))
         .zip(&bins)
         .enumerate()
         .for_each(|(row, (out, bin))| {
@@ -77,15 +70,7 @@ fn add_segment(sums: &mut [f64], [x0, y0, x1, y1]: [f64; 4], top: f64) {
         (-1.0, [x1, y1, x0, y0])
     };
     let slope = (xb - xa) / (yb - ya);
-    let at = |y: f64| {
-        if y <= ya {
-            xa
-        } else if y >= yb {
-            xb
-        } else {
-            xa + (y - ya) * slope
-        }
-    };
+    let at = |y: f64| xa + (y - ya) * slope;
     let (from, to) = (ya.max(top), yb.min(top + 1.0));
     if to <= from {
         return;

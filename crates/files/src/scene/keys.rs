@@ -410,13 +410,4 @@ xyzzy => object.0.xyzzy: unknown key; known here: bevel, chamfer, ";
             assert_eq!(found.unwrap().to_string(), wanted);
         }
     }
-
-    #[test]
-    fn whole_numbers_serve_as_numbers() {
-        let table = "bevel = 2\nrepeat = [1, 2.5, 3]".parse().unwrap();
-        let keys = Keys::new(&table, "", KNOWN).unwrap();
-        assert_eq!(keys.get("bevel").unwrap(), Some(2.0));
-        assert_eq!(keys.get("repeat").unwrap(), Some([1.0, 2.5, 3.0]));
-        assert_eq!(keys.get::<f64>("chamfer").unwrap(), None);
-    }
 }

@@ -19,7 +19,7 @@ pub use warnings::{blank, warnings};
 
 use crate::pixels::{foreign, is_picture};
 use crate::profile::is_profile;
-use crate::{Picture, ProfileOptions, file_fault, read_bytes, text};
+use crate::{Picture, ProfileOptions, ending, file_fault, read_bytes, text};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
@@ -249,9 +249,7 @@ fn camera(eye: DVec3, target: DVec3) -> Table {
 
 /// Returns true for a name that ends as those of profiles do.
 fn is_named_profile(file: &Path) -> bool {
-    let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let endings = ["svg", "svgz", "gz", "png", "jpg", "jpeg", "jfif"];
-    ending.is_some_and(|e| endings.contains(&e.as_str()))
+    ["svg", "svgz", "gz", "png", "jpg", "jpeg", "jfif"].contains(&ending(file).as_str())
 }
 
 /// The text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one.

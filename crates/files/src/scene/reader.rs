@@ -18,7 +18,7 @@ use revmap::scene::{
     Texturing,
 };
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use std::hash::Hash;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Table;
@@ -38,6 +38,7 @@ const RADIUS: f64 = 0.5;
 const MOST_COLORS: usize = 64;
 
 /// Files read so far: those named more than once are read once and shared.
+#[derive(Default)]
 pub(super) struct Reader {
     folder: PathBuf,
     profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
@@ -64,13 +65,7 @@ impl Reader {
     pub(super) fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
-            profiles: Vec::new(),
-            polygons: Vec::new(),
-            color_maps: HashMap::new(),
-            opaque_maps: HashMap::new(),
-            height_maps: HashMap::new(),
-            instances: Vec::new(),
-            kept: None,
+            ..Self::default()
         }
     }
 
@@ -296,8 +291,9 @@ impl Reader {
             ..Texturing::default()
         };
         if let Some(file) = keys.file("color_map", &self.folder)? {
-            let map = shared(&mut self.color_maps, &file, |f| color_map(f));
-            let map = map.map_err(|e| e.at_key(keys.place("color_map")))?;
+            let at_key = |e: Error| e.at_key(keys.place("color_map"));
+            let map = shared(&mut self.color_maps, file.clone(), |f| color_map(f));
+            let map = map.map_err(at_key)?;
             covering.color_map = Some(match map.is_opaque() {
                 true => map,
                 false => {
@@ -306,20 +302,13 @@ impl Reader {
                         self.opaque_maps.clear();
                     }
                     let key = (file, color.map(f32::to_bits));
-                    match self.opaque_maps.entry(key) {
-                        Entry::Occupied(known) => known.get().clone(),
-                        Entry::Vacant(new) => {
-                            let opaque = map.over(color);
-                            let opaque = opaque.map_err(|e| e.at_key(keys.place("color_map")));
-                            new.insert(Arc::new(opaque?)).clone()
-                        }
-                    }
+                    shared(&mut self.opaque_maps, key, |_| map.over(color)).map_err(at_key)?
                 }
             });
         }
         if let Some(file) = keys.file("height_map", &self.folder)? {
-            let read = |f: &Path| displacement_map(f, SlopeFilter::default());
-            let map = shared(&mut self.height_maps, &file, read);
+            let read = |f: &PathBuf| displacement_map(f, SlopeFilter::default());
+            let map = shared(&mut self.height_maps, file, read);
             covering.displacement_map = Some(map.map_err(|e| e.at_key(keys.place("height_map")))?);
         }
         keys.set("bump", &mut covering.bump)?;
@@ -377,16 +366,16 @@ fn below(keys: &Keys, key: &str, mut error: Error) -> Error {
     error.at_key(keys.place(own.as_deref().unwrap_or(key)))
 }
 
-/// The content of `file`, read when it is first named.
-fn shared<T>(
-    known: &mut HashMap<PathBuf, Arc<T>>,
-    file: &Path,
-    read: impl Fn(&Path) -> Result<T>,
+/// The value of `key`, made when it is first asked for.
+fn shared<K: Eq + Hash, T>(
+    known: &mut HashMap<K, Arc<T>>,
+    key: K,
+    make: impl FnOnce(&K) -> Result<T>,
 ) -> Result<Arc<T>> {
-    if let Some(value) = known.get(file) {
+    if let Some(value) = known.get(&key) {
         return Ok(value.clone());
     }
-    let value = Arc::new(read(file)?);
-    known.insert(file.to_path_buf(), value.clone());
+    let value = Arc::new(make(&key)?);
+    known.insert(key, value.clone());
     Ok(value)
 }

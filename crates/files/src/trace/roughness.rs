@@ -16,15 +16,10 @@ use revmap::profile::Raster;
 const BESIDE: std::ops::RangeInclusive<usize> = 3..=5;
 /// Half the side of the square around a measured pixel that the outline does not enter.
 const CLEAR: usize = 2;
-/// Weights of the high-pass filter; the sum of their squares is 1.
-const FILTER: [[f64; 3]; 3] = {
-    const A: f64 = 1.0 / 6.0;
-    [
-        [A, -2.0 * A, A],
-        [-2.0 * A, 4.0 * A, -2.0 * A],
-        [A, -2.0 * A, A],
-    ]
-};
+/// Weights of the high-pass filter, for rows and for columns.
+const FILTER: [f64; 3] = [1.0, -2.0, 1.0];
+/// Root of the sum of the squares of all products of two weights.
+const GAIN: f64 = 6.0;
 /// Variance of rounding to 8 bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
@@ -43,25 +38,15 @@ pub(crate) fn roughness(raster: &Raster, split: bool) -> f64 {
         .map(|&link| nodes.link(link))
         .map(|[a, b]| if nodes.solid(a) { [a, b] } else { [b, a] })
         .collect();
-    let variance = |squares: Vec<f64>| {
-        let count = squares.len() as f64;
-        (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / count)
+    let variance = |[near, far]: [usize; 2]| {
+        let squares = links
+            .iter()
+            .flat_map(|ends| nodes.beside(ends[near], ends[far]));
+        let squares: Vec<f64> = squares.collect();
+        (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
     };
-    let noise = [
-        variance(
-            links
-                .iter()
-                .flat_map(|&[a, b]| nodes.beside(a, b))
-                .collect(),
-        ),
-        variance(
-            links
-                .iter()
-                .flat_map(|&[a, b]| nodes.beside(b, a))
-                .collect(),
-        ),
-    ];
-    let Some(noise) = noise.into_iter().flatten().reduce(f64::min) else {
+    let sides = [[0, 1], [1, 0]].into_iter();
+    let Some(noise) = sides.filter_map(variance).reduce(f64::min) else {
         return 0.0;
     };
     let mut steps: Vec<f64> = links
@@ -90,9 +75,10 @@ impl Nodes<'_> {
             .map_while(behind)
             .take_while(|&p| self.is_clear(p, side))
             .map(|(i, j)| {
-                let weighed =
-                    |k: usize| FILTER[k / 3][k % 3] * self.value(i + k % 3 - 1, j + k / 3 - 1);
-                (0..9).map(weighed).sum::<f64>().powi(2)
+                let weighed = |k: usize| {
+                    FILTER[k / 3] * FILTER[k % 3] * self.value(i + k % 3 - 1, j + k / 3 - 1)
+                };
+                ((0..9).map(weighed).sum::<f64>() / GAIN).powi(2)
             })
             .collect()
     }

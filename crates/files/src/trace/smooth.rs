@@ -16,7 +16,7 @@ mod least_squares;
 
 use glam::DVec2;
 use least_squares::{Parabola, line_through, meeting, parabola};
-use revmap::profile::loop_area;
+use revmap::profile::{Segment, loop_area};
 
 /// Points along a boundary: closed, or from the axis to the axis (`x = 0`).
 #[derive(Clone, Debug, Default)]
@@ -235,12 +235,11 @@ impl Line {
     /// Distance of a position from the trail near point `k`.
     fn away(&self, m: DVec2, k: usize) -> f64 {
         let near = k.saturating_sub(4)..(k + 4).min(self.points.len() - 1);
-        near.map(|j| {
+        let distances = near.map(|j| {
             let (a, b) = (self.points[j], self.points[j + 1]);
-            let t = ((m - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
-            m.distance(a.lerp(b, t))
-        })
-        .fold(f64::INFINITY, f64::min)
+            Segment { a, b }.nearest(m).0.distance(m)
+        });
+        distances.fold(f64::INFINITY, f64::min)
     }
 
     /// Fits everything between corners.

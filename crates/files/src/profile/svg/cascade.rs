@@ -1,12 +1,10 @@
 //! The cascade: which declaration of a property counts for an element.
 
 use super::css::{Declaration, Rule, declarations, media, one_line, sheet, without_comments};
-use super::custom::{Custom, filled};
 use super::motion::OTHER_SHEET;
 use super::notes::Notes;
 use super::reader::{XHTML, is_svg};
 use super::selector::{Key, Matcher};
-use super::value::Value;
 use super::value::attribute;
 use crate::content_fault;
 use revmap::error::Result;
@@ -195,7 +193,7 @@ fn counts(name: &str) -> bool {
 pub(super) struct Declared {
     pub properties: HashMap<String, Vec<Declaration>>,
     /// What `all` makes of the properties without stronger declarations.
-    all: Option<Wide>,
+    pub all: Option<Wide>,
     /// The refusal of a rule that may be for the element.
     pub fault: Option<String>,
 }
@@ -217,18 +215,6 @@ impl Wide {
             _ => return None,
         })
     }
-}
-
-/// The outcome of the cascade for one property.
-pub(super) enum Picked<T> {
-    /// Nothing is declared.
-    Absent,
-    Wide(Wide),
-    Is(T),
-    /// No declaration can be read; the text is the refusal.
-    Unread(String),
-    /// The declarations are not valid; browsers ignore them. The text says so.
-    Wrong(String),
 }
 
 impl Declared {
@@ -263,80 +249,5 @@ impl Declared {
     pub fn css(&self, name: &str) -> Option<&str> {
         let first = self.properties.get(name)?.iter().find(|d| d.css)?;
         Some(&first.value)
-    }
-
-    /// Picks the strongest declaration that `read` can read. It gets the value and `true` for one
-    /// of CSS. Those that are not read are skipped only if `lenient`, with a warning.
-    pub fn pick<T>(
-        &self,
-        name: &str,
-        custom: &Custom,
-        node: Node,
-        notes: &mut Notes,
-        lenient: bool,
-        read: &dyn Fn(&str, bool) -> Value<T>,
-    ) -> Picked<T> {
-        let mut fault = None;
-        let list = self.properties.get(name).map_or(&[][..], Vec::as_slice);
-        for d in list.iter().filter(|d| !d.value.is_empty()) {
-            let line = notes.line(node);
-            let said = || {
-                let value = one_line(&d.value);
-                match d.css {
-                    true => format!("\"{name}: {value}\" (line {line})"),
-                    false => format!("{name}=\"{value}\" (line {line})"),
-                }
-            };
-            let is_filled = d.value.contains("var(");
-            let Some(value) = filled(&d.value, custom) else {
-                let text = format!(
-                    "the drawing has {}, which is not set; write the value itself",
-                    said()
-                );
-                return Picked::Unread(text);
-            };
-            if let Some(wide) = Wide::of(&value) {
-                return Picked::Wide(wide);
-            }
-            match read(&value, d.css) {
-                _ if value.eq_ignore_ascii_case("revert-layer") => {
-                    let text = format!(
-                        "the drawing has {}, which is not read; write the value",
-                        said()
-                    );
-                    return Picked::Unread(text);
-                }
-                Value::Is(v) => {
-                    if let Some(Picked::Unread(text)) = fault {
-                        let text = text.split(';').next().unwrap_or_default();
-                        notes.warn(format!("{text}; the declaration before it counts"));
-                    }
-                    return Picked::Is(v);
-                }
-                Value::Near(v, how) => {
-                    notes.warn(format!("the drawing has {}; {how}", said()));
-                    return Picked::Is(v);
-                }
-                Value::Unread(remedy) => {
-                    let text = format!("the drawing has {}, which is not read; {remedy}", said());
-                    let unread = Picked::Unread(text);
-                    if !lenient {
-                        return unread;
-                    }
-                    fault.get_or_insert(unread);
-                }
-                // Browsers find this too late to go back to the declaration before it.
-                Value::Wrong if is_filled => return Picked::Wide(Wide::Unset),
-                Value::Wrong => {
-                    let text = format!("the drawing has {}, which is not valid", said());
-                    fault.get_or_insert(Picked::Wrong(text));
-                }
-            }
-        }
-        match (fault, self.all) {
-            (Some(fault), _) => fault,
-            (None, Some(all)) => Picked::Wide(all),
-            (None, _) => Picked::Absent,
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! Colours of CSS, as values of sRGB.
 
-use super::value::Value;
+use super::value::{Value, is_in};
 use ::color::{ColorSpaceTag, Srgb, parse_color};
 use revmap::frame::linear_from_srgb;
 
@@ -60,7 +60,7 @@ pub(super) fn color(text: &str) -> Value<Color> {
         },
         ("canvas", _) => return Value::Is([1.0; 4]),
         ("canvastext", _) => return Value::Is(BLACK),
-        (name, _) if SYSTEM.split(' ').any(|n| n == name) => return Value::Unread(REMEDY),
+        (name, _) if is_in(SYSTEM, name) => return Value::Unread(REMEDY),
         _ => {}
     }
     let Ok(mut read) = parse_color(&small) else {
@@ -78,7 +78,7 @@ fn function(name: &str, arguments: &str) -> Value<()> {
     let Some(arguments) = arguments.strip_suffix(')') else {
         return Value::Wrong;
     };
-    let [read, known] = FUNCTIONS.map(|list| list.split(' ').any(|known| known == name));
+    let [read, known] = FUNCTIONS.map(|list| is_in(list, name));
     let ends = |c: char| c.is_ascii_whitespace() || c == ',';
     let space = arguments
         .trim_start()

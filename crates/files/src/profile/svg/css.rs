@@ -3,6 +3,7 @@
 use super::notes::{Notes, line_at, line_starts};
 use super::reader::SVG;
 use super::selector::{Selector, selectors};
+use super::value::is_in;
 use cssparser::{Parser, Token};
 
 /// Rules and `@media` may be nested this deep.
@@ -38,18 +39,11 @@ const HOLDS: &str = "all screen (prefers-color-scheme:light) (prefers-reduced-mo
 const FAILS: &str = "print speech tty tv projection handheld braille embossed aural (prefers-color-scheme:dark) \
     (prefers-reduced-motion:reduce) (prefers-reduced-motion) (forced-colors:active)";
 
-fn is_in(list: &str, word: &str) -> bool {
-    list.split(' ').any(|known| known == word)
-}
-
 /// Reads the declarations of a `style` attribute or of a rule.
 pub(super) fn declarations(text: &str) -> Vec<Declaration> {
     let text = without_comments(text);
-    let mut rest = text.as_str();
     let mut found = Vec::new();
-    while !rest.is_empty() {
-        let (part, _, after) = until(rest, &[';']);
-        rest = after;
+    for part in parts(&text, ';') {
         let Some((name, value)) = part.split_once(':') else {
             continue;
         };
@@ -239,14 +233,8 @@ fn nested(head: &str, parent: &str) -> String {
     match head.contains('&') {
         true => head.replace('&', &parent),
         false => {
-            let mut parts = Vec::new();
-            let mut rest = Some(head);
-            while let Some(text) = rest {
-                let (part, stop, after) = until(text, &[',']);
-                parts.push(format!("{parent} {}", part.trim()));
-                rest = stop.map(|_| after);
-            }
-            parts.join(",")
+            let own = |part: &str| format!("{parent} {}", part.trim());
+            parts(head, ',').map(own).collect::<Vec<_>>().join(",")
         }
     }
 }
@@ -292,6 +280,16 @@ pub(super) fn one_line(text: &str) -> String {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
     }
+}
+
+/// The parts of a text that `stop` separates outside of quotes and brackets.
+fn parts(text: &str, stop: char) -> impl Iterator<Item = &str> {
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let (part, found, after) = until(rest?, &[stop]);
+        rest = found.map(|_| after);
+        Some(part)
+    })
 }
 
 /// Splits at the first of `stops` outside of quotes and brackets: the text before it, the letter,

@@ -15,7 +15,12 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// Returns true if the bytes are XML in any encoding, after blanks and a byte order mark, or gzip.
 pub(in crate::profile) fn is_markup(bytes: &[u8]) -> bool {
-    if bytes.starts_with(&GZIP) || wide(bytes).is_some() {
+    wide(bytes).is_some() || is_narrow_markup(bytes)
+}
+
+/// Returns true if the bytes are XML with a byte for the letter that it begins with, or gzip.
+pub(in crate::profile) fn is_narrow_markup(bytes: &[u8]) -> bool {
+    if bytes.starts_with(&GZIP) {
         return true;
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);

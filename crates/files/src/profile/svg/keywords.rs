@@ -2,7 +2,7 @@
 
 use super::color::color;
 use super::style::{Paint, Target};
-use super::value::{Length, Value, list, url};
+use super::value::{Length, Value, is_in, list, url};
 
 /// A reading of one of these words.
 pub(super) fn words<T: Clone>(list: &[(&'static str, T)]) -> impl Fn(&str, bool) -> Value<T> {
@@ -44,8 +44,7 @@ pub(super) fn paint(text: &str) -> Value<Paint> {
 /// Returns true for words of `display` that show an element.
 pub(super) fn is_display(word: &str) -> bool {
     let plain = word.split(['-', ' ']).next().unwrap_or_default();
-    let known = "inline block flex grid table list flow ruby run";
-    known.split(' ').any(|known| known == plain)
+    is_in("inline block flex grid table list flow ruby run", plain)
 }
 
 /// `none` or `url(#name)`.

@@ -154,7 +154,8 @@ fn corners(curve: &Curve) -> Vec<Corner> {
     let (mut at, mut first) = (Point::ZERO, 0);
     for (i, element) in curve.path.elements().iter().enumerate() {
         let inside = curve.within_arcs.binary_search(&i).is_ok();
-        let (out, back, to) = match *element {
+        let start = corners.get(first).map(|c| c.at);
+        let points: &[Point] = match *element {
             PathEl::MoveTo(p) => {
                 first = corners.len();
                 corners.push(Corner {
@@ -165,33 +166,29 @@ fn corners(curve: &Curve) -> Vec<Corner> {
                 at = p;
                 continue;
             }
-            PathEl::LineTo(p) => (p - at, p - at, p),
-            PathEl::QuadTo(c, p) => (ways(&[c - at, p - at]), ways(&[p - c, p - at]), p),
-            PathEl::CurveTo(c, d, p) => (
-                ways(&[c - at, d - at, p - at]),
-                ways(&[p - d, p - c, p - at]),
-                p,
-            ),
-            PathEl::ClosePath => {
-                let Some(start) = corners.get(first).map(|c| c.at) else {
-                    continue;
-                };
-                (start - at, start - at, start)
-            }
+            PathEl::LineTo(p) => &[p],
+            PathEl::QuadTo(c, p) => &[c, p],
+            PathEl::CurveTo(c, d, p) => &[c, d, p],
+            PathEl::ClosePath => start.as_slice(),
         };
-        let known = |v: Vec2| (v.hypot() > 0.0).then_some(v);
+        let Some((&to, controls)) = points.split_last() else {
+            continue;
+        };
+        let is_long = |v: &Vec2| v.hypot() > 0.0;
         if let Some(previous) = corners.last_mut()
             && previous.after.is_none()
         {
-            previous.after = known(out);
+            previous.after = points.iter().map(|p| *p - at).find(is_long);
         }
+        let backwards = controls.iter().rev().copied().chain([at]);
+        let before = backwards.map(|p| to - p).find(is_long);
         at = to;
         if inside {
             continue;
         }
         corners.push(Corner {
             at: to,
-            before: known(back),
+            before,
             after: None,
         });
         if *element == PathEl::ClosePath {
@@ -207,12 +204,4 @@ fn corners(curve: &Curve) -> Vec<Corner> {
         }
     }
     corners
-}
-
-/// The first vector that is not zero.
-fn ways(list: &[Vec2]) -> Vec2 {
-    list.iter()
-        .copied()
-        .find(|v| v.hypot() > 0.0)
-        .unwrap_or(Vec2::ZERO)
 }

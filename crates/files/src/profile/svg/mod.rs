@@ -19,6 +19,7 @@ mod paints;
 mod placed;
 mod properties;
 mod reader;
+mod reading;
 mod references;
 mod selector;
 mod shapes;
@@ -29,7 +30,7 @@ mod tree;
 mod value;
 mod viewport;
 
-pub(super) use encoding::is_markup;
+pub(super) use encoding::{is_markup, is_narrow_markup};
 pub(super) use tree::{Band, Clip, Drawing, Group, Node, Path, has_translucency};
 
 pub use color::css_color;

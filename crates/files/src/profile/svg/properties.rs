@@ -1,13 +1,13 @@
 //! Reads the properties of an element into its style, by tables of names, fields and readings.
 
-use super::cascade::{Declared, Picked, Sheets, Wide};
+use super::cascade::Sheets;
 use super::color::color;
 use super::keywords::{is_display, order, paint, path_data, positive, target, words};
-use super::notes::{Notes, unsupported};
+use super::notes::Notes;
+use super::reading::Reading;
 use super::style::{Own, Paint, Reference, Style};
 use super::transform::{Base, origin, property, transform};
 use super::value::{Value, alpha, length, list, number};
-use crate::content_fault;
 use kurbo::{Cap, Join};
 use revmap::error::Result;
 use revmap::profile::FillRule;
@@ -320,101 +320,5 @@ impl StyleReader<'_, '_> {
                 .value("d", (slot, &None, &None), false, &path_data)?;
         }
         Ok(())
-    }
-}
-
-/// The field that a property is read into, the parent's value, the initial value.
-type Fields<'a, T> = (&'a mut T, &'a T, &'a T);
-
-/// The reading of one element's properties.
-struct Reading<'a, 'b> {
-    declared: &'a Declared,
-    custom: super::custom::Custom,
-    node: Node<'b, 'b>,
-    notes: &'a mut Notes,
-    /// The first refusal, for an element that shows.
-    fault: Option<Rc<str>>,
-}
-
-impl Reading<'_, '_> {
-    fn is_root(&self) -> bool {
-        self.node.parent_element().is_none()
-    }
-
-    /// Reads a property into its field, which holds the value for one that is not declared. Returns
-    /// what is wrong with the declarations.
-    fn pick<T: Clone>(
-        &mut self,
-        name: &str,
-        (slot, parent, initial): Fields<T>,
-        inherited: bool,
-        lenient: bool,
-        read: &dyn Fn(&str, bool) -> Value<T>,
-    ) -> Option<Picked<T>> {
-        let (custom, notes) = (&self.custom, &mut *self.notes);
-        match self
-            .declared
-            .pick(name, custom, self.node, notes, lenient, read)
-        {
-            Picked::Absent => {}
-            Picked::Is(value) => *slot = value,
-            Picked::Wide(Wide::Inherit) => *slot = parent.clone(),
-            Picked::Wide(Wide::Unset) if inherited => *slot = parent.clone(),
-            Picked::Wide(_) => *slot = initial.clone(),
-            trouble => return Some(trouble),
-        }
-        None
-    }
-
-    fn value<T: Clone>(
-        &mut self,
-        name: &str,
-        fields: Fields<T>,
-        inherited: bool,
-        read: &dyn Fn(&str, bool) -> Value<T>,
-    ) -> Result<()> {
-        match self.pick(name, fields, inherited, false, read) {
-            Some(Picked::Unread(text)) if matches!(name, "display" | "visibility" | "opacity") => {
-                return Err(content_fault(text));
-            }
-            Some(Picked::Unread(text)) => drop(self.fault.get_or_insert(text.into())),
-            Some(Picked::Wrong(text)) => {
-                self.notes
-                    .warn(format!("{text}; it is ignored, as browsers do"));
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Reads a paint. One that is not read is refused only if something is painted with it.
-    #[expect(clippy::unnecessary_wraps, reason = "called as `value` is, by a table")]
-    fn paint(
-        &mut self,
-        name: &str,
-        (slot, parent, initial): Fields<Paint>,
-        inherited: bool,
-        read: &dyn Fn(&str, bool) -> Value<Paint>,
-    ) -> Result<()> {
-        match self.pick(name, (slot, parent, initial), inherited, true, read) {
-            Some(Picked::Unread(text)) => *slot = Paint::Fault(text.into()),
-            Some(Picked::Wrong(text)) => {
-                let text = text.replace("which is not valid", "which is no colour");
-                *slot = Paint::Fault(format!("{text}; write the colour as #rrggbb").into());
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Refuses a property of CSS with another value than the `usual` ones, if the element shows.
-    fn refuse(&mut self, name: &str, usual: &[&str], remedy: &str) {
-        let known = ["", "initial", "unset", "inherit", "auto"];
-        let mut usual = usual.iter().chain(&known);
-        let unusual = |v: &&str| !usual.any(|u| u.eq_ignore_ascii_case(v));
-        if let Some(value) = self.declared.css(name).filter(unusual) {
-            let text = unsupported(self.node, &format!("\"{name}: {value}\""), remedy).to_string();
-            self.fault.get_or_insert(text.into());
-        }
     }
 }

@@ -7,7 +7,7 @@ use super::shapes::{Curve, crossings, curve};
 use super::strokes::stroked;
 use super::style::{Own, Paint, Reference, Style, Target};
 use super::tree::{Clip, Group, Node as Drawn, Path, bounds, is_painted};
-use super::value::attribute;
+use super::value::{attribute, is_in};
 use crate::content_fault;
 use kurbo::{Affine, BezPath, Shape};
 use percent_encoding::percent_decode_str;
@@ -66,6 +66,12 @@ impl Place {
             depth: self.depth + 1,
             ..self
         }
+    }
+
+    /// What percentages of lengths in no direction refer to.
+    pub fn diagonal(&self) -> f64 {
+        let (width, height) = self.viewport;
+        (0.5 * (width * width + height * height)).sqrt()
     }
 
     /// The place that `x` and `y` of an element give.
@@ -218,11 +224,10 @@ impl<'a> Reader<'a> {
     /// Returns false for elements that show nothing, with a warning if something may be missing.
     fn is_seen(&mut self, node: Node) -> bool {
         let name = node.tag_name().name();
-        let is_in = |list: &str| list.split(' ').any(|known| known == name);
-        if SHAPES.contains(&name) || is_in(SEEN) {
+        if SHAPES.contains(&name) || is_in(SEEN, name) {
             return passes(node);
         }
-        if !(is_in(UNSEEN) || name.starts_with("fe") || is_motion(name)) {
+        if !(is_in(UNSEEN, name) || name.starts_with("fe") || is_motion(name)) {
             let how = ": an element that SVG does not have, which is left out";
             self.notes.warn_at(node, &format!("<{name}>"), how);
         }
@@ -247,11 +252,9 @@ impl<'a> Reader<'a> {
         let (shows, remedy) = match name {
             "text" | "flowRoot" => (self.text_shows(node, style, place.depth)?, TO_PATHS),
             "image" => {
-                let shows = style.visible && href(node).is_some();
-                (
-                    shows && sides.all(|side| side != Some(0.0)),
-                    "trace it to paths",
-                )
+                let named = style.visible && href(node).is_some();
+                let shows = named && sides.all(|side| side != Some(0.0));
+                (shows, "trace it to paths")
             }
             _ => {
                 let filled = node.children().any(|c| c.is_element() || has_letters(c));
@@ -295,7 +298,7 @@ impl<'a> Reader<'a> {
         let plain = |curve: &BezPath| Path::plain(curve.clone(), style.fill_rule);
         let mut out = Vec::new();
         if !style.visible || !place.shown {
-            let curve = curve(node, style, place.viewport).path;
+            let curve = curve(node, style, place).path;
             if curve.is_finite() {
                 out.push(Drawn::Path(plain(&curve)));
             }
@@ -308,9 +311,8 @@ impl<'a> Reader<'a> {
         }
         let bounds = curve.path.bounding_box();
         let has_inside = bounds.area() > 0.0 && node.tag_name().name() != "line";
-        let (width, height) = place.viewport;
-        let diagonal = (0.5 * (width * width + height * height)).sqrt();
-        let thickness = style.stroke_width.of(diagonal);
+        let thickness = style.stroke_width.of(place.diagonal());
+        let line = self.notes.line(node);
         let mut painted = false;
         for part in style.order {
             let (shade, opacity) = match part {
@@ -327,18 +329,12 @@ impl<'a> Reader<'a> {
             };
             painted = true;
             let shape = match part {
-                1 => stroked(
-                    (node, self.notes.line(node)),
-                    style,
-                    &curve,
-                    thickness,
-                    diagonal,
-                )?,
+                1 => stroked((node, line), style, &curve, thickness, place)?,
                 _ => plain(&curve.path),
             };
             out.push(Drawn::Path(Path {
                 color,
-                lightest: lightest.map(|color| (color, self.notes.line(node))),
+                lightest: lightest.map(|color| (color, line)),
                 ..shape
             }));
         }
@@ -349,7 +345,7 @@ impl<'a> Reader<'a> {
     }
 
     pub fn curve(&mut self, node: Node, style: &Style, place: Place) -> Result<Curve> {
-        let curve = curve(node, style, place.viewport);
+        let curve = curve(node, style, place);
         if let Some(mistake) = &curve.mistake {
             self.notes
                 .warn_at(node, mistake, "; the path ends there, as in browsers");
@@ -359,14 +355,11 @@ impl<'a> Reader<'a> {
             let what = format!("a path that crosses itself about {crossings:.0} times");
             return Err(misled(node, &what, "which is too often; simplify it"));
         }
-        match curve.path.is_finite() {
-            true => Ok(curve),
-            false => Err(misled(
-                node,
-                "a coordinate",
-                "which is beyond all numbers; correct it",
-            )),
+        if !curve.path.is_finite() {
+            let how = "which is beyond all numbers; correct it";
+            return Err(misled(node, "a coordinate", how));
         }
+        Ok(curve)
     }
 
     /// An element's content under its transform, clip and opacity.

@@ -1,6 +1,6 @@
 //! Selectors of CSS: which elements a rule is for.
 
-use super::value::attribute;
+use super::value::{attribute, is_in};
 use cssparser::{Parser, ToCss};
 use precomputed_hash::PrecomputedHash;
 use roxmltree::Node;
@@ -190,11 +190,6 @@ impl SelectorImpl for Drawings {
     type PseudoElement = Pseudo;
 }
 
-fn is_in(list: &str, name: &str) -> bool {
-    list.split(' ')
-        .any(|known| known.eq_ignore_ascii_case(name))
-}
-
 fn unread<T>() -> Result<T, SelectorParseError> {
     Err(SelectorParseError::custom(
         SelectorParseErrorKind::UnsupportedPseudoClassOrElement,
@@ -218,16 +213,16 @@ impl selectors::Parser<'_> for Drawings {
     }
 
     fn parse_non_ts_pseudo_class(&self, name: &str) -> Result<Pseudo, SelectorParseError> {
-        match name {
-            _ if is_in(NEVER, name) => Ok(Pseudo::Never),
-            _ if is_in("link any-link", name) => Ok(Pseudo::Link),
-            _ if is_in("defined", name) => Ok(Pseudo::Always),
+        match name.to_ascii_lowercase().as_str() {
+            name if is_in(NEVER, name) => Ok(Pseudo::Never),
+            "link" | "any-link" => Ok(Pseudo::Link),
+            "defined" => Ok(Pseudo::Always),
             _ => unread(),
         }
     }
 
     fn parse_pseudo_element(&self, name: &str) -> Result<Pseudo, SelectorParseError> {
-        match is_in(ELEMENTS, name) || name.starts_with("-webkit-") {
+        match is_in(ELEMENTS, &name.to_ascii_lowercase()) || name.starts_with("-webkit-") {
             true => Ok(Pseudo::Never),
             // Others make the rule invalid.
             false => unread(),

@@ -1,8 +1,9 @@
 //! The curves of basic shapes and of path data, in double precision.
 
+use super::reader::Place;
 use super::style::Style;
 use super::value::attribute;
-use kurbo::{BezPath, Ellipse, Line, ParamCurve, Point, Shape, SvgArc, Vec2};
+use kurbo::{BezPath, Ellipse, Line, ParamCurve, PathEl, Point, Shape, SvgArc, Vec2};
 use svgtypes::{PathParser, PathSegment};
 
 /// Curves of circles and arcs are within this part of their radius.
@@ -28,20 +29,16 @@ impl From<BezPath> for Curve {
 }
 
 /// The curve of a shape.
-pub(super) fn curve(node: roxmltree::Node, style: &Style, viewport: (f64, f64)) -> Curve {
-    let (width, height) = viewport;
-    let diagonal = (0.5 * (width * width + height * height)).sqrt();
+pub(super) fn curve(node: roxmltree::Node, style: &Style, place: Place) -> Curve {
+    let (width, height) = place.viewport;
     let x = |name: &str| style.size(name, width);
     let y = |name: &str| style.size(name, height);
+    let radius = |name: &str, whole: f64| {
+        let radius = style.geometry(name).map(|l| l.of(whole));
+        radius.filter(|r| *r >= 0.0)
+    };
     let radii = || {
-        let rx = style
-            .geometry("rx")
-            .map(|l| l.of(width))
-            .filter(|r| *r >= 0.0);
-        let ry = style
-            .geometry("ry")
-            .map(|l| l.of(height))
-            .filter(|r| *r >= 0.0);
+        let (rx, ry) = (radius("rx", width), radius("ry", height));
         // One that is missing is as the other.
         (rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0))
     };
@@ -55,7 +52,7 @@ pub(super) fn curve(node: roxmltree::Node, style: &Style, viewport: (f64, f64)) 
             rectangle((x("x"), y("y")), (w, h), (rx.min(0.5 * w), ry.min(0.5 * h))).into()
         }
         "circle" => {
-            let r = style.size("r", diagonal);
+            let r = style.size("r", place.diagonal());
             ellipse((x("cx"), y("cy")), (r, r))
         }
         "ellipse" => ellipse((x("cx"), y("cy")), radii()),
@@ -262,16 +259,13 @@ impl Pen {
         match kurbo::Arc::from_svg_arc(&arc) {
             Some(curve) if curve.radii.is_finite() && curve.center.is_finite() => {
                 let tolerance = ROUNDNESS * curve.radii.x.max(curve.radii.y);
-                let mut last = None;
-                curve.to_cubic_beziers(tolerance, |a, b, c| {
-                    if let Some((a, b, c)) = last.replace((a, b, c)) {
-                        self.within_arcs.push(self.path.elements().len());
-                        self.path.curve_to(a, b, c);
-                    }
-                });
+                let first = self.path.elements().len();
+                self.path.extend(curve.append_iter(tolerance));
+                let last = self.path.elements().len() - 1;
+                self.within_arcs.extend(first..last);
                 // The end is exact.
-                if let Some((a, b, _)) = last {
-                    self.path.curve_to(a, b, to);
+                if let Some(PathEl::CurveTo(.., end)) = self.path.elements_mut().last_mut() {
+                    *end = to;
                 }
             }
             _ => self.path.line_to(to),

@@ -1,6 +1,7 @@
 //! Strokes: width, dashes, caps and joins.
 
-use super::notes::{misled, unsupported};
+use super::notes::unsupported;
+use super::reader::Place;
 use super::shapes::Curve;
 use super::style::Style;
 use super::tree::{Band, Path};
@@ -10,9 +11,6 @@ use revmap::error::Result;
 use revmap::profile::{FillRule, Profile};
 use roxmltree::Node;
 
-/// Most dashes of a stroke, and most pairs of round or square ones that overlap.
-const MOST_DASHES: f64 = 2e4;
-const MOST_OVERLAPS: f64 = 2e5;
 /// Gaps between round or square dashes of at most this part of the width are closed.
 const CLOSED_GAP: f64 = 2.5e-3;
 
@@ -22,13 +20,14 @@ pub(super) fn stroked(
     style: &Style,
     curve: &Curve,
     width: f64,
-    diagonal: f64,
+    place: Place,
 ) -> Result<Path> {
+    let diagonal = place.diagonal();
     if width > Profile::EXTENT * diagonal {
         let what = format!("a stroke {width} wide");
         return Err(unsupported(node, &what, "draw a rectangle instead"));
     }
-    let dashes = dashes(node, style, curve, width, diagonal)?;
+    let dashes = dashes(node, style, curve, width, diagonal);
     let bounds = curve.path.bounding_box();
     let is_round = matches!(node.tag_name().name(), "circle" | "ellipse");
     let is_full = width >= bounds.width().min(bounds.height());
@@ -71,15 +70,8 @@ fn outer_border(bounds: Rect, distance: f64) -> BezPath {
     border
 }
 
-/// The offset and the lengths of dashes and gaps. Strokes with more dashes than can be seen are
-/// refused.
-fn dashes(
-    node: Node,
-    style: &Style,
-    curve: &Curve,
-    width: f64,
-    diagonal: f64,
-) -> Result<(f64, Vec<f64>)> {
+/// The offset and the lengths of dashes and gaps.
+fn dashes(node: Node, style: &Style, curve: &Curve, width: f64, diagonal: f64) -> (f64, Vec<f64>) {
     let mut dashes: Vec<f64> = style.dashes.iter().map(|d| d.of(diagonal)).collect();
     let mut offset = style.dash_offset.of(diagonal);
     if dashes.iter().sum::<f64>() <= 0.0 {
@@ -98,18 +90,5 @@ fn dashes(
     if style.cap != Cap::Butt && gaps.all(|gap| *gap <= CLOSED_GAP * width) {
         dashes.clear();
     }
-    if dashes.is_empty() {
-        return Ok((offset, dashes));
-    }
-    let period = dashes.iter().sum::<f64>() / (0.5 * dashes.len() as f64);
-    let count = curve.path.perimeter(1e-3 * width.max(period)) / period;
-    let overlaps = match style.cap {
-        Cap::Butt => 0.0,
-        _ => count * (width / period).floor(),
-    };
-    if count <= MOST_DASHES && overlaps <= MOST_OVERLAPS {
-        return Ok((offset, dashes));
-    }
-    let what = format!("a stroke of {count:.0} dashes");
-    Err(misled(node, &what, "which are too many; make them longer"))
+    (offset, dashes)
 }

@@ -2,6 +2,7 @@
 
 use super::value::{Fonts, NUMBER, Value, length, list, number, radians, split_number};
 use kurbo::{Affine, Vec2};
+use svgtypes::Transform;
 
 /// What the lengths of a transform refer to.
 #[derive(Clone, Copy)]
@@ -9,7 +10,7 @@ pub(super) struct Base {
     pub fonts: Fonts,
     /// Width and height of the reference box, for percentages.
     pub size: (f64, f64),
-    /// The value is of CSS: lengths and angles have units.
+    /// The value is of CSS: lengths have units.
     pub css: bool,
 }
 
@@ -17,15 +18,14 @@ impl Base {
     pub fn length(&self, text: &str, whole: f64) -> Value<f64> {
         length(text, self.fonts, !self.css).map(|v| v.of(whole))
     }
+}
 
-    /// An angle in radians.
-    pub fn angle(&self, text: &str) -> Value<f64> {
-        let Some((v, unit)) = split_number(text) else {
-            return Value::none(text, NUMBER);
-        };
-        let of_unit = radians(v, unit).filter(|_| self.css);
-        let plain = unit.is_empty() && (!self.css || v == 0.0);
-        Value::from_option(of_unit.or(plain.then(|| v.to_radians())))
+/// An angle in radians.
+fn angle(text: &str) -> Value<f64> {
+    match split_number(text) {
+        Some((0.0, "")) => Value::Is(0.0),
+        Some((v, unit)) => Value::from_option(radians(v, unit)),
+        None => Value::none(text, NUMBER),
     }
 }
 
@@ -36,6 +36,9 @@ pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
     if rest.eq_ignore_ascii_case("none") {
         return Value::Is(product);
     }
+    if !base.css {
+        return Value::from_option(of_attribute(rest));
+    }
     while !rest.is_empty() {
         let Some((name, after)) = rest.split_once('(') else {
             return Value::Wrong;
@@ -44,51 +47,27 @@ pub(super) fn transform(text: &str, base: Base) -> Value<Affine> {
         let Some((arguments, after)) = after.split_once(')') else {
             return Value::Wrong;
         };
-        let (name, arguments) = match base.css {
-            true => (name, Some(arguments.split(',').map(str::trim).collect())),
-            false => (name.trim_end(), numbers(arguments)),
-        };
-        let known = base.css || ATTRIBUTE_FUNCTIONS.contains(&name);
-        let Some(arguments) = arguments.filter(|_| known) else {
-            return Value::Wrong;
-        };
+        let arguments: Vec<&str> = arguments.split(',').map(str::trim).collect();
         match function(name, &arguments, base) {
             Value::Is(factor) => product *= factor,
             other => return other,
         }
         rest = after.trim_start();
-        if let (false, Some(after)) = (base.css, rest.strip_prefix(',')) {
-            rest = after.trim_start();
-            if rest.is_empty() {
-                return Value::Wrong;
-            }
-        }
     }
-    match product.is_finite() {
-        true => Value::Is(product),
-        false => Value::Wrong,
+    Value::from_option(Some(product).filter(Affine::is_finite))
+}
+
+/// The attribute `transform`. Its parser takes a comma at the end of a list, browsers do not.
+fn of_attribute(text: &str) -> Option<Affine> {
+    if text.split(')').any(|part| part.trim_end().ends_with(',')) {
+        return None;
     }
+    let Transform { a, b, c, d, e, f } = text.parse().ok()?;
+    Some(Affine::new([a, b, c, d, e, f])).filter(Affine::is_finite)
 }
 
 /// The remedy for transforms in space.
 const MATRIX: &str = "write the transform with matrix(a, b, c, d, e, f)";
-
-/// Functions of the attribute `transform`.
-const ATTRIBUTE_FUNCTIONS: [&str; 6] = ["matrix", "translate", "scale", "rotate", "skewX", "skewY"];
-
-/// The numbers of an attribute. Blanks, one comma, or signs and points of their own separate them.
-fn numbers(text: &str) -> Option<Vec<&str>> {
-    let (mut rest, mut parts) = (text.trim_start(), Vec::new());
-    loop {
-        let (_, after) = split_number(rest)?;
-        parts.push(&rest[..rest.len() - after.len()]);
-        rest = after.trim_start();
-        if rest.is_empty() {
-            return Some(parts);
-        }
-        rest = rest.strip_prefix(',').unwrap_or(rest).trim_start();
-    }
-}
 
 /// The first value that is not read ends the function.
 macro_rules! read {
@@ -106,11 +85,7 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
     if arguments.iter().any(|a| a.contains('(')) {
         return Value::Unread(NUMBER);
     }
-    let name = match base.css {
-        true => name.to_ascii_lowercase(),
-        false => name.to_owned(),
-    };
-    Value::Is(match (name.as_str(), arguments) {
+    Value::Is(match (name.to_ascii_lowercase().as_str(), arguments) {
         ("matrix", &[a, b, c, d, e, f]) => {
             let mut values = [0.0; 6];
             for (value, text) in values.iter_mut().zip([a, b, c, d, e, f]) {
@@ -118,7 +93,7 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
             }
             Affine::new(values)
         }
-        ("translate", &[x]) | ("translatex", &[x]) => {
+        ("translate" | "translatex", &[x]) => {
             Affine::translate((read!(base.length(x, width)), 0.0))
         }
         ("translate", &[x, y]) => {
@@ -129,19 +104,11 @@ fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
         ("scale", &[x, y]) => Affine::scale_non_uniform(read!(factor(x)), read!(factor(y))),
         ("scalex", &[x]) => Affine::scale_non_uniform(read!(factor(x)), 1.0),
         ("scaley", &[y]) => Affine::scale_non_uniform(1.0, read!(factor(y))),
-        ("rotate", &[angle]) | ("rotatez", &[angle]) => Affine::rotate(read!(base.angle(angle))),
-        ("rotate", &[angle, x, y]) if !base.css => {
-            let centre = (read!(number(x)), read!(number(y)));
-            Affine::rotate_about(read!(base.angle(angle)), centre)
-        }
-        ("skewX" | "skewx" | "skew", &[x]) => Affine::skew(read!(base.angle(x)).tan(), 0.0),
-        ("skewY" | "skewy", &[y]) => Affine::skew(0.0, read!(base.angle(y)).tan()),
-        ("skew", &[x, y]) if base.css => {
-            Affine::skew(read!(base.angle(x)).tan(), read!(base.angle(y)).tan())
-        }
-        (name, _) if base.css && is_spatial(name) => {
-            return Value::Unread(MATRIX);
-        }
+        ("rotate" | "rotatez", &[turn]) => Affine::rotate(read!(angle(turn))),
+        ("skewx" | "skew", &[x]) => Affine::skew(read!(angle(x)).tan(), 0.0),
+        ("skewy", &[y]) => Affine::skew(0.0, read!(angle(y)).tan()),
+        ("skew", &[x, y]) => Affine::skew(read!(angle(x)).tan(), read!(angle(y)).tan()),
+        (name, _) if is_spatial(name) => return Value::Unread(MATRIX),
         _ => return Value::Wrong,
     })
 }

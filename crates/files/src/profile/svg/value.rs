@@ -87,33 +87,17 @@ pub(super) struct Fonts {
 
 /// Splits a leading number off.
 pub(super) fn split_number(text: &str) -> Option<(f64, &str)> {
-    let bytes = text.as_bytes();
-    let digits = |at: usize| {
-        at + bytes
-            .iter()
-            .skip(at)
-            .take_while(|b| b.is_ascii_digit())
-            .count()
-    };
-    let sign = |at: usize| at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
-    let start = sign(0);
-    let mut end = digits(start);
-    let mut count = end - start;
-    if bytes.get(end) == Some(&b'.') {
-        let fraction = digits(end + 1);
-        count += fraction - end - 1;
-        end = fraction;
+    let after_digits = |text| str::trim_start_matches(text, |c: char| c.is_ascii_digit());
+    let after_sign = |text| str::strip_prefix(text, ['+', '-']).unwrap_or(text);
+    let mut rest = after_digits(after_sign(text));
+    rest = rest.strip_prefix('.').map_or(rest, after_digits);
+    if let Some(exponent) = rest.strip_prefix(['e', 'E']).map(after_sign)
+        && exponent.starts_with(|c: char| c.is_ascii_digit())
+    {
+        rest = after_digits(exponent);
     }
-    if count == 0 {
-        return None;
-    }
-    if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let first = sign(end + 1);
-        let exponent = digits(first);
-        end = if exponent > first { exponent } else { end };
-    }
-    let number: f64 = text[..end].parse().ok()?;
-    number.is_finite().then_some((number, &text[end..]))
+    let number: f64 = text[..text.len() - rest.len()].parse().ok()?;
+    number.is_finite().then_some((number, rest))
 }
 
 /// Remedies.
@@ -159,7 +143,7 @@ pub(super) fn length(text: &str, fonts: Fonts, plain: bool) -> Value<Length> {
         "q" => 96.0 / 101.6,
         "pt" => 96.0 / 72.0,
         "pc" => 16.0,
-        unit if UNREAD_UNITS.split(' ').any(|u| u == unit) => return Value::Unread(LENGTH),
+        unit if is_in(UNREAD_UNITS, unit) => return Value::Unread(LENGTH),
         _ => return Value::Wrong,
     };
     Value::Is(Length::Px(v * factor))
@@ -193,6 +177,11 @@ pub(super) fn list(text: &str) -> Vec<&str> {
     parts.push(&text[start..]);
     parts.retain(|p| !p.is_empty());
     parts
+}
+
+/// Returns true for a word of a list that blanks separate.
+pub(super) fn is_in(list: &str, word: &str) -> bool {
+    list.split(' ').any(|known| known == word)
 }
 
 /// An attribute of SVG: those of other namespaces do not count.

@@ -39,21 +39,11 @@ pub(super) fn fitted(node: Node, inner: Option<Rect>, size: (f64, f64)) -> (Affi
     let (sx, sy) = (size.0 / inner.width(), size.1 / inner.height());
     let to_corner = Affine::translate((-inner.x0, -inner.y0));
     let of_content = (inner.width(), inner.height());
-    use Align::{
-        XMaxYMax, XMaxYMid, XMaxYMin, XMidYMax, XMidYMid, XMidYMin, XMinYMax, XMinYMid, XMinYMin,
+    // Places are numbered from the upper left, row by row.
+    let Some(place) = (aspect.align as u8).checked_sub(Align::XMinYMin as u8) else {
+        return (Affine::scale_non_uniform(sx, sy) * to_corner, of_content);
     };
-    let (x, y) = match aspect.align {
-        Align::None => return (Affine::scale_non_uniform(sx, sy) * to_corner, of_content),
-        XMinYMin => (0.0, 0.0),
-        XMidYMin => (0.5, 0.0),
-        XMaxYMin => (1.0, 0.0),
-        XMinYMid => (0.0, 0.5),
-        XMidYMid => (0.5, 0.5),
-        XMaxYMid => (1.0, 0.5),
-        XMinYMax => (0.0, 1.0),
-        XMidYMax => (0.5, 1.0),
-        XMaxYMax => (1.0, 1.0),
-    };
+    let [x, y] = [place % 3, place / 3].map(|k| 0.5 * f64::from(k));
     let s = if aspect.slice { sx.max(sy) } else { sx.min(sy) };
     let free = (size.0 - s * inner.width(), size.1 - s * inner.height());
     let moved = Affine::translate((x * free.0, y * free.1));

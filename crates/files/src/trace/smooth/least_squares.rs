@@ -1,6 +1,6 @@
 //! Lines and parabolas through points by least squares.
 
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
 /// A parabola at one of its points.
 #[derive(Clone, Copy, Debug)]
@@ -37,27 +37,13 @@ pub(super) fn parabola(
         t[1] += p * x;
         t[2] += p * x2;
     }
-    let det = |m: [[f64; 3]; 3]| {
-        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-            - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-    };
-    let rows = [[s[0], s[1], s[2]], [s[1], s[2], s[3]], [s[2], s[3], s[4]]];
-    let whole = det(rows);
-    if whole.abs() < 1e-12 {
+    let sums = DMat3::from_cols_array_2d(&[0, 1, 2].map(|k| [s[k], s[k + 1], s[k + 2]]));
+    if sums.determinant().abs() < 1e-12 {
         return None;
     }
-    let solve = |column: usize| {
-        let part = |f: fn(DVec2) -> f64| {
-            let mut m = rows;
-            for (row, v) in m.iter_mut().zip(t) {
-                row[column] = f(v);
-            }
-            det(m) / whole
-        };
-        DVec2::new(part(|p| p.x), part(|p| p.y))
-    };
-    let c = [solve(0), solve(1), solve(2)];
+    let solved = |part: fn(DVec2) -> f64| sums.inverse() * DVec3::from(t.map(part));
+    let (x, y) = (solved(|p| p.x), solved(|p| p.y));
+    let c = [0, 1, 2].map(|k| DVec2::new(x[k], y[k]));
     let (mut sum, mut most) = (0.0, 0.0f64);
     for j in from..=to {
         let x = at(j);

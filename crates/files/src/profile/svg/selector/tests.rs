@@ -66,20 +66,3 @@ fn the_rest_is_not_read() {
         assert!(list.is_none(), "{text}: {list:?}");
     }
 }
-
-#[test]
-fn specificity_counts() {
-    let of = |text| [20, 10, 0].map(|at| selectors(text).unwrap()[0].specificity() >> at & 0x3ff);
-    assert_eq!(of("g#a.b[c]:hover rect"), [1, 3, 2]);
-    assert_eq!(of(":where(#a) :not(#b, c)"), [1, 0, 0]);
-}
-
-#[test]
-fn many_descendants_take_no_time() {
-    let text = "<g>".repeat(200) + "<rect/>" + &"</g>".repeat(200);
-    let document = roxmltree::Document::parse(&text).unwrap();
-    let matcher = Matcher::default();
-    let list = selectors(&("x ".to_owned() + &"g ".repeat(20) + "rect")).unwrap();
-    let rect = document.descendants().find(|n| n.has_tag_name("rect"));
-    assert!(!matcher.matches(&list[0], rect.unwrap()));
-}
