@@ -173,7 +173,7 @@ impl Precedence {
     /// The ranks of `count` copies, in the order of the scene.
     pub fn new(count: usize, bodies: impl FnOnce() -> Vec<Body>) -> Self {
         let mut ranks = HashMap::new();
-        if count < 2 || count > MOST_COPIES {
+        if !(2..=MOST_COPIES).contains(&count) {
             return Self(ranks);
         }
         let bodies = bodies();
