@@ -174,14 +174,10 @@ mod tests {
 
     #[test]
     fn faults_are_named() {
-        let whole = png(GrayImage::from_fn(64, 64, |x, y| Luma([(x ^ y) as u8 * 4])));
         for (bytes, words) in [
             (&png(GrayImage::from_pixel(8, 8, Luma([255])))[..], "empty"),
             (&png(GrayImage::from_pixel(8, 8, Luma([0]))), "full"),
             (&png(GrayImage::from_pixel(1, 1, Luma([0]))), "1 x 1"),
-            (&whole[..whole.len() / 2], "damaged"),
-            (&whole[..20], "damaged"),
-            (b"no picture", "PNG, JPEG or SVG"),
         ] {
             let text = profile(bytes, &ProfileAxis::Left.into())
                 .unwrap_err()
