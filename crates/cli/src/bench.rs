@@ -9,18 +9,18 @@ use super::run::{Results, Run};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::DrawStage;
-use revmap_bench::chart::series_style::SeriesStyles;
-use revmap_bench::compare_runs::repeat::Verdict;
+use revmap_bench::compare::repeat::Verdict;
+use revmap_bench::compare::{self, submission};
 use revmap_bench::measure::device::DeviceBench;
 use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
-use revmap_bench::method::renderer::MethodDevice;
 use revmap_bench::plan::Plan;
+use revmap_bench::plan::file::{PlanFile, embedded};
+use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report;
+use revmap_bench::report::chart::series_style::SeriesStyles;
 use revmap_bench::report::flight::{self, FlightTimes};
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::{Album, Sheets};
-use revmap_bench::report::plan_file::{PlanFile, embedded};
-use revmap_bench::{compare_runs, submission};
 use revmap_searches::folder::of as of_folder;
 use std::path::{Path, PathBuf};
 
@@ -162,13 +162,13 @@ impl Bench {
             return repeats(old, new, &self.how.repeats);
         }
         if let [old, new] = what.compare.as_slice() {
-            let found = compare_runs::compare(old, new)?;
+            let found = compare::compare(old, new)?;
             found.warnings.iter().for_each(|text| output::warn(text));
-            print(&compare_runs::as_text(&found, output::width()));
+            print(&compare::as_text(&found, output::width()));
             return Ok(());
         }
         if !what.drivers.is_empty() {
-            let (table, warning) = compare_runs::drivers::markdown(&what.drivers)?;
+            let (table, warning) = compare::drivers::markdown(&what.drivers)?;
             warning.iter().for_each(|text| output::warn(text));
             print(&table);
             return Ok(());
@@ -212,9 +212,9 @@ const NOT_JUDGED: u8 = 4;
 
 /// Judges whether a new run repeats a kept one.
 fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
-    let (claims, warnings) = compare_runs::repeat::claims(old, new, methods)?;
+    let (claims, warnings) = compare::repeat::claims(old, new, methods)?;
     warnings.iter().for_each(|text| output::warn(text));
-    print(&compare_runs::repeat::as_text(&claims));
+    print(&compare::repeat::as_text(&claims));
     let has = |verdict| claims.iter().any(|claim| claim.verdict == verdict);
     if has(Verdict::NotRepeated) {
         let message = "contradicts what the kept run says; see the lines that begin with NOT";

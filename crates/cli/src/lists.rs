@@ -7,20 +7,12 @@ use clap::Args;
 use revmap::error::Result;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{Tolerance, name_of};
-use revmap_bench::method::Method;
+use revmap_bench::plan::method::Method;
 use revmap_bench::plan::suite::Extent;
 use revmap_bench::plan::view::{Framing, View};
 use revmap_bench::plan::{self, Overrides};
 use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
-
-/// Names of parts of the suite.
-const EXTENTS: [(&str, &Extent); 4] = [
-    ("one", &Extent::First(1)),
-    ("three", &Extent::First(3)),
-    ("upright", &Extent::UPRIGHT),
-    ("all", &Extent::ALL),
-];
 
 /// Views and ways of drawing; lists are separated by commas
 #[derive(Args, Clone, Debug)]
@@ -65,7 +57,7 @@ pub struct Lists {
     pub framing: Vec<Framing>,
     /// How many of the solids that the program carries: one, three, upright (the first eight) or all
     /// [default: three; one with --quick, all with --full]
-    #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&EXTENTS))]
+    #[arg(long, value_name = "EXTENT", conflicts_with = "scenes", value_parser = named(&Extent::NAMES))]
     pub suite: Option<&'static Extent>,
     /// Passes over all pictures, each with everything made anew: intervals are Student's over them
     /// [default: as time allows, 4 or more, but 2 or more on drivers that compile slowly]

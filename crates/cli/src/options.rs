@@ -10,7 +10,7 @@ use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
-use revmap_bench::method::{Edges, Method, MethodSettings};
+use revmap_bench::plan::method::{Edges, Method, MethodSettings};
 use revmap_files::SceneFile;
 use revmap_offscreen::adaptive::Adaptive;
 use revmap_offscreen::samples::averaged;

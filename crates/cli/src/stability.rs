@@ -8,7 +8,7 @@ use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
 use revmap::settings::Solver;
-use revmap_bench::method::Method;
+use revmap_bench::plan::method::Method;
 use revmap_bench::report::folder;
 use revmap_searches::CIRCLE;
 use revmap_stability::case::SOLVERS as USUAL;

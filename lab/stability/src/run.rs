@@ -8,7 +8,7 @@ use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Settings, Solver};
-use revmap_bench::names::number;
+use revmap_bench::plan::names::number;
 use revmap_bench::report::folder::write_text;
 use revmap_files::Picture;
 use revmap_offscreen::Offscreen;

@@ -2,8 +2,8 @@
 //! a real device, small and brief.
 
 use crate::run::{Bench, CAMERA, CONE, holds, lines};
-use revmap_bench::table::Table;
-use revmap_bench::table::columns;
+use revmap_bench::report::table::Table;
+use revmap_bench::report::table::columns;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 

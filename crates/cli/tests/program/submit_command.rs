@@ -1,8 +1,8 @@
 //! `revmap submit` and `revmap bench --gather` as they are run: files, privacy, refusals.
 
 use crate::run::{Bench, holds, lines};
-use revmap_bench::submission::Submission;
-use revmap_bench::table::Table;
+use revmap_bench::compare::submission::Submission;
+use revmap_bench::report::table::Table;
 use std::path::Path;
 
 const QUICK: &str = "submit --quick --size 160x120 -q -o";

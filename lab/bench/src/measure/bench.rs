@@ -1,7 +1,7 @@
 //! What a measurement draws with, and who waits for it.
 
 use crate::measure::row::{Row, Sample};
-use crate::method::MethodSettings;
+use crate::plan::method::MethodSettings;
 use crate::plan::view::View;
 use crate::plan::{Case, Plan};
 use revmap::error::Result;

@@ -2,8 +2,8 @@
 
 use crate::measure::row::Sample;
 use crate::measure::{Bench, TimedDraw};
-use crate::method::renderer::{MethodDevice, MethodRenderer};
-use crate::method::{Edges, MethodSettings};
+use crate::plan::method::renderer::{MethodDevice, MethodRenderer};
+use crate::plan::method::{Edges, MethodSettings};
 use crate::plan::view::View;
 use revmap::error::Result;
 use revmap::frame::Frame;

@@ -2,7 +2,7 @@
 
 use super::TimedDraw;
 use crate::measure::row::{Clocks, Sample};
-use crate::stats;
+use crate::measure::stats;
 use revmap::error::Result;
 
 /// How often a pass of a picture is measured at most: again while the two clocks of any of its rows

@@ -5,8 +5,8 @@
 
 mod scene;
 
-use crate::names::count;
 use crate::plan::Plan;
+use crate::plan::names::count;
 use crate::plan::view::View;
 use revmap::error::{Error, ErrorKind, Result};
 use scene::{scene, table};

@@ -1,9 +1,9 @@
 //! How the time of each way of drawing grows with a quantity.
 
 use crate::measure::row::Row;
-use crate::method::MethodSettings;
+use crate::measure::stats::{self, Interval, PowerLaw};
+use crate::plan::method::MethodSettings;
 use crate::plan::{grouped, variant};
-use crate::stats::{self, Interval, PowerLaw};
 
 /// A way of drawing over a quantity.
 #[derive(Clone, Debug)]

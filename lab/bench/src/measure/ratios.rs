@@ -1,9 +1,9 @@
 //! Times in proportion to those of other rows: which way is faster, and how sure that is.
 
 use crate::measure::row::{Row, Sample};
-use crate::method::{Edges, Method, MethodSettings};
+use crate::measure::stats::{self, Interval};
+use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::{grouped, is_rbm_baseline, variant};
-use crate::stats::{self, Interval};
 use revmap::settings::{DrawStage, Tolerance};
 
 /// The row that others are put in proportion to.
@@ -13,6 +13,7 @@ pub enum Over {
     /// The RBM baseline in the same picture, of [`baseline_stage`]: one time for both stages.
     Baseline,
     /// The default search in the same picture and stage: exact, one ray per pixel.
+    #[serde(alias = "1-ray")]
     Exact,
     /// The plan's first view drawn in the same way; of the floor, the default search.
     One,

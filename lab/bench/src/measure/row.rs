@@ -1,9 +1,9 @@
 //! One measurement with all that was found out about it.
 
-use crate::method::{Method, MethodSettings};
+use crate::measure::stats::{self, Interval};
 use crate::plan::Case;
+use crate::plan::method::{Method, MethodSettings};
 use crate::plan::view::{Framing, View, one};
-use crate::stats::{self, Interval};
 use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::{Offset, Shadow};

@@ -1,8 +1,8 @@
 //! The measurements of a plan: views, settings, and which of them are measured against each other.
 
 use super::entry::Measure;
-use crate::method::floor;
-use crate::method::{Edges, Method, MethodSettings};
+use crate::plan::method::floor;
+use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::view::View;
 use revmap::maps::MapFormat;
 use revmap::settings::{DrawStage, Planes, Tolerance};

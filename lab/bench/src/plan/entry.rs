@@ -1,7 +1,7 @@
 //! An entry of a plan's `measure`: ways of drawing, as every combination of its lists.
 
 use super::values::{Spelled, list};
-use crate::method::{Edges, Method};
+use crate::plan::method::{Edges, Method};
 use revmap::error::Error;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Tolerance};

@@ -194,7 +194,7 @@ mod tests {
     /// The purpose of framings: the share of pixels that hit.
     #[test]
     fn close_up_most_pixels_hit() {
-        use crate::method::MethodSettings;
+        use crate::plan::method::MethodSettings;
         use crate::plan::suite::{Extent, views};
         use revmap_reference as reference;
         for (width, height) in [(80, 60), (136, 70)] {

@@ -1,9 +1,12 @@
-//! A plan says what a benchmark measures. Its file is [`plan_file`](crate::report::plan_file).
+//! A plan says what a benchmark measures: which views, by which methods. It comes from a [`file`].
 
 mod arrange;
 mod cases;
 mod entry;
+pub mod file;
 mod framing;
+pub mod method;
+pub mod names;
 mod overrides;
 pub mod suite;
 mod time_budget;

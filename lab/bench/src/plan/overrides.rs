@@ -2,7 +2,7 @@
 
 use super::entry::{Measure, Pick};
 use super::suite::Extent;
-use crate::method::Method;
+use crate::plan::method::Method;
 use crate::plan::view::{Framing, View};
 use revmap::maps::{MapFormat, MapSource};
 use revmap::settings::{DrawStage, Tolerance};

@@ -1,6 +1,6 @@
 //! The solids that are measured when no scene is named, carried within the program.
 
-use crate::names::number;
+use crate::plan::names::number;
 use crate::plan::view::View;
 use glam::DVec3;
 use revmap::error::Result;
@@ -51,6 +51,13 @@ pub enum Extent {
 }
 
 impl Extent {
+    /// The names of parts of the suite.
+    pub const NAMES: [(&'static str, &'static Self); 4] = [
+        ("one", &Self::First(1)),
+        ("three", &Self::First(3)),
+        ("upright", &Self::UPRIGHT),
+        ("all", &Self::ALL),
+    ];
     /// Every solid.
     pub const ALL: Self = Self::First(SOURCES.len());
     /// The solids that are not flat.
@@ -71,15 +78,13 @@ impl TryFrom<Names> for Extent {
     fn try_from(names: Names) -> std::result::Result<Self, String> {
         let all = SOURCES.map(|s| s.0);
         match names {
-            Names::Word(word) => match word.as_str() {
-                "one" => Ok(Self::First(1)),
-                "three" => Ok(Self::First(3)),
-                "upright" => Ok(Self::UPRIGHT),
-                "all" => Ok(Self::ALL),
-                _ => Err(format!(
-                    "{word:?} is not known; give one, three, upright, all or a list of names"
-                )),
-            },
+            Names::Word(word) => {
+                let known = Self::NAMES.iter().find(|(name, _)| *name == word);
+                known.map(|(_, extent)| (*extent).clone()).ok_or_else(|| {
+                    let names = Self::NAMES.map(|n| n.0).join(", ");
+                    format!("{word:?} is not known; give {names} or a list of names")
+                })
+            }
             Names::List(list) => match list.iter().find(|n| !all.contains(&n.as_str())) {
                 Some(name) => {
                     let all = all.join(", ");

@@ -1,6 +1,6 @@
 //! Values of a plan's keys, as their files spell them.
 
-use crate::method::Edges;
+use crate::plan::method::Edges;
 use crate::plan::view::Framing;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Shadow;

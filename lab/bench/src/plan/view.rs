@@ -126,7 +126,7 @@ impl View {
         camera.eye = camera.target + back.length() * (level * cos + DVec3::Z * sin);
         // Straight from above there is no up but sideways.
         camera.up = if cos.abs() < 1e-6 { -level } else { DVec3::Z };
-        self.name = format!("{}@{}", self.name, crate::names::number(degrees, 4));
+        self.name = format!("{}@{}", self.name, crate::plan::names::number(degrees, 4));
         self
     }
 }

@@ -2,13 +2,13 @@
 //! are from exact ones.
 
 use crate::measure::row::Row;
-use crate::method::renderer::MethodDevice;
-use crate::method::{Edges, Method, MethodSettings};
+use crate::measure::stats;
+use crate::plan::file::Flight;
+use crate::plan::method::renderer::MethodDevice;
+use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::{army, flight_camera};
-use crate::report::plan_file::Flight;
-use crate::stats;
-use crate::table::Table;
-use crate::table::columns::Cell;
+use crate::report::table::Table;
+use crate::report::table::columns::Cell;
 use revmap::error::Result;
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, Tolerance};

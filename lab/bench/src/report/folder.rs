@@ -1,16 +1,16 @@
 //! The folder of a run: its tables, the note on the machine, pictures and pages.
 
-use crate::chart::Figure;
-use crate::chart::svg::svg;
 use crate::measure::drawn::{self, Drawn};
 use crate::measure::machine::Machine;
 use crate::measure::row::{CLOCKS_APART, Clocks, Row, SUBMISSION_MS};
 use crate::measure::{Measured, TRIES};
-use crate::method::MethodSettings;
-use crate::names;
 use crate::plan::Plan;
-use crate::table::Table;
-use crate::table::columns::results_table;
+use crate::plan::method::MethodSettings;
+use crate::plan::names;
+use crate::report::chart::Figure;
+use crate::report::chart::svg::svg;
+use crate::report::table::Table;
+use crate::report::table::columns::results_table;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_files::Picture;
 pub use revmap_files::write_bytes;

@@ -2,7 +2,7 @@
 
 use crate::measure::Measured;
 use crate::measure::row::Row;
-use crate::method::Method;
+use crate::plan::method::Method;
 use crate::plan::{RBM_BASELINE, is_rbm_baseline};
 use crate::report::page::Page;
 use revmap::settings::Solver;
@@ -93,9 +93,7 @@ pub fn chapter(page: &mut Page, measured: &Measured) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::measure::row::tests::timed;
-    use crate::plan::rbm_baseline;
-    use crate::plan::view::tests::spindle;
+    use crate::measure::row::tests::{papers, timed};
 
     #[test]
     fn every_name_that_occurs_is_explained_once() {
@@ -108,9 +106,7 @@ mod tests {
         };
         let methods = Method::ALL.into_iter().chain(fixed).chain(within);
         let mut rows: Vec<Row> = methods.map(row).collect();
-        let mut papers = rows[0].clone();
-        papers.settings = rbm_baseline(&spindle(), &papers.settings);
-        rows.push(papers);
+        rows.push(papers(rows[0].clone()));
         let named = names(&rows);
         assert_eq!(named.len(), Method::ALL.len() + 3);
         for (i, (name, meaning)) in named.iter().enumerate() {

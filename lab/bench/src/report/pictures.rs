@@ -1,11 +1,11 @@
 //! Pictures beside the numbers: what was drawn, what each pixel cost, where it is wrong; and where
 //! one ray per pixel is worst, enlarged, by every treatment of edges side by side.
 
-use crate::chart::series_style::SeriesStyles;
 use crate::measure::RenderedCase;
-use crate::method::{Edges, Method, MethodSettings};
-use crate::names::{self, FileNames};
 use crate::plan::is_rbm_baseline;
+use crate::plan::method::{Edges, Method, MethodSettings};
+use crate::plan::names::{self, FileNames};
+use crate::report::chart::series_style::SeriesStyles;
 use crate::report::folder::{make, png, write_bytes};
 use revmap::error::Result;
 use revmap::frame::Frame;

@@ -1,16 +1,16 @@
 //! How a benchmark goes about its plan, with a stand-in for the device.
 
 use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan};
-use revmap_bench::chart::series_style::SeriesStyles;
 use revmap_bench::measure::machine::Machine;
 use revmap_bench::measure::{Observer, measure};
-use revmap_bench::method::Method;
 use revmap_bench::plan::TimeBudget;
+use revmap_bench::plan::file::embedded;
+use revmap_bench::plan::method::Method;
 use revmap_bench::report::Run;
+use revmap_bench::report::chart::series_style::SeriesStyles;
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::Album;
-use revmap_bench::report::plan_file::embedded;
-use revmap_bench::table::Table;
+use revmap_bench::report::table::Table;
 use std::sync::atomic::AtomicBool;
 
 /// A B C, C B A: nobody always follows the same neighbour; each pass makes all anew.

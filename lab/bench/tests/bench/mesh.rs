@@ -9,8 +9,8 @@ use revmap::gpu::Device;
 use revmap::maps::{Projection, SlopeFilter};
 use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
-use revmap_bench::method::renderer::{MethodDevice, MethodRenderer};
-use revmap_bench::method::{Method, MethodSettings};
+use revmap_bench::plan::method::renderer::{MethodDevice, MethodRenderer};
+use revmap_bench::plan::method::{Method, MethodSettings};
 use revmap_compare::{CompareOptions, Comparison, Reference};
 use std::sync::{Arc, OnceLock};
 

@@ -3,16 +3,16 @@
 use crate::stand_in::{Fault, StandIn, measured, plan, run};
 use revmap::error::ErrorKind;
 use revmap::settings::Solver;
-use revmap_bench::chart::front::front;
-use revmap_bench::exhibit;
 use revmap_bench::measure::TRIES;
 use revmap_bench::measure::machine::Machine;
 use revmap_bench::measure::ratios::{Over, Ratio, over};
 use revmap_bench::measure::row::{Clocks, Row};
-use revmap_bench::method::Method;
 use revmap_bench::plan::is_rbm_baseline;
+use revmap_bench::plan::method::Method;
+use revmap_bench::report::chart::front::front;
+use revmap_bench::report::exhibit;
 use revmap_bench::report::folder;
-use revmap_bench::table::columns::{Context, results_table};
+use revmap_bench::report::table::columns::{Context, results_table};
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 

@@ -8,7 +8,7 @@ use revmap::scene::{Camera, Object, Scene};
 use revmap::settings::{DrawStage, Solver};
 use revmap_bench::measure::row::Sample;
 use revmap_bench::measure::{Bench, Measured, Observer, TimedDraw, measure};
-use revmap_bench::method::{Method, MethodSettings};
+use revmap_bench::plan::method::{Method, MethodSettings};
 use revmap_bench::plan::view::View;
 use revmap_bench::plan::{Measure, Pick, Plan, TimeBudget, is_rbm_baseline};
 use revmap_reference as reference;

@@ -1,15 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::measure::row::tests::{row, timed};
-use crate::method::Method;
-use crate::plan::rbm_baseline;
-use crate::plan::view::tests::spindle;
+use crate::measure::row::tests::{papers, row, timed};
+use crate::plan::method::Method;
 use revmap_compare::Spread;
-
-fn papers(mut row: Row) -> Row {
-    row.settings = rbm_baseline(&spindle(), &row.settings);
-    row
-}
 
 /// Passes of the default and of the baseline in two views: 5 ms over 20 and 20 over 20.
 fn two_views(passes: [usize; 2]) -> Vec<Row> {

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::method::Method;
+use crate::plan::method::Method;
+use crate::plan::rbm_baseline;
 use crate::plan::view::tests::spindle;
 use revmap_compare::{CompareOptions, compare};
 use revmap_searches::CIRCLE;
@@ -37,6 +38,13 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
 pub(crate) fn timed(passes: &[f64]) -> Row {
     let passes: Vec<_> = passes.iter().map(|ms| [(None, *ms)]).collect();
     row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>())
+}
+
+/// The same as the RBM baseline draws it.
+pub(crate) fn papers(mut row: Row) -> Row {
+    row.settings = rbm_baseline(&spindle(), &row.settings);
+    row.source = row.settings.map_source;
+    row
 }
 
 #[test]

@@ -1,0 +1,196 @@
+#![allow(clippy::unwrap_used)]
+use super::*;
+use crate::measure::row::Row;
+use crate::measure::row::tests::{papers, row};
+use crate::plan::method::{Edges, Method};
+use crate::report::folder::{raw, write_text};
+use crate::report::table::columns::tests::csv_of;
+use revmap::settings::{DrawStage, Solver};
+
+/// The folder of a run of these rows.
+pub(super) fn folder_of(rows: &[Row], device: &str, driver: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let results = csv_of(rows, device, driver);
+    write_text(&folder.path().join("results.csv"), &results.csv()).unwrap();
+    write_text(&folder.path().join("raw.csv"), &raw(rows).csv()).unwrap();
+    folder
+}
+
+fn run(rows: &[Row]) -> tempfile::TempDir {
+    folder_of(rows, "device, with a comma", "driver")
+}
+
+fn verdicts(found: &Against) -> Vec<Verdict> {
+    found.pairs.iter().map(|pair| pair.verdict).collect()
+}
+
+fn timed(times: [f64; 4], stage: DrawStage) -> Row {
+    let pass = |t: f64| [(0.99 * t, t), (t, 1.01 * t), (0.98 * t, t)];
+    let passes = times.map(|t| pass(t).map(|(gpu, frame)| (Some(gpu), frame)));
+    let mut row = row(&passes.each_ref().map(|p| p.as_slice()));
+    row.settings.stage = stage;
+    row
+}
+
+#[test]
+fn planted_changes_are_found() {
+    let old = run(&[
+        timed([10.0, 10.2, 9.9, 10.1], DrawStage::Fragment),
+        timed([20.0, 21.0, 19.0, 20.5], DrawStage::Compute),
+    ]);
+    let mut slow = timed([12.0, 12.2, 11.9, 12.1], DrawStage::Fragment);
+    slow.errors.missed = 40;
+    let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
+    let found = compare(old.path(), new.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Slower, Verdict::Even]);
+    assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
+    assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
+    let text = as_text(&found, None);
+    assert!(text.contains("1 slower, 0 faster, 1 within"), "{text}");
+    let worse = "less exact: fragment: missed 0 to 40";
+    assert!(text.contains(worse), "{text}");
+    let back = compare(new.path(), old.path()).unwrap();
+    assert_eq!(back.pairs[0].verdict, Verdict::Faster);
+    assert_eq!(back.pairs[0].better.len(), 1);
+}
+
+/// One run had a machine of half the speed: the RBM baseline tells so.
+#[test]
+fn a_slower_machine_is_told_from_a_slower_search() {
+    let papers = |times| papers(timed(times, DrawStage::Fragment));
+    let search = |times, steps| {
+        let mut row = timed(times, DrawStage::Fragment);
+        row.settings.max_steps = Some(steps);
+        row
+    };
+    let old = run(&[
+        papers([10.0, 10.2, 9.9, 10.1]),
+        search([5.0, 5.1, 4.9, 5.0], 30),
+        search([5.0, 5.1, 4.9, 5.0], 40),
+    ]);
+    let new = run(&[
+        papers([20.0, 20.4, 19.8, 20.2]),
+        search([10.0, 10.2, 9.8, 10.0], 30),
+        search([15.0, 15.2, 14.8, 15.0], 40),
+    ]);
+    let found = compare(old.path(), new.path()).unwrap();
+    let wanted = [Verdict::Even, Verdict::Even, Verdict::Slower];
+    assert_eq!(verdicts(&found), wanted);
+    assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
+    assert!(as_text(&found, None).contains("the RBM baseline itself differs"));
+}
+
+/// Forty measurements of one program, each run with a drift of its own: nothing is named in nineteen of
+/// twenty comparisons, and a change by a fifth in every one.
+#[test]
+fn a_run_against_itself_names_nothing() {
+    let mut random = crate::random::Random(1);
+    let mut normal = || (0..12).map(|_| random.next()).sum::<f64>() - 6.0;
+    let mut rows = |changed: f64| -> Vec<Row> {
+        let row = |steps: u32| {
+            let own = 10.0 * (0.02 * normal()).exp() * if steps == 7 { changed } else { 1.0 };
+            let times = [0; 4].map(|_| own * (0.02 * normal()).exp());
+            let mut row = timed(times, DrawStage::Fragment);
+            row.settings.max_steps = Some(steps + 1);
+            row
+        };
+        (0..40).map(row).collect()
+    };
+    let (mut silent, mut found) = (0, 0);
+    for _ in 0..40 {
+        let old = run(&rows(1.0));
+        let [same, slow] = [run(&rows(1.0)), run(&rows(1.35))];
+        let changed = |new: &tempfile::TempDir| {
+            let verdicts = verdicts(&compare(old.path(), new.path()).unwrap());
+            let is_named = |(_, v): &(usize, Verdict)| !matches!(v, Verdict::Even);
+            verdicts
+                .into_iter()
+                .enumerate()
+                .filter(is_named)
+                .map(|(k, _)| k)
+                .collect::<Vec<_>>()
+        };
+        silent += usize::from(changed(&same).is_empty());
+        found += usize::from(changed(&slow).contains(&7));
+    }
+    assert!(silent >= 38 && found >= 38, "{silent} {found}");
+}
+
+#[test]
+fn runs_of_other_methods_are_said() {
+    let with = |steps: u32, search: Solver| {
+        let mut row = timed([10.0; 4], DrawStage::Fragment);
+        row.settings.method = Method::Search(search);
+        row.settings.max_steps = Some(steps);
+        row
+    };
+    let both = run(&[with(3, Solver::Exact), with(3, Solver::Live)]);
+    let one = run(&[with(3, Solver::Exact)]);
+    // Without what is said of runs that say nothing about their scenes.
+    let told = |old: &Path, new: &Path| -> Vec<String> {
+        let warnings = compare(old, new).unwrap().warnings;
+        assert!(
+            warnings[0].starts_with("no drawn.toml in both runs"),
+            "{warnings:?}"
+        );
+        warnings[1..].to_vec()
+    };
+    let warnings = told(both.path(), one.path());
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("only the old one has live"),
+        "{warnings:?}"
+    );
+    assert_eq!(told(one.path(), one.path()), [""; 0]);
+}
+
+#[test]
+fn a_rejected_clock_gives_no_verdict() {
+    let fine = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let mut lies = timed([10.0; 4], DrawStage::Fragment);
+    let samples = lies.passes.iter_mut().flatten();
+    samples.for_each(|s| s.gpu_ms = Some(0.036));
+    let lies = run(&[lies]);
+    let found = compare(fine.path(), lies.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Unresolved]);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
+    let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
+    let refused = || compare(a.path(), b.path()).unwrap_err().to_string();
+    assert!(refused().contains("in common"));
+    let empty = tempfile::tempdir().unwrap();
+    let error = compare(a.path(), empty.path()).unwrap_err();
+    assert!(error.file.unwrap().ends_with("results.csv"));
+    std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
+    assert!(refused().contains("other columns"));
+    let named = "scene,technique,extend,bevel,chamfer,stage,solver,max_steps,width,height,map_rows,map_source,map_format,objects,tolerance_px,way";
+    assert_eq!(key().join(","), named);
+}
+
+/// Rows that only a tolerance or the treatment of edges tells apart are compared with their own.
+#[test]
+fn tolerances_and_edges_are_told_apart() {
+    let with = |tolerance, edges, ms| {
+        let mut row = timed([ms; 4], DrawStage::Fragment);
+        row.settings.method = Method::DEFAULT;
+        row.settings.tolerance = revmap::settings::Tolerance::new(tolerance).unwrap();
+        row.settings.edges = edges;
+        row
+    };
+    let (one, four) = (Edges::OneRay, Edges::Rays(4));
+    let run = run(&[
+        with(0.0, one, 10.0),
+        with(0.25, one, 5.0),
+        with(0.0, four, 40.0),
+    ]);
+    let found = compare(run.path(), run.path()).unwrap();
+    assert_eq!(verdicts(&found), [Verdict::Even; 3]);
+    let ratios: Vec<f64> = found.pairs.iter().map(|p| p.time.unwrap().value).collect();
+    assert_eq!(ratios, [1.0; 3]);
+    let text = as_text(&found, None);
+    for name in ["exact 0 1 ray ", "exact 0.25 1 ray ", "exact 0 4 rays "] {
+        assert!(text.contains(name), "{text}");
+    }
+}
