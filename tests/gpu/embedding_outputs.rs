@@ -85,7 +85,7 @@ fn depth_alone_has_equal_bits_by_every_path() {
     let (host, device) = opened();
     let mut paths = HashSet::new();
     for (name, scene) in &every_way() {
-        let [view, projection] = matrices(&scene);
+        let [view, projection] = matrices(scene);
         let light = seen(view, projection);
         for least in [0, u32::MAX] {
             let settings = by_proxies_of(least);

@@ -2,7 +2,7 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, UniformSet, add, borrow, dynamic, open, opened, view_of};
+use crate::common::host::{Host, UniformSet, add, dynamic, opened, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{first_frame, options, three};
 use revmap::shading::Shading;

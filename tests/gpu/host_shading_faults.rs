@@ -2,10 +2,8 @@
 //! prewarmed, hidden and told apart.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
-use crate::common::host::{
-    Checked, UniformSet, add, borrow, borrow_through, open, opened, view_of,
-};
+use crate::calls::Layer;
+use crate::common::host::{Checked, UniformSet, add, borrow, open, opened, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{first_frame, options};
 use crate::host_shading::{COPY, lights, made, pass, picture, scene, shading};
@@ -82,13 +80,14 @@ fn what_does_not_fit_is_refused() {
     let copy = shading(DrawStage::Fragment, COPY);
     let exact = SearchSettings::exact();
     let in_compute = shading(DrawStage::Compute, COPY);
-    let refused = |output, settings: &SearchSettings, by, layout, key: &str, words: &str| {
-        let made = shaded(&device, output, settings, by, layout);
-        let error = made.err().expect(key);
-        assert_eq!(error.kind, ErrorKind::Usage, "{error}");
-        assert_eq!(error.key.as_deref(), Some(key), "{error}");
-        assert!(error.message.contains(words), "{error}");
-    };
+    let refused =
+        |output, settings: &SearchSettings, by: &Arc<Shading>, layout, key: &str, words: &str| {
+            let made = shaded(&device, output, settings, by, layout);
+            let error = made.err().expect(key);
+            assert_eq!(error.kind, ErrorKind::Usage, "{error}");
+            assert_eq!(error.key.as_deref(), Some(key), "{error}");
+            assert!(error.message.contains(words), "{error}");
+        };
     let null = vk::DescriptorSetLayout::null();
     refused(colors(), &exact, &copy, null, "set_layout", "reads set 3");
     let list = Planes::List(PlaneList::new(&[Plane::Motion]).unwrap());

@@ -21,8 +21,10 @@ fn manifest() -> PathBuf {
     let entries = folders.filter_map(|f| std::fs::read_dir(f.join("vulkan/icd.d")).ok());
     let named = |path: &PathBuf| path.to_string_lossy().contains("/radeon_icd");
     let mut files = entries.flatten().map(|entry| entry.unwrap().path());
-    let found = files.find(named);
-    found.expect("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
+    let Some(found) = files.find(named) else {
+        panic!("no radeon_icd*.json: install mesa-vulkan-drivers (scripts/setup does)")
+    };
+    found
 }
 
 fn rows(text: &str) -> Vec<Row> {
