@@ -41,7 +41,7 @@ mod tests {
     #[test]
     fn each_pixel_is_a_bit_of_its_tile() {
         let (width, height) = (21, 10);
-        let is_open = |x: u32, y: u32| (x * 7 + y * 5) % 3 == 0;
+        let is_open = |x: u32, y: u32| (x * 7 + y * 5).is_multiple_of(3);
         let pixels: Vec<bool> = (0..height)
             .flat_map(|y| (0..width).map(move |x| is_open(x, y)))
             .collect();
