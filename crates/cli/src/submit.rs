@@ -9,9 +9,9 @@ use revmap::gpu::Device;
 use revmap_bench::compare::submission::{self, OneShader, Pictures};
 use revmap_bench::measure::device::DeviceBench;
 use revmap_bench::measure::{Measured, Observer, measure};
-use revmap_bench::plan::file::{PlanFile, embedded};
 use revmap_bench::plan::{Lists, Overrides, Plan};
 use revmap_bench::report::folder;
+use revmap_bench::report::plan_file::{PlanFile, embedded};
 use std::path::PathBuf;
 
 /// Pixels of each picture on a software device, and on a GPU, whose frames would be too short otherwise.

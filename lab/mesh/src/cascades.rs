@@ -2,10 +2,12 @@
 //! take them (Zhang et al. 2006), each with a map around what is seen of it.
 
 use super::fineness::Fineness;
-use super::layer::shadows::SIDE;
+use super::sight::Ball;
 use glam::{DMat4, DVec3};
 use revmap::scene::CameraFrame;
 
+/// Side of a map, texels.
+pub(super) const SIDE: u32 = 2048;
 /// Most maps of a light.
 pub(super) const CASCADES: usize = 3;
 /// Most lights that cast shadows.
@@ -19,16 +21,6 @@ const PART: f64 = 2.0;
 const NEAREST: f64 = 1e-3;
 /// What a map is larger than what it is fitted around.
 const MARGIN: f64 = 1.02;
-
-/// A copy, for the maps: the ball around it and its largest scale.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
-    pub middle: DVec3,
-    pub radius: f64,
-    pub scale: f64,
-    /// Whether the camera may see it.
-    pub seen: bool,
-}
 
 /// One map of a light.
 #[derive(Clone, Debug)]

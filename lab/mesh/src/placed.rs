@@ -1,9 +1,9 @@
 //! The meshes of a scene's objects: each made once, placed, in the order in which they are drawn.
 
 use super::blocks::{InstanceBlock, ObjectBlock};
-use super::cascades::{Ball, Cascade, SHADOW_LIGHTS, cascades};
+use super::cascades::{Cascade, SHADOW_LIGHTS, cascades};
 use super::fineness::Fineness;
-use super::sight::{Sight, eye_about_axis};
+use super::sight::{Ball, Sight, eye_about_axis};
 use super::tessellation::{Mesh, extent_of};
 use glam::DVec3;
 use revmap::error::{Error, ErrorKind, Result};

@@ -1,6 +1,5 @@
 //! How large a copy's silhouettes are seen.
 
-use super::cascades::Ball;
 use glam::{DQuat, DVec2, DVec3};
 use revmap::scene::{CameraFrame, Object, Placement};
 use revmap::surface::{Chain, Contour};
@@ -10,6 +9,16 @@ pub(super) type Shape<'a> = (&'a Contour, &'a [f64; 3]);
 
 /// Of copies whose radius is below this part of their depth all points are as near.
 const SMALL: f64 = 1.0 / 32.0;
+
+/// The ball around a copy, and its largest scale.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    pub middle: DVec3,
+    pub radius: f64,
+    pub scale: f64,
+    /// Whether the camera may see it.
+    pub seen: bool,
+}
 
 /// What of a camera tells how large a copy is seen.
 pub(super) struct Sight {

@@ -78,13 +78,17 @@ fn a_brief_run_measures_every_combination() {
 #[test]
 fn meshes_that_are_left_out_are_named_first() {
     let bench = Bench::new();
-    bench.file("scene.toml", format!("shadow = \"soft\"\n{CAMERA}{CONE}"));
+    let lights = "light = [{ direction = [0, 0, -1] }, { direction = [0, 1, -1] }, { direction = [1, 0, -1] }]";
+    bench.file(
+        "scene.toml",
+        format!("shadow = \"soft\"\n{lights}\n{CAMERA}{CONE}"),
+    );
     let command =
         "bench scene.toml --quick --size 64x48 --solver circle,mesh:16x32 --stage fragment";
     let said = lines(&bench.done(&format!("{command} --out m"))).join("\n");
     let words = [
         "mesh:16x32 will be left out of 1 measurements",
-        "shadow",
+        "light",
         "--set 'shadow=\"off\"'",
     ];
     holds(&said, &words);

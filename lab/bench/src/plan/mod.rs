@@ -3,7 +3,6 @@
 mod arrange;
 mod cases;
 mod entry;
-pub mod file;
 mod framing;
 pub mod method;
 pub mod names;

@@ -3,10 +3,10 @@
 
 use crate::measure::row::Row;
 use crate::measure::stats;
-use crate::plan::file::Flight;
 use crate::plan::method::renderer::MethodDevice;
 use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::{army, flight_camera};
+use crate::report::plan_file::Flight;
 use crate::report::table::Table;
 use crate::report::table::columns::Cell;
 use revmap::error::Result;

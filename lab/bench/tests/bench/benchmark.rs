@@ -4,12 +4,12 @@ use crate::stand_in::{Fault, LIMITS, StandIn, plan, run, run_plan};
 use revmap_bench::measure::machine::Machine;
 use revmap_bench::measure::{Observer, measure};
 use revmap_bench::plan::TimeBudget;
-use revmap_bench::plan::file::embedded;
 use revmap_bench::plan::method::Method;
 use revmap_bench::report::Run;
 use revmap_bench::report::chart::series_style::SeriesStyles;
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::Album;
+use revmap_bench::report::plan_file::embedded;
 use revmap_bench::report::table::Table;
 use std::sync::atomic::AtomicBool;
 

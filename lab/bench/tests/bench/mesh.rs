@@ -7,7 +7,7 @@ use revmap::error::ErrorKind;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{Projection, SlopeFilter};
-use revmap::scene::{Clip, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{Clip, Light, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
 use revmap_bench::plan::method::renderer::{MethodDevice, MethodRenderer};
 use revmap_bench::plan::method::{Method, MethodSettings};
@@ -256,8 +256,8 @@ fn what_a_mesh_cannot_draw_is_refused() {
         let last = key.replace('0', "2");
         refused(ErrorKind::Content, &last, &|s, _| change(&mut s.objects[2]));
     }
-    let hard: Spoil = &|s, _| s.shadow = Shadow::Hard;
-    refused(ErrorKind::Content, "shadow", hard);
+    let lit: Spoil = &|s, _| (s.shadow, s.lights) = (Shadow::Hard, vec![Light::default(); 3]);
+    refused(ErrorKind::Content, "light", lit);
     let compute: Spoil = &|_, s| s.stage = DrawStage::Compute;
     refused(ErrorKind::Usage, "solver", compute);
     for (segments, rings) in [(2, 1), (0, 0), (99_999_999, 9), (u32::MAX, u32::MAX)] {

@@ -6,11 +6,11 @@ use revmap_bench::measure::device::DeviceBench;
 use revmap_bench::measure::row::Row;
 use revmap_bench::measure::{Observer, measure};
 use revmap_bench::plan::Overrides;
-use revmap_bench::plan::file::{Flight, embedded};
 use revmap_bench::plan::method::Edges;
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report::flight::{self, FlightTimes};
 use revmap_bench::report::pictures::Sheets;
+use revmap_bench::report::plan_file::{Flight, embedded};
 use std::sync::atomic::AtomicBool;
 
 #[test]

@@ -1,7 +1,7 @@
 //! The shadow maps of a layer: one depth image, in it a square for each map.
 
 use super::super::blocks::{CasterBlock, InstanceBlock, MapBlock};
-use super::super::cascades::{CASCADES, Cascade, SHADOW_LIGHTS};
+use super::super::cascades::{CASCADES, Cascade, SHADOW_LIGHTS, SIDE};
 use super::super::placed::PlacedMap;
 use super::pipelines::MeshPipelines;
 use super::{DeviceMesh, write, written};
@@ -11,9 +11,6 @@ use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::{Buffer, Image, ImageKind, vulkan_error as vulkan};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Side of a map, texels.
-pub(in super::super) const SIDE: u32 = 2048;
 
 /// A mesh that is drawn into a map.
 struct Caster {
