@@ -1,9 +1,9 @@
 //! Adaptive supersampling: more rays in the pixels whose colours they change.
 //!
 //! 1. A pixel is opened if its colour differs from that of a pixel beside it.
-//! 2. Open pixels get the first 4 points of [`point`], then 16, then 64. A pixel is closed when the
-//!    range of its colours is small for their number. After 4 points the range is that of the pixels
-//!    beside it, too: all four may miss an edge.
+//! 2. Open pixels get the first 4 points of a Sobol sequence, then 16, then 64. A pixel is closed when
+//!    the range of its colours is small for their number. After 4 points the range is that of the
+//!    pixels beside it, too: all four may miss an edge.
 //! 3. Pixels beside one whose points differ are opened, too: what is thinner than a pixel may show in
 //!    one alone.
 //!
