@@ -2,10 +2,11 @@
 //! the time of every frame.
 
 use super::moving::{ENDINGS, Format, Motion, Playing, Stillness, claim, frames_in};
-use super::options::{Drawing, Rays, Samples, Surroundings, Tracing};
+use super::options::{Drawing, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
 use super::reading::ShownOutline;
+use super::samples::{Rays, Samples};
 use super::studio::Studio;
 use super::times::{self, Row};
 use super::vary::Vary;

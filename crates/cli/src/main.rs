@@ -23,6 +23,7 @@ mod progress;
 mod reading;
 mod render;
 mod run;
+mod samples;
 mod searches;
 mod shaders;
 mod shading;

@@ -5,15 +5,12 @@ use super::studio::Studio;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use revmap::error::Result;
-use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
+use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_bench::plan::method::{Edges, Method, MethodSettings};
 use revmap_files::SceneFile;
-use revmap_offscreen::adaptive::Adaptive;
-use revmap_offscreen::samples::averaged;
 use revmap_searches::{cache, folder};
 use std::path::PathBuf;
 
@@ -228,100 +225,6 @@ fn opaque_color(text: &str) -> std::result::Result<[f32; 3], String> {
     match css_color(text)? {
         [r, g, b, 1.0] => Ok([r, g, b]),
         _ => Err("is transparent; give a colour that is not".to_owned()),
-    }
-}
-
-/// Smoothing of edges
-#[derive(Args, Clone, Copy, Debug)]
-pub struct Samples {
-    /// Rays per pixel. Colours are averaged; all other channels come from the middle ray. adaptive: one
-    /// ray, and up to 64 more in pixels whose colours they change, until the error is below a level
-    /// of 255
-    #[arg(long = "samples", value_name = "N", default_value = "1", value_parser = named(&RAYS))]
-    pub rays: Rays,
-    /// Blends pixels that a silhouette cuts by the part beyond it; other channels than colour stay
-    /// [default: on, but off with more than one ray per pixel, where an .exr is written, and in the
-    /// stage reference]
-    #[arg(long, value_name = "WHETHER", value_parser = named(&SWITCH))]
-    pub antialias: Option<bool>,
-}
-
-/// The rays of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rays {
-    /// So many in each.
-    Each(u32),
-    /// More where they change the colour.
-    Adaptive,
-}
-
-const RAYS: [(&str, Rays); 5] = [
-    ("1", Rays::Each(1)),
-    ("4", Rays::Each(4)),
-    ("16", Rays::Each(16)),
-    ("64", Rays::Each(64)),
-    ("adaptive", Rays::Adaptive),
-];
-const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
-
-impl Samples {
-    /// Returns true if silhouettes are smoothed. With `exact`, for pictures that are compared with
-    /// others, they are smoothed only if the option says so.
-    pub fn antialias(self, exact: bool) -> bool {
-        self.antialias
-            .unwrap_or(self.rays == Rays::Each(1) && !exact)
-    }
-
-    /// Refuses adaptive rays of the reference.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage).
-    pub fn check(self, reference: bool) -> Result<()> {
-        if reference && self.rays == Rays::Adaptive {
-            return Err(usage(
-                "--samples",
-                "adaptive rays are traced on a device; give 4, 16 or 64 in the stage reference",
-            ));
-        }
-        Ok(())
-    }
-
-    /// The rays that each pixel has.
-    pub fn count(self) -> u32 {
-        match self.rays {
-            Rays::Each(count) => count,
-            Rays::Adaptive => 1,
-        }
-    }
-
-    /// What draws more rays where pixels need them, if the option asks for it.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage) for meshes; as [`Adaptive::new`].
-    pub fn adaptive(
-        self,
-        device: &Device,
-        scene: &Scene,
-        settings: &MethodSettings,
-    ) -> Result<Option<Adaptive>> {
-        if self.rays != Rays::Adaptive {
-            return Ok(None);
-        }
-        if settings.method.solver().is_none() {
-            return Err(usage(
-                "--samples",
-                "adaptive rays are of searches; give 4, 16 or 64",
-            ));
-        }
-        Adaptive::new(device, scene, &Settings::from(settings)).map(Some)
-    }
-
-    /// The errors of [`averaged`].
-    ///
-    /// # Errors
-    /// The errors of `draw`.
-    pub fn draw(self, scene: &Scene, draw: impl FnMut(&Scene) -> Result<Frame>) -> Result<Frame> {
-        averaged(self.count(), scene, draw)
     }
 }
 

@@ -1,8 +1,9 @@
 //! `revmap render`: one frame, off screen.
 
-use super::options::{self, Drawing, Rays, Samples, Surroundings, Tracing};
+use super::options::{self, Drawing, Surroundings, Tracing};
 use super::progress::Progress;
 use super::reading::ShownOutline;
+use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
@@ -76,14 +77,8 @@ impl Render {
         output::check(pictures, "--levels", &["png", "exr"], &[&self.scene])?;
         output::check(&self.levels, "--levels", &["png"], &[])?;
         output::check(&self.show_rays, "--show-rays", &["png"], &[&self.scene])?;
-        self.samples
-            .check(self.drawing.stage == Tracing::Reference)?;
-        if self.show_rays.is_some() && self.samples.rays != Rays::Adaptive {
-            return Err(output::usage(
-                "--show-rays",
-                "all pixels have as many rays; add --samples adaptive",
-            ));
-        }
+        let reference = self.drawing.stage == Tracing::Reference;
+        self.samples.check(reference, self.show_rays.is_some())?;
         self.outline.check(&self.scene)?;
         let begin = Instant::now();
         let progress = Progress::start(
@@ -122,7 +117,6 @@ impl Render {
         if floats && self.drawing.tolerance.is_none() {
             settings.tolerance = Tolerance::EXACT;
         }
-        let reference = self.drawing.stage == Tracing::Reference;
         if self.samples.antialias(floats || reference) {
             settings.edges = Edges::Silhouettes;
         }
@@ -278,11 +272,7 @@ impl Render {
                 (format!("{stage}, {}", settings.method), cost)
             }
         };
-        let rays = match (picture.extra_rays, self.samples.count()) {
-            (Some(extra), _) => format!("{:.1} rays per pixel, ", 1.0 + extra),
-            (None, 1) => String::new(),
-            (None, count) => format!("{count} rays per pixel, "),
-        };
+        let rays = self.samples.text(picture.extra_rays);
         for file in &self.output {
             let (name, width, height) = (file.display(), settings.width, settings.height);
             output::result(&format!("{name}: {width}x{height}, {how}, {rays}{cost}"));

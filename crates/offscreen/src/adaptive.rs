@@ -25,7 +25,7 @@ const ROUNDS: [u32; 3] = [4, 16, 64];
 /// Levels of 255 by which colours of neighbours differ where a pixel is opened.
 const EDGE: f32 = 4.0;
 /// Levels of 255 that the range of a closed pixel's colours over their number may have, after each
-/// round. The error of means of even points is below that.
+/// round. The error of the mean of even points is of that order.
 const ERROR: [f32; 2] = [1.0, 2.0];
 /// Most rounds in which pixels beside others are opened.
 const GROWTH: u32 = 8;

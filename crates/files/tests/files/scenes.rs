@@ -57,7 +57,7 @@ fn pictures_of_their_solids_look_as_intended() {
     }
 }
 
-/// Values that are set count/// Values that are set count when a profile in place of a scene is first read, and for its camera.
+/// Values that are set count when a profile in place of a scene is first read, and for its camera.
 #[test]
 fn a_bare_profile_is_read_with_what_is_set() {
     let folder = tempfile::tempdir().unwrap();
