@@ -95,7 +95,7 @@ fn samples_average_colours_alone() {
     };
     let (large, plain) = (draw("512x384"), draw("64x48"));
     let mut error = Vec::new();
-    for samples in ["4", "64"] {
+    for samples in ["4", "64", "adaptive --show-rays rays.png"] {
         let mut averaged = draw(&format!("64x48 --samples {samples}"));
         let (mut total, mut between) = (0.0, 0);
         for (index, color) in averaged.color.iter().enumerate() {
@@ -112,6 +112,16 @@ fn samples_average_colours_alone() {
         assert_eq!(averaged.first_difference(&plain), None);
     }
     assert!(error[1] < 1e-3 && error[1] < 0.5 * error[0], "{error:?}");
+    assert!(error[2] < 0.5 * error[0], "{error:?}");
+    let rays = image::open(bench.path("rays.png")).unwrap().to_luma8();
+    assert!([0, 255].map(|level| rays.pixels().any(|p| p.0[0] == level)) == [true; 2]);
+    for (options, words) in [
+        ("--samples adaptive --stage reference", "on a device"),
+        ("--samples adaptive --solver mesh:16x32", "of searches"),
+        ("--show-rays rays.png", "--samples adaptive"),
+    ] {
+        bench.refused(&format!("{PAWN} -o a.png {options}"), 2, &[words]);
+    }
 }
 
 /// A traced picture becomes a drawing of few curves, and is drawn as before.
