@@ -1,11 +1,11 @@
-//! A hierarchy of boxes around copies, which rays towards lights walk. The shader walks it without
-//! a stack: nodes are in depth-first order, and inner ones hold the index of the node after their subtree
+//! Hierarchies of boxes around copies, which rays towards lights and rays from the eye walk. The
+//! former walk without a stack: nodes are in depth-first order, and inner ones hold the index of the node after their subtree
 //! (Smits 1998). Splits are binned by the surface area heuristic (Wald 2007).
 
 use super::tiles::Cylinder;
 use crate::scene::Placement;
 use crate::shader::CasterNode;
-use crate::shader::generated::INNER_NODE;
+use crate::shader::generated::{INNER_NODE, WALK_DEPTH};
 use glam::{DMat3, DVec3, Vec3};
 
 /// A copy and its box in the world.
@@ -66,19 +66,49 @@ impl Hierarchy {
 
     /// Builds the hierarchy over copies, whose order changes.
     pub fn new(leaves: &mut [Leaf]) -> Self {
-        if leaves.is_empty() {
-            return Self::default();
+        let mut all = Self::at(middle_of(leaves));
+        all.add(leaves);
+        all
+    }
+
+    /// No hierarchies yet, measured from this point.
+    pub fn at(origin: DVec3) -> Self {
+        Self {
+            origin,
+            nodes: Vec::new(),
         }
-        let (low, high) = bounds(leaves);
-        let origin = 0.5 * (low + high);
-        let mut nodes = vec![CasterNode::default(); 2 * leaves.len() - 1];
-        fill(leaves, &mut nodes, 0, origin);
-        Self { origin, nodes }
+    }
+
+    /// Adds a hierarchy over copies, whose order changes. The indices in its nodes count from its
+    /// root. Returns the index of the root.
+    pub fn add(&mut self, leaves: &mut [Leaf]) -> u32 {
+        let root = self.nodes.len();
+        if !leaves.is_empty() {
+            let end = root + 2 * leaves.len() - 1;
+            self.nodes.resize(end, CasterNode::default());
+            fill(leaves, &mut self.nodes[root..], (0, WALK_DEPTH), self.origin);
+        }
+        root as u32
     }
 }
 
-/// Writes the nodes of a subtree. `first`: index of its root.
-fn fill(leaves: &mut [Leaf], nodes: &mut [CasterNode], first: u32, origin: DVec3) {
+/// The middle of the box around copies.
+pub(crate) fn middle_of(leaves: &[Leaf]) -> DVec3 {
+    let (low, high) = bounds(leaves);
+    if leaves.is_empty() {
+        DVec3::ZERO
+    } else {
+        0.5 * (low + high)
+    }
+}
+
+/// Writes the nodes of a subtree. `first`: index of its root; `depth`: most levels of it.
+fn fill(
+    leaves: &mut [Leaf],
+    nodes: &mut [CasterNode],
+    (first, depth): (u32, u32),
+    origin: DVec3,
+) {
     let next = first + nodes.len() as u32;
     let (low, high) = bounds(leaves);
     if let [leaf] = leaves {
@@ -86,24 +116,26 @@ fn fill(leaves: &mut [Leaf], nodes: &mut [CasterNode], first: u32, origin: DVec3
         return;
     }
     nodes[0] = node(low - origin, high - origin, next, INNER_NODE);
-    let count = split(leaves);
+    // Halves need the fewest levels.
+    let halves = leaves.len().ilog2() + 2 >= depth;
+    let count = split(leaves, halves);
     let (left, right) = leaves.split_at_mut(count);
     let (before, after) = nodes[1..].split_at_mut(2 * count - 1);
     let second = first + 2 * count as u32;
     if left.len() + right.len() < PARALLEL {
-        fill(left, before, first + 1, origin);
-        fill(right, after, second, origin);
+        fill(left, before, (first + 1, depth - 1), origin);
+        fill(right, after, (second, depth - 1), origin);
     } else {
         rayon::join(
-            || fill(left, before, first + 1, origin),
-            || fill(right, after, second, origin),
+            || fill(left, before, (first + 1, depth - 1), origin),
+            || fill(right, after, (second, depth - 1), origin),
         );
     }
 }
 
 /// Orders leaves so that the first ones form one subtree and the others the second. Returns the
-/// number of the first.
-fn split(leaves: &mut [Leaf]) -> usize {
+/// number of the first. `halves`: true for parts of one size.
+fn split(leaves: &mut [Leaf], halves: bool) -> usize {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = leaves.iter().fold(none, |(low, high), leaf| {
         (low.min(leaf.middle()), high.max(leaf.middle()))
@@ -111,7 +143,7 @@ fn split(leaves: &mut [Leaf]) -> usize {
     let size = high - low;
     let axis = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
     let half = leaves.len() / 2;
-    let count = if size[axis] > 0.0 {
+    let count = if size[axis] > 0.0 && !halves {
         cheapest(leaves, axis, low[axis], size[axis]).unwrap_or(half)
     } else {
         half

@@ -40,16 +40,24 @@ pub(crate) struct CopyLevels {
 const COPIES: f64 = 1.25;
 
 impl CopyLevels {
-    /// `height`: height of the box in units of the profile's.
-    pub fn new(object: &Object, height: f64, view: &View, tolerance: Tolerance) -> Self {
+    /// `height`: height of the box in units of the profile's. `any`: true if the finest level is that
+    /// of any view, without a look at the copies.
+    pub fn new(
+        object: &Object,
+        height: f64,
+        view: &View,
+        (tolerance, any): (Tolerance, bool),
+    ) -> Self {
         let reach = (object.profile.radius * SQRT_2).hypot(0.5);
         let pixels = stretch(view) / (pixel_of(view) * height);
         let error = tolerance.pixels() / (COPIES * GRAZING);
         #[allow(clippy::cast_possible_truncation)]
         let limit = |level: u8| ((reach + bound(level) * pixels / error) * (1.0 + 1e-6)) as f32;
         let limits: [f32; 4] = std::array::from_fn(|n| limit(COPY_LEVELS[n + 1]));
-        let depths = CopyDepths::new(object, view, false);
-        let least = depths.least(0.0) * (1.0 - 1e-6);
+        let least = match any {
+            true => 0.0,
+            false => CopyDepths::new(object, view, false).least(0.0) * (1.0 - 1e-6),
+        };
         Self {
             first: limits.iter().filter(|l| f64::from(**l) <= least).count(),
             limits,
@@ -240,7 +248,7 @@ mod tests {
             object.placement.scale = scale;
             object.placement.position = -DVec3::X * 1e4 * part.powi(4);
             object.instances = vec![object.placement; 2].into();
-            let levels = CopyLevels::new(&object, 1.0, &view, tolerance);
+            let levels = CopyLevels::new(&object, 1.0, &view, (tolerance, false));
             let middle = object.placement.position + DVec3::new(0.0, 0.0, 0.5 * scale.z);
             let depth = (middle - view.eye).dot(view.forward);
             let found = levels.of(depth as f32, scale.max_element() as f32);

@@ -13,6 +13,7 @@ pub(crate) mod proxy;
 mod tile_steps;
 pub(crate) mod tiles;
 mod view;
+pub(crate) mod walk;
 #[cfg(test)]
 mod viewports;
 
@@ -31,6 +32,7 @@ use crate::surface::Frustum;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
+use walk::Walks;
 
 /// Number of objects from which paths are chosen on all cores. Waking the cores takes as long as
 /// choosing a thousand paths.
@@ -90,12 +92,14 @@ pub(crate) type IndexedDraw = [u32; 5];
 
 /// Plans a frame. `many_new`: true if many objects got a surface since the last frame, so that
 /// choosing a path may make many hulls. `open`: the pixels that compute draws; all if none.
+/// `walks`: the hierarchies that rays walk, and the index of their first node.
 pub(crate) fn plan(
     view: &View,
     objects: &[PlanObject],
     with: &Conditions,
     many_new: bool,
     open: Option<&OpenPixels>,
+    walks: (&Walks, u32),
 ) -> FramePlan {
     let chosen = |of: &PlanObject| with.choose(of, view);
     let paths: Vec<Path> = if objects.len() < MANY && !many_new {
@@ -113,6 +117,7 @@ pub(crate) fn plan(
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), (with, open));
+    plan.add_walks(view, (objects, &paths), &variants, walks, with);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
@@ -133,6 +138,7 @@ impl Path {
             Self::Box => DrawPath::Box,
             Self::Cells(_) => DrawPath::Cells,
             Self::Tiles => DrawPath::Tiles,
+            Self::Walk => DrawPath::Walk,
         }
     }
 }
@@ -222,7 +228,7 @@ impl FramePlan {
                 layers.all[layer].draws.extend(draws);
             };
             match path {
-                Path::Tiles => {}
+                Path::Tiles | Path::Walk => {}
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;

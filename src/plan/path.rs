@@ -30,6 +30,8 @@ pub enum DrawPath {
     /// Tiles of the screen that may show its copies are drawn. The fragment stage uses tiles for
     /// several copies and for single objects without cells, the compute stage for everything.
     Tiles,
+    /// Rays walk a hierarchy of the copies: [`Planning::Device`](crate::settings::Planning::Device).
+    Walk,
 }
 
 /// A draw path with its parameters.
@@ -39,6 +41,7 @@ pub(crate) enum Path {
     /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
     Cells([Vec<Range<u32>>; 2]),
     Tiles,
+    Walk,
 }
 
 /// One object, as input of a plan.
@@ -84,6 +87,10 @@ pub(crate) struct Conditions {
     pub ray_spread: f64,
     /// Largest distance of a copy's surface on the screen from the finest level, pixels.
     pub level_pixels: f64,
+    /// True if rays walk hierarchies of many copies, where nothing of the content is against it.
+    pub plans_on_device: bool,
+    /// True if nothing of this content is.
+    pub walks: bool,
     /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
     /// Upper limit of lights.
@@ -160,8 +167,22 @@ impl Conditions {
         technique.search == Search::Quadric && !technique.replicas
     }
 
-    /// The path of an object in a view: cells, else tiles, else boxes.
+    /// True if rays walk a hierarchy of an object's copies, in any view.
+    pub fn walks_to(&self, of: &PlanObject) -> bool {
+        let many = of.object.placements().len() > self.most_proxies();
+        self.walks && many && of.surface().is_some() && self.may_walk(&of.technique)
+    }
+
+    /// True if rays may walk a hierarchy of copies of a technique.
+    fn may_walk(&self, technique: &Technique) -> bool {
+        self.plans_on_device && technique.is_shaded() && Self::searches_queues(technique)
+    }
+
+    /// The path of an object in a view: a walk, else cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
+        if self.walks_to(of) {
+            return Path::Walk;
+        }
         let surface = of.surface().filter(|_| self.takes_cells(of));
         let cells = surface.and_then(|surface| {
             let least = self.least_pixels(of.object.placements().len());
@@ -246,6 +267,7 @@ impl Conditions {
                 Kind::Tiles,
                 technique.is_shaded() && Self::searches_queues(technique),
             ),
+            (Kind::Walk, self.may_walk(technique)),
             (Kind::Cells, patches && self.passes_cells),
             (Kind::CutCells, patches && self.passes_cells),
         ];
@@ -254,6 +276,7 @@ impl Conditions {
             return taken.map(|(kind, _)| kind).collect();
         }
         let mut all = vec![Kind::TileTree, Kind::TileCopies];
+        all.extend(self.may_walk(technique).then_some(Kind::WalkTiles));
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
             all.extend(LIST_LENGTHS.map(Kind::TilePatches));

@@ -170,6 +170,11 @@ impl Body {
 }
 
 impl Precedence {
+    /// True if no copy lags.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The ranks of `count` copies, in the order of the scene.
     pub fn new(count: usize, bodies: impl FnOnce() -> Vec<Body>) -> Self {
         let mut ranks = HashMap::new();

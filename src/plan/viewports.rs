@@ -2,6 +2,7 @@
 //! the picture.
 #![allow(clippy::unwrap_used)]
 
+use super::walk::Walks;
 use super::path::Conditions;
 use super::{Call, DepthOrder, FramePlan, PlanObject, View, Viewport, plan, shape_of};
 use crate::error::{ErrorKind, Result};
@@ -87,7 +88,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
         occlusion_culling: true,
         ..Conditions::default()
     };
-    plan(view, &objects, &with, false, None)
+    plan(view, &objects, &with, false, None, (&Walks::default(), 0))
 }
 
 /// Ends of the pixels that a viewport may draw: left, top, right, bottom.

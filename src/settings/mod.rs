@@ -33,6 +33,29 @@ impl DrawStage {
     }
 }
 
+/// Where the copies that a pixel may show are found, for objects with more than 64 copies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Planning {
+    /// On the device if it is a GPU, else on the host.
+    #[default]
+    Auto,
+    /// The CPU finds the copies of each tile of the screen, for every view.
+    Host,
+    /// Rays walk a hierarchy of the copies. It depends on no view, so the CPU does nothing for a new
+    /// view that grows with the number of copies. Objects that another search than patches draws,
+    /// replicas, parallel views, and up to 256 copies whose faces coincide are planned on the host.
+    Device,
+}
+
+impl Planning {
+    /// The names in options.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("auto", Self::Auto),
+        ("host", Self::Host),
+        ("device", Self::Device),
+    ];
+}
+
 /// The search for the first hit along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Solver {
@@ -273,6 +296,8 @@ pub struct Settings {
     /// True to skip copies that are proven to be hidden by others. Pixels differ by rounding at
     /// most; `false` exists to verify this.
     pub occlusion_culling: bool,
+    /// Where the copies that a pixel may show are found.
+    pub planning: Planning,
     /// True to smooth silhouettes in frames that the crate `revmap-offscreen` reads back. Otherwise
     /// every colour is that of the ray through the pixel's middle. Embedded renderers do not
     /// smooth.
@@ -299,6 +324,8 @@ pub struct SearchSettings {
     pub tolerance: Tolerance,
     /// Same as [`Settings::occlusion_culling`].
     pub occlusion_culling: bool,
+    /// Same as [`Settings::planning`].
+    pub planning: Planning,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -311,6 +338,7 @@ impl From<&Settings> for SearchSettings {
             map_format: settings.map_format,
             proxy_min_pixels: settings.proxy_min_pixels,
             occlusion_culling: settings.occlusion_culling,
+            planning: settings.planning,
             tolerance: settings.tolerance,
         }
     }
@@ -327,6 +355,7 @@ impl From<&SearchSettings> for Settings {
             map_format: search.map_format,
             proxy_min_pixels: search.proxy_min_pixels,
             occlusion_culling: search.occlusion_culling,
+            planning: search.planning,
             tolerance: search.tolerance,
             ..Self::default()
         }
@@ -395,6 +424,7 @@ impl Default for Settings {
             proxy_min_pixels: 150,
             tolerance: Tolerance::DEFAULT,
             occlusion_culling: true,
+            planning: Planning::Auto,
             antialias: false,
         }
     }

@@ -3,8 +3,8 @@
 pub use super::generated::{
     Appearance as AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, Frame as FrameView,
     FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy,
-    Light as LightBlock, Object as ObjectBlock, Pushed, QueueBlock, QueueTile, QueuedCopy,
-    Shape as ShapeBlock,
+    LevelTables, Light as LightBlock, Object as ObjectBlock, Pushed, QueueBlock, QueueTile, QueuedCopy,
+    PlacedEye, Shape as ShapeBlock,
 };
 
 use super::generated::{INSTANCE_WORDS, OBJECT_STRIDE_WORDS, OBJECT_WORDS};

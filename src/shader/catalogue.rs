@@ -27,6 +27,12 @@ pub enum Entry {
     TileTree,
     /// Pixels of tiles of several copies.
     TileCopies,
+    /// Corners of the rectangle of a walk.
+    WalkVertex,
+    /// Fragments that walk a hierarchy of copies.
+    Walk,
+    /// Pixels that walk a hierarchy of copies.
+    WalkTiles,
 }
 
 impl Entry {
@@ -45,6 +51,9 @@ impl Entry {
             Self::TilePatches => "tile_patches.comp",
             Self::TileTree => "tile_tree.comp",
             Self::TileCopies => "tile_copies.comp",
+            Self::WalkVertex => "walk.vert",
+            Self::Walk => "walk.frag",
+            Self::WalkTiles => "walk.comp",
         }
     }
 
@@ -68,7 +77,12 @@ impl Entry {
     pub const fn searches(self) -> bool {
         matches!(
             self,
-            Self::Tree | Self::Tiles | Self::TileTree | Self::TileCopies
+            Self::Tree
+                | Self::Tiles
+                | Self::TileTree
+                | Self::TileCopies
+                | Self::Walk
+                | Self::WalkTiles
         )
     }
 }
@@ -191,17 +205,20 @@ pub fn modules() -> Vec<Module> {
         Entry::CellVertex,
         Entry::QuadVertex,
         Entry::TileVertex,
+        Entry::WalkVertex,
     ];
     let mut all = plain.map(Module::plain).to_vec();
     let both: &[Search] = &[Search::Live, Search::Quadric];
     let patches: &[Search] = &[Search::Quadric];
-    let rows: [(Entry, &[Search], &[Output]); 6] = [
+    let rows: [(Entry, &[Search], &[Output]); 8] = [
         (Entry::Tree, both, &[Planes, List, Depth]),
         (Entry::TileTree, both, &[Color, Planes]),
         (Entry::TileCopies, both, &[Color, Planes]),
         (Entry::TilePatches, patches, &[Color, Planes]),
         (Entry::Cells, patches, &[Planes, List, Depth]),
         (Entry::Tiles, patches, &[Planes, List]),
+        (Entry::Walk, patches, &[Planes, List]),
+        (Entry::WalkTiles, patches, &[Color, Planes]),
     ];
     for (entry, searches, outputs) in rows {
         for (&search, &output) in searches

@@ -15,7 +15,7 @@ mod variant;
 
 pub use blocks::{
     AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView,
-    GatheredPixel, InstanceBlock, LastCopy, LightBlock, OBJECT_STRIDE, ObjectBlock, Pushed,
+    GatheredPixel, InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock, PlacedEye, Pushed,
     QueueBlock, QueueTile, QueuedCopy, ShapeBlock,
 };
 #[cfg(test)]

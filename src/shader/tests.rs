@@ -120,11 +120,13 @@ fn reachable_variants_have_modules() {
         Kind::TilePatches(g::LONGEST_LIST),
         Kind::TileTree,
         Kind::TileCopies,
+        Kind::Walk,
+        Kind::WalkTiles,
     ];
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            let has = |k: &Kind| patches || (k.walks() && *k != Kind::Tiles);
+            let has = |k: &Kind| patches || (k.walks() && !matches!(k, Kind::Tiles | Kind::Walk | Kind::WalkTiles));
             for kind in kinds.into_iter().filter(has) {
                 let variant = Variant::general(any(solver, planes));
                 assert!(words(&variant.module(kind)).is_some(), "{variant:?}");

@@ -30,6 +30,10 @@ pub enum Kind {
     TileTree,
     /// Compute: tiles and pixels with queues of copies.
     TileCopies,
+    /// A rectangle; fragments walk a hierarchy of copies.
+    Walk,
+    /// Compute: tiles of the picture, which walk a hierarchy of copies.
+    WalkTiles,
 }
 
 impl Kind {
@@ -46,6 +50,8 @@ impl Kind {
             Self::TilePatches(_) => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
             Self::TileCopies => c"revmap tiles of several copies",
+            Self::Walk => c"revmap walk",
+            Self::WalkTiles => c"revmap walk of tiles",
         }
     }
 
@@ -54,7 +60,7 @@ impl Kind {
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
-            Self::TilePatches(_) | Self::TileTree | Self::TileCopies
+            Self::TilePatches(_) | Self::TileTree | Self::TileCopies | Self::WalkTiles
         )
     }
 
@@ -82,6 +88,8 @@ impl Kind {
             Self::TilePatches(_) => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
             Self::TileCopies => Entry::TileCopies,
+            Self::Walk => Entry::Walk,
+            Self::WalkTiles => Entry::WalkTiles,
         }
     }
 
@@ -269,6 +277,7 @@ impl Variant {
             Kind::Cells | Kind::CutCells => Entry::CellVertex,
             Kind::Quads => Entry::QuadVertex,
             Kind::Tiles => Entry::TileVertex,
+            Kind::Walk => Entry::WalkVertex,
             _ => return None,
         };
         Some(Module::plain(entry))

@@ -8,7 +8,7 @@ use revmap::error::Result;
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
+use revmap::settings::{DrawStage, Planes, Planning, Solver, Tolerance};
 use revmap_bench::plan::method::{Edges, Method, MethodSettings};
 use revmap_files::SceneFile;
 use revmap_searches::{cache, folder};
@@ -97,6 +97,10 @@ pub struct Drawing {
     /// .exr is written]
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
+    /// Where the copies that a pixel may show are found, for objects with more than 64: by the CPU
+    /// for each view, or on the device, which is the default of GPUs
+    #[arg(long, value_name = "WHERE", default_value = "auto", value_parser = named(&Planning::NAMES))]
+    pub planning: Planning,
     #[command(flatten)]
     pub device: DeviceChoice,
     /// The most memory that buffers and pictures may take on the device, MiB [default: as much as
@@ -136,6 +140,7 @@ impl Drawing {
             map_format: self.map_format,
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
+            planning: self.planning,
             edges: Edges::OneRay,
         }
     }
@@ -157,6 +162,7 @@ impl Drawing {
             ("--map-format", self.map_format != MapFormat::R32),
             ("--solver", self.solver != Method::DEFAULT),
             ("--tolerance", self.tolerance.is_some()),
+            ("--planning", self.planning != Planning::Auto),
             ("--device", self.device.name().is_some()),
         ];
         let (who, reads): (String, &[&str]) = match self.stage {
@@ -283,7 +289,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
         _ if method.reads_map() => &OF_MAPS,
         _ if method.reads_own_table() && method.default_steps(false) > 1 => &OF_MAPS[..4],
         _ if method.reads_own_table() => &OF_MAPS[..3],
-        Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance"],
+        Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance", "--planning"],
         Method::Mesh { .. } | Method::MeshWithin { .. } => &OF_MAPS[..2],
     }
 }

@@ -9,7 +9,8 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
 
 struct PaddedObject {
     Object object;
-    uvec4 padding[(OBJECT_STRIDE_WORDS - OBJECT_WORDS) / 4u];
+    LevelTables levels;
+    uvec4 padding[(OBJECT_STRIDE_WORDS - OBJECT_WORDS - LEVEL_WORDS) / 4u];
 };
 
 layout(set = 0, binding = 1, std430) readonly buffer ObjectBlock {
@@ -23,6 +24,12 @@ layout(set = 0, binding = 6, std140) uniform OwnObject {
 
 layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
+};
+
+// Nodes of the hierarchies of copies: first that of all copies that may cast shadows, in depth-first order, then those
+// that rays from the eye walk. src/plan/casters.rs builds them.
+layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
+    CasterNode casters[];
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {

@@ -1,13 +1,8 @@
 // The parts of a light that a point sees, by rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#include "core/pixel_ray.glsl"
+#include "core/placed.glsl"
 #include "core/replicas.glsl"
-
-// The hierarchy of boxes around the copies of all objects, in depth-first order. src/plan/casters.rs builds it.
-layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
-    CasterNode casters[];
-};
 
 // Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle. Ray
 // `k` has the bit `k % LIGHT_RAYS`. The last ray leads to the middle, those before it to the rim.
@@ -158,7 +153,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             if (met == INNER_NODE) {
                 break;
             }
-            Instance i = instances[met];
+            Instance i = seen_instance(met);
             load_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load

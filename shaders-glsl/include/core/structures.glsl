@@ -44,10 +44,29 @@ struct CasterRoot {
     uint only_copy; // index of the only copy, or INNER_NODE
 };
 
+// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl).
+struct PlacedEye {
+    vec3 high; // the eye is high + middle + low, world axes
+    float walk_slack; // margin of boxes in the hierarchies of `walked`
+    vec3 middle;
+    float unused_0;
+    vec3 low;
+    float unused_1;
+    vec3 walked; // from the origin of the hierarchies that rays from the eye walk
+    float unused_2;
+    vec3 dir_high; // 12 bits of dir_00 in each member
+    float unused_3;
+    vec3 dir_middle; // the next 12 bits
+    float unused_4;
+    vec3 dir_low; // the rest
+    float unused_5;
+};
+
 // All data of a frame.
 struct FrameData {
     Frame frame;
     CasterRoot casters;
+    PlacedEye eye;
     float first_depth; // the depth buffer's value of depth 0 in clip space
     float depth_range; // its value of depth 1, minus first_depth
     float far_depth; // depth in clip space of the far plane
@@ -59,7 +78,9 @@ struct FrameData {
 };
 
 // A copy of an object, relative to the eye. The CPU computes it in double precision for each view, so that no rounding
-// error grows with the distance from the world's origin or from the eye.
+// error grows with the distance from the world's origin or from the eye. Copies whose `table` is PLACED have no view:
+// their position in the world is the sum of `position`, `origin` and (depth, clip_x, clip_y), and core/placed.glsl makes
+// the other members.
 struct Instance {
     vec3 position; // middle of the box's lower face, from the eye, world axes
     float depth; // depth of the box's middle
@@ -134,6 +155,16 @@ struct Object {
     Appearance appearance;
 };
 
+// The tables of an object whose copies have levels of their own, for copies that the device places.
+struct LevelTables {
+    vec4 limits; // level n + 1 is allowed from this multiple of the copy's largest scale on (src/plan/levels.rs)
+    uvec4 tables; // first vector of the tables of levels 0 to 3
+    uint last_table; // of level 4
+    uint unused_0;
+    uint unused_1;
+    uint unused_2;
+};
+
 // A node of the hierarchy of boxes around the copies of all objects.
 struct CasterNode {
     vec3 middle; // of its box, from the origin of the hierarchy, world axes
@@ -195,6 +226,7 @@ struct Pushed {
     uint gathered; // 1 if a work group's pixels come from several tiles
     uint object; // index of the only object
     uint instance; // index of its only copy
+    uint root; // walk: index of the hierarchy's root; `first` is a tile of the picture, row by row, `tiles` in each
 };
 
 #endif

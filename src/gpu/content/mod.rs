@@ -17,7 +17,8 @@ use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
 use crate::plan::{Conditions, FramePlan, OpenPixels, View, plan};
 use crate::scene::{Lighting, Shadow};
-use crate::settings::{Planes, SearchSettings};
+use crate::plan::walk::Walks;
+use crate::settings::{Planes, Planning, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use entry::Stale;
@@ -25,7 +26,7 @@ use objects::Objects;
 use rayon::prelude::*;
 use snapshot::{Demands, Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
-use view_plan::{LevelRules, PlannedObject, ViewPlan, hierarchy, precedence};
+use view_plan::{LevelRules, PlannedObject, ViewPlan, Walked, hierarchy, precedence};
 
 /// Objects and lights as set, the last snapshot of all objects, and the last plan. One owner has them,
 /// because a failed step must leave all of them as they were.
@@ -160,33 +161,47 @@ impl Content {
             casts: self.casts(),
             parallel: self.is_parallel(),
             most_proxies: with.most_proxies(),
+            walks: with.walks,
         };
         let mut new = Vec::new();
+        let known = self.plan.as_ref().filter(|known| {
+            Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
+        });
         let objects = rules.planned(view, &snapshot, &mut new)?;
+        let order = known.map(|known| known.precedence.clone());
+        let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
+        // What lags depends on the view.
+        let chosen = Conditions {
+            walks: with.walks && precedence.is_empty(),
+            ..with
+        };
+        // Levels that all objects share change the boxes of casters.
+        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
+        let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
+        let is_same = |known: &&Arc<ViewPlan>| {
+            let same_level = !shadowed || level(&known.objects) == level(&objects);
+            same_level && known.with.walks == with.walks && known.walked.casters.is_some() == shadowed
+        };
+        let known = known.filter(is_same).map(|known| known.walked.clone());
         self.make_surfaces(&mut new);
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
+        let walked = known.unwrap_or_else(|| {
+            Arc::new(Walked {
+                casters: shadowed.then(|| hierarchy(&objects, &inputs)),
+                seen: Walks::new(&inputs, &chosen),
+            })
+        });
         let frame = plan(
             view,
             &inputs,
-            &with,
+            &chosen,
             new.len() > MANY_NEW,
             self.open.as_deref(),
+            (&walked.seen, walked.first_seen()),
         );
         if !new.is_empty() {
             make_vectors(&objects, &frame);
         }
-        let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
-        // Without shadows levels differ, and with them all objects have one level.
-        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
-        let known = self.plan.as_ref().filter(|known| {
-            Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
-        });
-        let order = known.map(|known| known.precedence.clone());
-        let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
-        let known = known.filter(|known| level(&known.objects) == level(&objects));
-        let known = known.and_then(|known| known.hierarchy.clone());
-        let hierarchy = || known.unwrap_or_else(|| Arc::new(hierarchy(&objects, &inputs)));
-        let hierarchy = shadowed.then(hierarchy);
         Ok(ViewPlan {
             view: *view,
             snapshot,
@@ -194,7 +209,7 @@ impl Content {
             open: self.open.clone(),
             frame,
             precedence,
-            hierarchy,
+            walked,
             objects,
         })
     }
@@ -202,18 +217,27 @@ impl Content {
     /// The inputs of a plan other than view and objects.
     pub fn conditions(&self) -> Conditions {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
+        let software = chosen.report.kind == "cpu";
+        let on_device = match self.settings.planning {
+            Planning::Auto => !software,
+            Planning::Host => false,
+            Planning::Device => true,
+        };
+        let plans_on_device = on_device && !self.is_parallel();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            software: chosen.report.kind == "cpu",
+            software,
             subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
             least_pixels: self.settings.proxy_min_pixels,
             occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
             level_pixels: self.settings.tolerance.pixels() / GRAZING,
+            plans_on_device,
+            walks: plans_on_device && self.open.is_none(),
             takes_patches: self.settings.takes_patches(),
             lights: match self.casts() || self.host_shades {
                 true => Lights::Any,

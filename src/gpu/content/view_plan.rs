@@ -6,9 +6,10 @@ use crate::error::Result;
 use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
 use crate::plan::precedence::{Body, Precedence, flats};
+use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::InstanceBlock;
+use crate::shader::{InstanceBlock, Search};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -25,8 +26,24 @@ pub(crate) struct ViewPlan {
     pub objects: Vec<PlannedObject>,
     /// Those of their copies that lag behind others.
     pub precedence: Arc<Precedence>,
-    /// Their copies that cast shadows; `None` if nothing is shaded in shadow.
-    pub hierarchy: Option<Arc<Hierarchy>>,
+    /// The hierarchies of copies that rays walk.
+    pub walked: Arc<Walked>,
+}
+
+/// The hierarchies of copies that rays walk.
+#[derive(Default)]
+pub(crate) struct Walked {
+    /// Copies that cast shadows; `None` if nothing is shaded in shadow.
+    pub casters: Option<Hierarchy>,
+    /// Copies that rays from the eye find.
+    pub seen: Walks,
+}
+
+impl Walked {
+    /// Number of nodes before those of [`Walked::seen`].
+    pub fn first_seen(&self) -> u32 {
+        self.casters.as_ref().map_or(0, |all| all.nodes.len() as u32)
+    }
 }
 
 /// An object in a plan.
@@ -89,6 +106,8 @@ pub(super) struct LevelRules {
     pub parallel: bool,
     /// Most copies of an object that share one level.
     pub most_proxies: usize,
+    /// True if the device finds the level of each copy that it walks to: then no view rules a level out.
+    pub walks: bool,
 }
 
 impl LevelRules {
@@ -136,7 +155,8 @@ impl LevelRules {
         }
         if self.levels_copies(object) {
             let height = object.growth().height();
-            let levels = CopyLevels::new(object.drawn(), height, view, self.tolerance);
+            let any = self.walks && object.derived.technique.search == Search::Quadric;
+            let levels = CopyLevels::new(object.drawn(), height, view, (self.tolerance, any));
             planned.level = COPY_LEVELS[levels.first];
             planned.levels = Some(levels);
         } else {

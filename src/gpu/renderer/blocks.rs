@@ -7,13 +7,14 @@ use crate::plan::View;
 use crate::plan::casters::Hierarchy;
 use crate::plan::precedence::lag_depth;
 use crate::scene::{Lighting, Object, Placement};
-use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT};
+use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT, PLACED};
 use crate::shader::{
-    AppearanceBlock, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy, LightBlock,
-    ObjectBlock, ShapeBlock, is_beveled,
+    AppearanceBlock, CasterNode, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy,
+    LevelTables, LightBlock, ObjectBlock, PlacedEye, ShapeBlock, is_beveled,
 };
-use crate::solid::offset_surface::Part;
-use glam::{DVec2, DVec3, DVec4};
+use crate::solid::offset_surface::{OffsetSurface, Part};
+use glam::{DVec2, DVec3, DVec4, Vec3};
+use std::sync::Arc;
 
 /// The block of one copy of `object` in a view. World coordinates are subtracted here, in double
 /// precision.
@@ -42,6 +43,74 @@ pub(super) fn instance_block(
         clip_y: clip.y as f32,
         object: number,
         ..InstanceBlock::default()
+    }
+}
+
+/// The parts of a number whose sum it is, to the last bit, but for numbers that 32 bits cannot hold.
+/// `digits` leaves the first bits of each.
+fn parts(vector: DVec3, digits: impl Fn(f32) -> f32) -> [[f32; 3]; 3] {
+    let mut rest = vector;
+    std::array::from_fn(|_| {
+        let part = rest.as_vec3().to_array().map(&digits);
+        rest -= Vec3::from(part).as_dvec3();
+        part
+    })
+}
+
+/// The block of one copy that the device places (`core/placed.glsl`), which depends on no view.
+pub(super) fn placed_block(placement: &Placement, number: u32) -> InstanceBlock {
+    let [position, origin, [depth, clip_x, clip_y]] = parts(placement.position, |part| part);
+    InstanceBlock {
+        position,
+        depth,
+        scale: placement.scale.as_vec3().to_array(),
+        clip_x,
+        rotation: placement.rotation.normalize().as_quat().to_array(),
+        origin,
+        clip_y,
+        object: number,
+        table: PLACED,
+        ..InstanceBlock::default()
+    }
+}
+
+/// The eye for copies that the device places. `seen`: the hierarchies that rays from the eye walk.
+pub(super) fn placed_eye(view: &View, seen: &Hierarchy) -> PlacedEye {
+    let [high, middle, low] = parts(view.eye, |part| part);
+    let cut = |part: f32| f32::from_bits(part.to_bits() & 0xffff_f000);
+    let [dir_high, dir_middle, _] = parts(view.dir_00, cut);
+    let [high_part, middle_part] = [dir_high, dir_middle].map(|part| Vec3::from(part).as_dvec3());
+    let walked = view.eye - seen.origin;
+    // Roundings of directions and of the eye's position, as in rays towards lights.
+    let size = |node: &CasterNode| Vec3::from(node.middle).length() + Vec3::from(node.half_size).length();
+    let largest = seen.nodes.iter().take(1).map(size).fold(0.0, f32::max);
+    PlacedEye {
+        high,
+        walk_slack: 2e-6 * (walked.length() as f32 + largest),
+        middle,
+        low,
+        walked: walked.as_vec3().to_array(),
+        dir_high,
+        dir_middle,
+        dir_low: (view.dir_00 - high_part - middle_part).as_vec3().to_array(),
+        ..PlacedEye::default()
+    }
+}
+
+/// The tables of the levels of an object's copies.
+pub(super) fn level_tables(planned: &PlannedObject) -> LevelTables {
+    let start = |surface: &Arc<OffsetSurface>| surface.start(Part::Tables);
+    let limits = planned.levels.as_ref().map(|levels| levels.limits);
+    let at = |level: usize| {
+        let first = planned.levels.as_ref().map_or(0, |levels| levels.first);
+        let surface = planned.surfaces.get(level.saturating_sub(first));
+        surface.or(planned.surfaces.last()).map_or(0, start)
+    };
+    LevelTables {
+        limits: limits.unwrap_or([f32::INFINITY; 4]),
+        tables: std::array::from_fn(at),
+        last_table: at(4),
+        ..LevelTables::default()
     }
 }
 

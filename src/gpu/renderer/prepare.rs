@@ -3,13 +3,16 @@
 //! objects anew.
 
 use super::Renderer;
-use super::blocks::{caster_root, frame_block, instance_block, last_copy, object_block};
+use super::blocks::{
+    caster_root, frame_block, instance_block, last_copy, level_tables, object_block, placed_block,
+    placed_eye,
+};
 use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::ViewPlan;
-use crate::plan::View;
-use crate::shader::{Drawn, InstanceBlock, Kind, OBJECT_STRIDE};
+use crate::plan::{DrawPath, View};
+use crate::shader::{Drawn, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
 use std::borrow::Cow;
@@ -120,10 +123,11 @@ impl Renderer {
         let snapshot = &plan.snapshot;
         let (output, lighting) = (&self.content.output, &self.content.lighting);
         let mut block = frame_block(view, output, lighting, snapshot.instances);
-        if let Some(hierarchy) = &plan.hierarchy {
+        if let Some(casters) = &plan.walked.casters {
             let maps = snapshot.facts.shadow_maps.maps.len();
-            block.casters = caster_root(hierarchy, view.eye, maps);
+            block.casters = caster_root(casters, view.eye, maps);
         }
+        block.eye = placed_eye(view, &plan.walked.seen.hierarchy);
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
         // Last, so that a failed call records nothing.
@@ -221,41 +225,50 @@ impl Renderer {
         let motion = self.content.output.planes().has_motion();
         let to = &mut self.slots[slot];
         let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
+        let bytes = records * size_of::<InstanceBlock>() as u64;
+        let are_placed = to.write_hierarchies(&plan.walked, bytes)?;
         let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
-        let bytes = records * size_of::<InstanceBlock>() as u64;
-        to.fit(SlotBuffer::Instances, bytes)?;
         to.write_plan(&plan.frame)?;
         let facts = plan.frame.copies.iter().zip(&plan.frame.outside);
-        for (planned, (copies, outside)) in plan.objects.iter().zip(facts) {
+        let facts = facts.zip(&plan.frame.paths);
+        for (planned, ((copies, outside), path)) in plan.objects.iter().zip(facts) {
             let (object, number) = (&planned.object, planned.object.number);
             let drawn = object.drawn();
             let placements = drawn.placements();
             let at = number as usize * OBJECT_STRIDE as usize;
             to.write(SlotBuffer::Objects, at, &object_block(planned, *outside))?;
+            let walks = *path == DrawPath::Walk;
+            if walks {
+                let at = at + size_of::<ObjectBlock>();
+                to.write(SlotBuffer::Objects, at, &level_tables(planned))?;
+            }
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
                 None => (0..placements.len() as u32).collect(),
             };
             let first = object.instances.start;
-            let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
-            let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
-            to.write_instances(first, &shown, |copy| {
-                let placement = &placements[copy as usize];
-                let mut block = instance_block(drawn, placement, number, view);
-                block.lag = plan.precedence.lag(first + copy, &block, view);
-                let starts = starts.get(planned.surface_of(&block));
-                [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
-                block
-            })?;
+            if walks && !are_placed {
+                let block = |copy| placed_block(&placements[copy as usize], number);
+                to.write_instances(first, &shown, block)?;
+            } else if !walks {
+                let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
+                let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
+                to.write_instances(first, &shown, |copy| {
+                    let placement = &placements[copy as usize];
+                    let mut block = instance_block(drawn, placement, number, view);
+                    block.lag = plan.precedence.lag(first + copy, &block, view);
+                    let starts = starts.get(planned.surface_of(&block));
+                    [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
+                    block
+                })?;
+            }
             if motion {
                 let last = |copy| last_copy(object, copy as usize, view);
                 to.write_instances(snapshot.instances + first, &shown, last)?;
             }
         }
-        match &plan.hierarchy {
-            Some(hierarchy) => to.write_casters(hierarchy),
-            None => Ok(()),
-        }
+        to.walked = Some(plan.walked.clone());
+        Ok(())
     }
 }

@@ -2,7 +2,7 @@
 //! that bind them. The slot also keeps alive all else that its commands read.
 
 use crate::error::Result;
-use crate::gpu::content::view_plan::ViewPlan;
+use crate::gpu::content::view_plan::{ViewPlan, Walked};
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Buffer;
 use crate::gpu::memory::buffers::{Use, write, write_slice};
@@ -12,7 +12,6 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::usage::Usage;
-use crate::plan::casters::Hierarchy;
 use crate::plan::{Call, DrawPath, FramePlan};
 use crate::shader::{
     BinTile, CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, QueueBlock,
@@ -65,8 +64,9 @@ pub(crate) struct FrameSlot {
     pub bound: Option<BoundPlan>,
     /// The number of the slot's frame. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The copies in [`SlotBuffer::Casters`].
-    hierarchy: Option<Arc<Hierarchy>>,
+    /// The hierarchies in [`SlotBuffer::Casters`]. The copies of [`Walked::seen`], which have the same
+    /// blocks in each view, are in [`SlotBuffer::Instances`].
+    pub walked: Option<Arc<Walked>>,
     uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
     pub named: Option<Arc<Buffer>>,
@@ -141,7 +141,7 @@ impl FrameSlot {
             buffers,
             bound: None,
             serial: 0,
-            hierarchy: None,
+            walked: None,
             uploads: RecordedUploads::default(),
             named: None,
             pool,
@@ -275,17 +275,25 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Writes the copies that may cast shadows.
-    pub fn write_casters(&mut self, hierarchy: &Arc<Hierarchy>) -> Result<()> {
-        let known = self.hierarchy.as_ref();
-        if known.is_some_and(|known| Arc::ptr_eq(known, hierarchy)) {
-            return Ok(());
+    /// Writes the hierarchies that rays walk, and makes room for the bytes of all instances. Returns
+    /// true if the copies of [`Walked::seen`] are written already.
+    pub fn write_hierarchies(&mut self, walked: &Arc<Walked>, instances: u64) -> Result<bool> {
+        let known = self.walked.take();
+        let before = self.buffer(SlotBuffer::Instances).raw;
+        self.fit(SlotBuffer::Instances, instances)?;
+        let keeps = before == self.buffer(SlotBuffer::Instances).raw;
+        if known.is_some_and(|known| Arc::ptr_eq(&known, walked)) {
+            return Ok(keeps);
         }
-        let nodes = hierarchy.nodes.as_slice();
-        self.fit(SlotBuffer::Casters, size_of_val(nodes) as u64)?;
-        write_slice(self.buffer_mut(SlotBuffer::Casters), nodes)?;
-        self.hierarchy = Some(hierarchy.clone());
-        Ok(())
+        let casters = walked.casters.as_ref().map_or(&[][..], |all| &all.nodes);
+        let seen = walked.seen.hierarchy.nodes.as_slice();
+        let bytes = size_of_val(casters) + size_of_val(seen);
+        self.fit(SlotBuffer::Casters, bytes as u64)?;
+        let nodes = self.buffer_mut(SlotBuffer::Casters).mapped()?;
+        let (before, after) = nodes[..bytes].split_at_mut(size_of_val(casters));
+        before.copy_from_slice(bytemuck::cast_slice(casters));
+        after.copy_from_slice(bytemuck::cast_slice(seen));
+        Ok(false)
     }
 
     /// Writes a plan's tiles and draws, and makes room for its bins.

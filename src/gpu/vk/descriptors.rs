@@ -44,7 +44,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(Kind::UNIFORM_BUFFER, EVERY),         // the frame
         one(Kind::STORAGE_BUFFER, EVERY),         // objects
         one(Kind::STORAGE_BUFFER, EVERY),         // instances
-        one(Kind::STORAGE_BUFFER, PIXEL),         // copies that may cast shadows
+        one(Kind::STORAGE_BUFFER, EVERY),         // hierarchies of copies
         one(Kind::STORAGE_BUFFER, EVERY),         // tables of all solids
         one(Kind::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
         one(Kind::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object

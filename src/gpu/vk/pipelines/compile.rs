@@ -207,7 +207,7 @@ fn rasterization(kind: Kind) -> vk::PipelineRasterizationStateCreateInfo<'static
     vk::PipelineRasterizationStateCreateInfo::default()
         .cull_mode(match kind {
             // Quads have no back.
-            Kind::Quads | Kind::Tiles => vk::CullModeFlags::NONE,
+            Kind::Quads | Kind::Tiles | Kind::Walk => vk::CullModeFlags::NONE,
             _ => vk::CullModeFlags::BACK,
         })
         .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
