@@ -10,8 +10,11 @@ void main()
     load_frame(0u);
     uint root = uint(gl_VertexIndex) / 6u;
     uint bit = 1u << (uint(gl_VertexIndex) % 6u);
-    vec3 middle = casters[root].middle - frame_block.eye.walked;
-    vec3 half_size = casters[root].half_size + frame_block.eye.walk_slack;
+    uvec3 box = walk_nodes[root + 1u].bounds;
+    vec3 begin = (vec3(box & 0xffffu) - frame_block.eye.grid_low) * frame_block.eye.grid_unit;
+    vec3 end = (vec3(box >> 16) - frame_block.eye.grid_high) * frame_block.eye.grid_unit;
+    vec3 middle = 0.5 * (begin + end);
+    vec3 half_size = 0.5 * (end - begin);
     float near = dot(middle, frame.forward) - dot(half_size, abs(frame.forward));
     vec2 low = vec2(-1.0), high = vec2(1.0);
     if (near > 0.0) {
@@ -29,9 +32,5 @@ void main()
     vec2 corner = mix(low, high, bvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u));
     float depth = clip_depth_of(max(near * (1.0 - 1e-5), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner, depth, 1.0);
-    uint first = root;
-    while (casters[first].instance == INNER_NODE) {
-        ++first;
-    }
-    walk_root = uvec2(root, instances[casters[first].instance].object);
+    walk_root = uvec2(root, instances[walk_nodes[root + walk_nodes[root].index].index].object);
 }

@@ -1,21 +1,21 @@
-//! Hierarchies of boxes around copies, which rays towards lights and rays from the eye walk. The
-//! former walk without a stack: nodes are in depth-first order, and inner ones hold the index of the node after their subtree
+//! A hierarchy of boxes around copies, which rays towards lights walk. The shader walks it without
+//! a stack: nodes are in depth-first order, and inner ones hold the index of the node after their subtree
 //! (Smits 1998). Splits are binned by the surface area heuristic (Wald 2007).
 
 use super::tiles::Cylinder;
 use crate::scene::Placement;
 use crate::shader::CasterNode;
-use crate::shader::generated::{INNER_NODE, WALK_DEPTH};
+use crate::shader::generated::INNER_NODE;
 use glam::{DMat3, DVec3, Vec3};
 
 /// A copy and its box in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leaf {
-    instance: u32,
+    pub instance: u32,
     /// Index of its shape map.
     map: u32,
-    low: DVec3,
-    high: DVec3,
+    pub low: DVec3,
+    pub high: DVec3,
 }
 
 /// The nodes, and the point of the world from which they are measured.
@@ -50,7 +50,7 @@ impl Leaf {
         }
     }
 
-    fn middle(&self) -> DVec3 {
+    pub fn middle(&self) -> DVec3 {
         0.5 * (self.low + self.high)
     }
 }
@@ -66,49 +66,19 @@ impl Hierarchy {
 
     /// Builds the hierarchy over copies, whose order changes.
     pub fn new(leaves: &mut [Leaf]) -> Self {
-        let mut all = Self::at(middle_of(leaves));
-        all.add(leaves);
-        all
-    }
-
-    /// No hierarchies yet, measured from this point.
-    pub fn at(origin: DVec3) -> Self {
-        Self {
-            origin,
-            nodes: Vec::new(),
+        if leaves.is_empty() {
+            return Self::default();
         }
-    }
-
-    /// Adds a hierarchy over copies, whose order changes. The indices in its nodes count from its
-    /// root. Returns the index of the root.
-    pub fn add(&mut self, leaves: &mut [Leaf]) -> u32 {
-        let root = self.nodes.len();
-        if !leaves.is_empty() {
-            let end = root + 2 * leaves.len() - 1;
-            self.nodes.resize(end, CasterNode::default());
-            fill(leaves, &mut self.nodes[root..], (0, WALK_DEPTH), self.origin);
-        }
-        root as u32
+        let (low, high) = bounds(leaves);
+        let origin = 0.5 * (low + high);
+        let mut nodes = vec![CasterNode::default(); 2 * leaves.len() - 1];
+        fill(leaves, &mut nodes, 0, origin);
+        Self { origin, nodes }
     }
 }
 
-/// The middle of the box around copies.
-pub(crate) fn middle_of(leaves: &[Leaf]) -> DVec3 {
-    let (low, high) = bounds(leaves);
-    if leaves.is_empty() {
-        DVec3::ZERO
-    } else {
-        0.5 * (low + high)
-    }
-}
-
-/// Writes the nodes of a subtree. `first`: index of its root; `depth`: most levels of it.
-fn fill(
-    leaves: &mut [Leaf],
-    nodes: &mut [CasterNode],
-    (first, depth): (u32, u32),
-    origin: DVec3,
-) {
+/// Writes the nodes of a subtree. `first`: index of its root.
+fn fill(leaves: &mut [Leaf], nodes: &mut [CasterNode], first: u32, origin: DVec3) {
     let next = first + nodes.len() as u32;
     let (low, high) = bounds(leaves);
     if let [leaf] = leaves {
@@ -116,26 +86,24 @@ fn fill(
         return;
     }
     nodes[0] = node(low - origin, high - origin, next, INNER_NODE);
-    // Halves need the fewest levels.
-    let halves = leaves.len().ilog2() + 2 >= depth;
-    let count = split(leaves, halves);
+    let count = split(leaves);
     let (left, right) = leaves.split_at_mut(count);
     let (before, after) = nodes[1..].split_at_mut(2 * count - 1);
     let second = first + 2 * count as u32;
     if left.len() + right.len() < PARALLEL {
-        fill(left, before, (first + 1, depth - 1), origin);
-        fill(right, after, (second, depth - 1), origin);
+        fill(left, before, first + 1, origin);
+        fill(right, after, second, origin);
     } else {
         rayon::join(
-            || fill(left, before, (first + 1, depth - 1), origin),
-            || fill(right, after, (second, depth - 1), origin),
+            || fill(left, before, first + 1, origin),
+            || fill(right, after, second, origin),
         );
     }
 }
 
 /// Orders leaves so that the first ones form one subtree and the others the second. Returns the
-/// number of the first. `halves`: true for parts of one size.
-fn split(leaves: &mut [Leaf], halves: bool) -> usize {
+/// number of the first.
+fn split(leaves: &mut [Leaf]) -> usize {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = leaves.iter().fold(none, |(low, high), leaf| {
         (low.min(leaf.middle()), high.max(leaf.middle()))
@@ -143,7 +111,7 @@ fn split(leaves: &mut [Leaf], halves: bool) -> usize {
     let size = high - low;
     let axis = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
     let half = leaves.len() / 2;
-    let count = if size[axis] > 0.0 && !halves {
+    let count = if size[axis] > 0.0 {
         cheapest(leaves, axis, low[axis], size[axis]).unwrap_or(half)
     } else {
         half

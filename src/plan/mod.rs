@@ -13,9 +13,9 @@ pub(crate) mod proxy;
 mod tile_steps;
 pub(crate) mod tiles;
 mod view;
-pub(crate) mod walk;
 #[cfg(test)]
 mod viewports;
+pub(crate) mod walk;
 
 pub use path::DrawPath;
 pub(crate) use path::{Conditions, Path, PlanObject, shape_of};

@@ -2,8 +2,8 @@
 //! the picture.
 #![allow(clippy::unwrap_used)]
 
-use super::walk::Walks;
 use super::path::Conditions;
+use super::walk::Walks;
 use super::{Call, DepthOrder, FramePlan, PlanObject, View, Viewport, plan, shape_of};
 use crate::error::{ErrorKind, Result};
 use crate::profile::Profile;

@@ -1,29 +1,139 @@
 //! Objects with many copies that rays from the eye find by walking a hierarchy of boxes. Nothing here
 //! depends on the view.
+//!
+//! A hierarchy is a heap: the children of node `k` are `2 k` and `2 k + 1`, and all copies are on one
+//! level. Boxes have 16 bits per coordinate, in steps of one grid around all copies.
 
-use super::casters::{Hierarchy, Leaf, middle_of};
+use super::casters::Leaf;
 use super::path::Path;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector};
-use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS};
-use crate::shader::{Drawn, Kind, Pushed, Variant};
+use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS};
+use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
 use crate::solid::offset_surface::Part;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
+
+/// Steps of the grid along each axis.
+const STEPS: f64 = 65535.0;
+/// Number of leaves from which subtrees are filled in parallel.
+const PARALLEL: usize = 2048;
+
+/// The grid of the boxes of hierarchies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Grid {
+    pub low: DVec3,
+    /// Length of a step along each axis.
+    pub unit: DVec3,
+}
 
 /// Objects that share a pipeline, a set of textures and a hierarchy of their copies.
 #[derive(Clone, Debug, PartialEq)]
 struct Layer {
     /// Indices of the objects.
     objects: Vec<u32>,
-    /// Index of the root in [`Walks::hierarchy`].
+    /// Index of the hierarchy's first node in [`Walks::nodes`].
     root: u32,
 }
 
 /// The hierarchies of all objects whose path is [`Path::Walk`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walks {
-    pub hierarchy: Hierarchy,
+    pub grid: Grid,
+    pub nodes: Vec<WalkNode>,
     layers: Vec<Layer>,
+}
+
+impl Grid {
+    fn around(leaves: impl Iterator<Item = Leaf>) -> Self {
+        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = leaves.fold(none, |(low, high), leaf| {
+            (low.min(leaf.low), high.max(leaf.high))
+        });
+        let size = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
+        Self {
+            low,
+            unit: size / STEPS,
+        }
+    }
+
+    /// The node of a copy, whose box contains the copy's.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to STEPS
+    fn node(&self, leaf: &Leaf) -> WalkNode {
+        let steps = |p: DVec3| (p - self.low) / self.unit;
+        let low = steps(leaf.low)
+            .floor()
+            .clamp(DVec3::ZERO, DVec3::splat(STEPS));
+        let high = steps(leaf.high)
+            .ceil()
+            .clamp(DVec3::ZERO, DVec3::splat(STEPS));
+        WalkNode {
+            bounds: std::array::from_fn(|axis| low[axis] as u32 | (high[axis] as u32) << 16),
+            index: leaf.instance,
+        }
+    }
+}
+
+/// The node around two nodes.
+fn around(a: &WalkNode, b: &WalkNode) -> WalkNode {
+    let join = |a: u32, b: u32| (a & 0xffff).min(b & 0xffff) | (a >> 16).max(b >> 16) << 16;
+    WalkNode {
+        bounds: std::array::from_fn(|axis| join(a.bounds[axis], b.bounds[axis])),
+        index: INNER_NODE,
+    }
+}
+
+/// Fills the last level of a subtree, which has room for all leaves. Their order changes.
+fn fill(leaves: &mut [Leaf], level: &mut [WalkNode], grid: &Grid) {
+    let (half, room) = (leaves.len().div_ceil(2), level.len() / 2);
+    if let [leaf] = leaves {
+        // Nodes without a copy have its box, and no child of their own.
+        let node = grid.node(leaf);
+        level.fill(WalkNode {
+            index: INNER_NODE,
+            ..node
+        });
+        level[0] = node;
+        return;
+    }
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = leaves.iter().fold(none, |(low, high), leaf| {
+        (low.min(leaf.middle()), high.max(leaf.middle()))
+    });
+    let axis = (high - low).max_position();
+    leaves.select_nth_unstable_by(half, |a, b| {
+        let by_place = a.middle()[axis].total_cmp(&b.middle()[axis]);
+        by_place.then(a.instance.cmp(&b.instance))
+    });
+    let parallel = leaves.len() >= PARALLEL;
+    let ((left, right), (near, far)) = (leaves.split_at_mut(half), level.split_at_mut(room));
+    if parallel {
+        rayon::join(|| fill(left, near, grid), || fill(right, far, grid));
+    } else {
+        fill(left, near, grid);
+        fill(right, far, grid);
+    }
+}
+
+/// Adds a hierarchy over copies, whose order changes. Returns the index of its first node.
+fn add(nodes: &mut Vec<WalkNode>, leaves: &mut [Leaf], grid: &Grid) -> u32 {
+    let root = nodes.len();
+    let width = leaves.len().next_power_of_two();
+    nodes.resize(root + 2 * width, WalkNode::default());
+    let all = &mut nodes[root..];
+    all[0].index = width as u32;
+    fill(leaves, &mut all[width..], grid);
+    let mut level = width / 2;
+    while level > 0 {
+        let (parents, children) = all[level..].split_at_mut(level);
+        let pairs = children.as_chunks::<2>().0;
+        let parents = parents.par_iter_mut().with_min_len(PARALLEL);
+        parents
+            .zip(pairs)
+            .for_each(|(to, [a, b])| *to = around(a, b));
+        level /= 2;
+    }
+    root as u32
 }
 
 impl Walks {
@@ -46,14 +156,23 @@ impl Walks {
                 Leaf::new(instance, 0, placement, &of.shape)
             }));
         }
-        let first = layers.first().map_or(&[][..], |(_, leaves)| leaves);
-        let mut hierarchy = Hierarchy::at(middle_of(first));
+        if layers.is_empty() {
+            return Self::default();
+        }
+        let grid = Grid::around(layers.iter().flat_map(|(_, leaves)| leaves).copied());
+        let mut nodes = Vec::new();
         let built = layers.into_iter().map(|(mut layer, mut leaves)| {
-            layer.root = hierarchy.add(&mut leaves);
+            layer.root = add(&mut nodes, &mut leaves, &grid);
             layer
         });
         let layers = built.collect();
-        Self { hierarchy, layers }
+        // A walk reads the node after the last one.
+        nodes.push(WalkNode::default());
+        Self {
+            grid,
+            nodes,
+            layers,
+        }
     }
 }
 
@@ -67,7 +186,11 @@ impl FramePlan {
         (walks, first): (&Walks, u32),
         with: &Conditions,
     ) {
-        let kind = if with.compute { Kind::WalkTiles } else { Kind::Walk };
+        let kind = if with.compute {
+            Kind::WalkTiles
+        } else {
+            Kind::Walk
+        };
         let last = self.steps.iter().map(|step| step.phase).max();
         let mut phase = last.unwrap_or(1).max(1);
         let projector = projector(view, objects, with);
@@ -75,7 +198,12 @@ impl FramePlan {
         let tiles = projector.picture()[1] / GROUP_PIXELS * across..down * across;
         for layer in &walks.layers {
             let object = layer.objects[0];
-            debug_assert!(layer.objects.iter().all(|&n| paths[n as usize] == Path::Walk));
+            debug_assert!(
+                layer
+                    .objects
+                    .iter()
+                    .all(|&n| paths[n as usize] == Path::Walk)
+            );
             for &n in &layer.objects {
                 self.parts[n as usize][Part::Tables as usize] = true;
             }

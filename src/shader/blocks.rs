@@ -2,9 +2,9 @@
 
 pub use super::generated::{
     Appearance as AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, Frame as FrameView,
-    FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy,
-    LevelTables, Light as LightBlock, Object as ObjectBlock, Pushed, QueueBlock, QueueTile, QueuedCopy,
-    PlacedEye, Shape as ShapeBlock,
+    FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy, LevelTables,
+    Light as LightBlock, Object as ObjectBlock, PlacedEye, Pushed, QueueBlock, QueueTile,
+    QueuedCopy, Shape as ShapeBlock, WalkNode,
 };
 
 use super::generated::{INSTANCE_WORDS, OBJECT_STRIDE_WORDS, OBJECT_WORDS};

@@ -15,8 +15,8 @@ mod variant;
 
 pub use blocks::{
     AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView,
-    GatheredPixel, InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock, PlacedEye, Pushed,
-    QueueBlock, QueueTile, QueuedCopy, ShapeBlock,
+    GatheredPixel, InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock,
+    PlacedEye, Pushed, QueueBlock, QueueTile, QueuedCopy, ShapeBlock, WalkNode,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

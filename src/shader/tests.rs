@@ -126,7 +126,9 @@ fn reachable_variants_have_modules() {
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            let has = |k: &Kind| patches || (k.walks() && !matches!(k, Kind::Tiles | Kind::Walk | Kind::WalkTiles));
+            let has = |k: &Kind| {
+                patches || (k.walks() && !matches!(k, Kind::Tiles | Kind::Walk | Kind::WalkTiles))
+            };
             for kind in kinds.into_iter().filter(has) {
                 let variant = Variant::general(any(solver, planes));
                 assert!(words(&variant.module(kind)).is_some(), "{variant:?}");

@@ -26,10 +26,13 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
-// Nodes of the hierarchies of copies: first that of all copies that may cast shadows, in depth-first order, then those
-// that rays from the eye walk. src/plan/casters.rs builds them.
+// Nodes of all hierarchies of copies: first that of the copies that may cast shadows, in depth-first order
+// (src/plan/casters.rs), then those that rays from the eye walk (src/plan/walk.rs).
 layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
     CasterNode casters[];
+};
+layout(set = 0, binding = 3, std430) readonly buffer WalkBlock {
+    WalkNode walk_nodes[];
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {

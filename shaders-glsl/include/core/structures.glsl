@@ -44,15 +44,14 @@ struct CasterRoot {
     uint only_copy; // index of the only copy, or INNER_NODE
 };
 
-// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl).
+// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl), and the
+// eye in the grid of the hierarchies that rays walk (stage/walk.glsl).
 struct PlacedEye {
     vec3 high; // the eye is high + middle + low, world axes
-    float walk_slack; // margin of boxes in the hierarchies of `walked`
-    vec3 middle;
     float unused_0;
-    vec3 low;
+    vec3 middle;
     float unused_1;
-    vec3 walked; // from the origin of the hierarchies that rays from the eye walk
+    vec3 low;
     float unused_2;
     vec3 dir_high; // 12 bits of dir_00 in each member
     float unused_3;
@@ -60,6 +59,12 @@ struct PlacedEye {
     float unused_4;
     vec3 dir_low; // the rest
     float unused_5;
+    vec3 grid_unit; // length of a step of the grid along each axis
+    float unused_6;
+    vec3 grid_low; // the eye in such steps, and a margin
+    float unused_7;
+    vec3 grid_high; // less the margin
+    float unused_8;
 };
 
 // All data of a frame.
@@ -173,6 +178,12 @@ struct CasterNode {
     uint instance; // index of the copy, or INNER_NODE
 };
 
+// A node of a hierarchy that rays from the eye walk. `index` of a node without children is its copy, or INNER_NODE.
+struct WalkNode {
+    uvec3 bounds; // along each axis: least step of the grid | largest << 16
+    uint index;
+};
+
 // A square of pixels in which one copy may be visible: a tile in compute, also smaller for fragments.
 struct CopyTile {
     uint square; // x | y << QUAD_BITS | log2 of the side << (2 QUAD_BITS), pixels
@@ -226,7 +237,7 @@ struct Pushed {
     uint gathered; // 1 if a work group's pixels come from several tiles
     uint object; // index of the only object
     uint instance; // index of its only copy
-    uint root; // walk: index of the hierarchy's root; `first` is a tile of the picture, row by row, `tiles` in each
+    uint root; // walk: index of the hierarchy; `first` is a tile of the picture, row by row, `tiles` in each
 };
 
 #endif

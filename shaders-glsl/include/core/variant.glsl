@@ -125,7 +125,6 @@ const uint MAX_SHADOW_MAPS = 12u; // upper limit on shape maps of a scene with s
 const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of the hierarchy of casters that have children
 const uint PLACED = 4294967295u; // in place of a copy's table: the device places it
 const uint LEVEL_WORDS = 12u; // words of LevelTables
-const uint WALK_DEPTH = 32u; // levels of a hierarchy that rays from the eye walk
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
 const uint QUAD_BITS = 15u; // bits of each coordinate of a square's corner
 const uint TILE_BITS = 13u; // bits of the column, and of the row, of a tile with a queue

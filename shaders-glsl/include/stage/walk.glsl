@@ -1,4 +1,8 @@
 // Finds the nearest hit of a pixel among all copies of a hierarchy. Rays walk its boxes, nearest first.
+//
+// Nodes are in the order of a heap: the children of node k are 2 k and 2 k + 1, and nodes without children are on one
+// level. Node 0 has the index of the first of them. A walk needs no stack: a bit for each level says whether the sibling
+// of the way's node is still to be visited.
 #ifndef WALK_GLSL
 #define WALK_GLSL
 #include "core/placed.glsl"
@@ -17,63 +21,51 @@ float walk_depth_of(float t)
     return frame.depth_sense * depth;
 }
 
-// Returns the depth at which a ray enters a node's box, or NEVER. `inverse`: 1 / its direction. `depth`: that of the hit
-// so far; boxes behind it count as missed.
-float entry_of(CasterNode node, vec3 inverse, float depth)
+// Returns the depth at which a ray enters a node's box before depth `most`, or NEVER. `inverse`: grid steps over its
+// direction.
+float entry_of(WalkNode node, vec3 inverse, float most)
 {
-    vec3 way = node.middle - frame_block.eye.walked;
-    vec3 reach = node.half_size + frame_block.eye.walk_slack;
-    vec3 a = (way - reach) * inverse;
-    vec3 b = (way + reach) * inverse;
+    vec3 a = (vec3(node.bounds & 0xffffu) - frame_block.eye.grid_low) * inverse;
+    vec3 b = (vec3(node.bounds >> 16) - frame_block.eye.grid_high) * inverse;
     vec3 near = min(a, b);
     vec3 far = max(a, b);
     float enter = max(max(near.x, near.y), max(near.z, 0.0));
-    bool meets = enter <= min(far.x, min(far.y, far.z));
-    return meets && walk_depth_of(max(enter, 1e-30)) <= depth ? enter : NEVER;
+    return enter <= min(min(far.x, far.y), min(far.z, most)) ? enter : NEVER;
 }
 
 // Finds the nearest hit. Of equal depths, the first copy wins. Hits that are not nearer than the initial `depth`, which
-// grows away from the eye, are left out. `root`: index of the hierarchy's root; `at`: position of the ray
-// (pixel_ray.glsl); `index`: instance that was hit. `nearest.steps` and `nearest.exhausted` are those of all searches.
+// grows away from the eye, are left out. `root`: index of the hierarchy; `at`: position of the ray (pixel_ray.glsl);
+// `index`: instance that was hit. `nearest.steps` and `nearest.exhausted` are those of all searches.
 bool nearest_walked(uint root, vec2 at, inout float depth, out uint index, out Hit nearest)
 {
     vec3 direction = frame.dir_00 + at.x * frame.dir_x + at.y * frame.dir_y;
-    vec3 inverse = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    uint waiting[WALK_DEPTH]; // nodes that the ray enters after the current one
-    float entries[WALK_DEPTH]; // the depths at which it does
-    uint count = 0u;
+    vec3 inverse = frame_block.eye.grid_unit / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    uint leaves = walk_nodes[root].index;
+    uint k = 1u; // the current node; 0 at the end
+    uint trail = 0u; // bit n: the sibling of the node n levels above is still to be visited
+    float most = NEVER; // depth of the nearest hit
     uint steps = 0u;
     bool exhausted = false;
     bool found = false;
     index = INNER_NODE;
-    uint node = root;
-    bool is_met = entry_of(casters[root], inverse, depth) < NEVER;
     for (;;) {
         uint met = INNER_NODE;
         // Invocations meet behind this loop, each with the next copy of its own pixel.
-        while (met == INNER_NODE && (is_met || count > 0u)) {
-            if (!is_met) {
-                --count;
-                node = waiting[count];
-                is_met = walk_depth_of(max(entries[count], 1e-30)) <= depth;
-                continue;
-            }
-            met = casters[node].instance;
-            is_met = false;
-            if (met == INNER_NODE) {
-                CasterNode left = casters[node + 1u];
-                uint right = left.instance == INNER_NODE ? root + left.next : node + 2u;
-                float to_left = entry_of(left, inverse, depth);
-                float to_right = entry_of(casters[right], inverse, depth);
-                bool swaps = to_right < to_left;
-                if (max(to_left, to_right) < NEVER && count < WALK_DEPTH) {
-                    waiting[count] = swaps ? node + 1u : right;
-                    entries[count] = max(to_left, to_right);
-                    ++count;
-                }
-                node = swaps ? right : node + 1u;
-                is_met = min(to_left, to_right) < NEVER;
-            }
+        while (met == INNER_NODE && k != 0u) {
+            bool ends = k >= leaves;
+            uint pair = root + (ends ? k : 2u * k);
+            WalkNode first = walk_nodes[pair];
+            WalkNode second = walk_nodes[pair + 1u];
+            float to_first = entry_of(first, inverse, most);
+            float to_second = entry_of(second, inverse, most);
+            bool swaps = to_second < to_first;
+            bool both = max(to_first, to_second) < NEVER;
+            bool down = !ends && min(to_first, to_second) < NEVER;
+            met = ends && to_first < NEVER ? first.index : INNER_NODE;
+            uint up = uint(max(findLSB(trail), 0));
+            uint next = trail == 0u ? 0u : k >> up ^ 1u;
+            k = down ? 2u * k + uint(swaps) : next;
+            trail = down ? trail << 1 | uint(both) : trail >> up & ~1u;
         }
         if (met == INNER_NODE) {
             break;
@@ -85,11 +77,13 @@ bool nearest_walked(uint root, vec2 at, inout float depth, out uint index, out H
         bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
-        float met_at = walk_depth_of(rays.base + hit.t);
+        float t = rays.base + hit.t;
+        float met_at = walk_depth_of(t);
         if (hits && (met_at < depth || (found && met_at == depth && met < index))) {
             found = true;
             index = met;
             depth = met_at;
+            most = t * (1.0 + 1e-6);
             nearest = hit;
         }
     }

@@ -15,9 +15,9 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
+use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, View, plan};
 use crate::scene::{Lighting, Shadow};
-use crate::plan::walk::Walks;
 use crate::settings::{Planes, Planning, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
 use crate::solid::offset_surface::{OffsetSurface, Part};
@@ -180,7 +180,9 @@ impl Content {
         let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
         let is_same = |known: &&Arc<ViewPlan>| {
             let same_level = !shadowed || level(&known.objects) == level(&objects);
-            same_level && known.with.walks == with.walks && known.walked.casters.is_some() == shadowed
+            same_level
+                && known.with.walks == with.walks
+                && known.walked.casters.is_some() == shadowed
         };
         let known = known.filter(is_same).map(|known| known.walked.clone());
         self.make_surfaces(&mut new);

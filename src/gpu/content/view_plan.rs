@@ -9,7 +9,7 @@ use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{InstanceBlock, Search};
+use crate::shader::{CasterNode, InstanceBlock, Search, WalkNode};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -42,7 +42,8 @@ pub(crate) struct Walked {
 impl Walked {
     /// Number of nodes before those of [`Walked::seen`].
     pub fn first_seen(&self) -> u32 {
-        self.casters.as_ref().map_or(0, |all| all.nodes.len() as u32)
+        let before = self.casters.as_ref().map_or(0, |all| all.nodes.len());
+        (before * size_of::<CasterNode>() / size_of::<WalkNode>()) as u32
     }
 }
 

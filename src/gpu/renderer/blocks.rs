@@ -6,11 +6,12 @@ use crate::gpu::vk::output::Output;
 use crate::plan::View;
 use crate::plan::casters::Hierarchy;
 use crate::plan::precedence::lag_depth;
+use crate::plan::walk::Grid;
 use crate::scene::{Lighting, Object, Placement};
 use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT, PLACED};
 use crate::shader::{
-    AppearanceBlock, CasterNode, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy,
-    LevelTables, LightBlock, ObjectBlock, PlacedEye, ShapeBlock, is_beveled,
+    AppearanceBlock, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy, LevelTables,
+    LightBlock, ObjectBlock, PlacedEye, ShapeBlock, is_beveled,
 };
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use glam::{DVec2, DVec3, DVec4, Vec3};
@@ -74,25 +75,26 @@ pub(super) fn placed_block(placement: &Placement, number: u32) -> InstanceBlock 
     }
 }
 
-/// The eye for copies that the device places. `seen`: the hierarchies that rays from the eye walk.
-pub(super) fn placed_eye(view: &View, seen: &Hierarchy) -> PlacedEye {
+/// The eye for copies that the device places. `grid`: that of the hierarchies that rays walk.
+pub(super) fn placed_eye(view: &View, grid: &Grid) -> PlacedEye {
     let [high, middle, low] = parts(view.eye, |part| part);
     let cut = |part: f32| f32::from_bits(part.to_bits() & 0xffff_f000);
     let [dir_high, dir_middle, _] = parts(view.dir_00, cut);
     let [high_part, middle_part] = [dir_high, dir_middle].map(|part| Vec3::from(part).as_dvec3());
-    let walked = view.eye - seen.origin;
-    // Roundings of directions and of the eye's position, as in rays towards lights.
-    let size = |node: &CasterNode| Vec3::from(node.middle).length() + Vec3::from(node.half_size).length();
-    let largest = seen.nodes.iter().take(1).map(size).fold(0.0, f32::max);
+    let at = (view.eye - grid.low) / grid.unit.max(DVec3::splat(f64::MIN_POSITIVE));
+    // Roundings of the eye's position, and of directions from a far eye.
+    let margin = DVec3::splat(1.0) + 1e-6 * at.abs();
+    let vector = |v: DVec3| v.as_vec3().to_array();
     PlacedEye {
         high,
-        walk_slack: 2e-6 * (walked.length() as f32 + largest),
         middle,
         low,
-        walked: walked.as_vec3().to_array(),
         dir_high,
         dir_middle,
-        dir_low: (view.dir_00 - high_part - middle_part).as_vec3().to_array(),
+        dir_low: vector(view.dir_00 - high_part - middle_part),
+        grid_unit: vector(grid.unit),
+        grid_low: vector(at + margin),
+        grid_high: vector(at - margin),
         ..PlacedEye::default()
     }
 }

@@ -127,7 +127,7 @@ impl Renderer {
             let maps = snapshot.facts.shadow_maps.maps.len();
             block.casters = caster_root(casters, view.eye, maps);
         }
-        block.eye = placed_eye(view, &plan.walked.seen.hierarchy);
+        block.eye = placed_eye(view, &plan.walked.seen.grid);
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
         // Last, so that a failed call records nothing.
@@ -252,7 +252,8 @@ impl Renderer {
                 let block = |copy| placed_block(&placements[copy as usize], number);
                 to.write_instances(first, &shown, block)?;
             } else if !walks {
-                let starts = |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
+                let starts =
+                    |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
                 let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
                 to.write_instances(first, &shown, |copy| {
                     let placement = &placements[copy as usize];

@@ -286,7 +286,7 @@ impl FrameSlot {
             return Ok(keeps);
         }
         let casters = walked.casters.as_ref().map_or(&[][..], |all| &all.nodes);
-        let seen = walked.seen.hierarchy.nodes.as_slice();
+        let seen = walked.seen.nodes.as_slice();
         let bytes = size_of_val(casters) + size_of_val(seen);
         self.fit(SlotBuffer::Casters, bytes as u64)?;
         let nodes = self.buffer_mut(SlotBuffer::Casters).mapped()?;
