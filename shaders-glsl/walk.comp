@@ -9,13 +9,13 @@ void main()
 {
     load_frame(pushed.object);
     uint number = pushed.first + gl_WorkGroupID.x;
-    uvec2 tile = uvec2(number % pushed.tiles, number / pushed.tiles);
+    uvec2 tile = uvec2(number % pushed.count, number / pushed.count);
     uvec2 pixel = GROUP_PIXELS * tile + gl_LocalInvocationID.xy;
     if (all(lessThan(pixel, frame.size))) {
         float depth = drawn_depth(pixel);
         uint index;
         Hit hit;
-        bool found = nearest_walked(pushed.root, vec2(pixel), depth, index, hit);
+        bool found = nearest_walked(pushed.heads, vec2(pixel), depth, index, hit);
         count_steps(pixel, hit);
         if (found) {
             Instance i = placed(instances[index]);

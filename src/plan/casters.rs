@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3, Vec3};
 pub(crate) struct Leaf {
     pub instance: u32,
     /// Index of its shape map.
-    map: u32,
+    pub map: u32,
     pub low: DVec3,
     pub high: DVec3,
 }

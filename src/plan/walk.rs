@@ -228,14 +228,89 @@ impl FramePlan {
             for begin in tiles.clone().step_by(MOST_GROUPS as usize) {
                 let pushed = Pushed {
                     first: begin,
-                    tiles: across,
-                    root,
+                    count: across,
+                    heads: root,
                     object: objects[object as usize].number,
                     ..Pushed::default()
                 };
                 let groups = MOST_GROUPS.min(tiles.end - begin);
                 self.steps.push(step(Call::Groups(groups, pushed)));
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn leaf(n: u32) -> Leaf {
+        let part = |step: f64| (f64::from(n) * step).fract();
+        let middle = DVec3::new(part(0.754_877), part(0.569_840), 0.1 * part(0.41)) * 100.0;
+        // Copies far larger than others, and many at one place.
+        let size = if n % 97 == 0 { 30.0 } else { 0.2 + part(0.3) };
+        let middle = if n % 5 == 0 {
+            DVec3::splat(7.0)
+        } else {
+            middle
+        };
+        let half = DVec3::new(size, size, 0.5 * size);
+        Leaf {
+            instance: n,
+            map: 0,
+            low: middle - half,
+            high: middle + half,
+        }
+    }
+
+    fn ends(bounds: [u32; 3]) -> [[u32; 3]; 2] {
+        [bounds.map(|b| b & 0xffff), bounds.map(|b| b >> 16)]
+    }
+
+    /// Each copy is once in the heap, within its node's box and those of all nodes above.
+    #[test]
+    fn a_heap_holds_every_copy_once_and_within_its_boxes() {
+        for count in [1, 2, 3, 64, 65, 100, 5000] {
+            let mut leaves: Vec<Leaf> = (0..count).map(leaf).collect();
+            let grid = Grid::around(leaves.iter().copied());
+            let mut nodes = vec![WalkNode::default(); 3];
+            let root = add(&mut nodes, &mut leaves, &grid) as usize;
+            assert_eq!(root, 3);
+            let heap = &nodes[root..];
+            let width = heap[0].index as usize;
+            assert!(heap.len() == 2 * width && width < 2 * count as usize);
+            let mut seen = vec![0; count as usize];
+            for (k, node) in heap.iter().enumerate().skip(width) {
+                if node.index == INNER_NODE {
+                    continue;
+                }
+                seen[node.index as usize] += 1;
+                let copy = leaf(node.index);
+                let [low, high] = ends(node.bounds)
+                    .map(|end| grid.low + grid.unit * DVec3::from(end.map(f64::from)));
+                let slack = 1e-9;
+                assert!(
+                    (low - copy.low).max_element() < slack,
+                    "{count}, {}",
+                    node.index
+                );
+                assert!(
+                    (copy.high - high).max_element() < slack,
+                    "{count}, {}",
+                    node.index
+                );
+                let mut above = k / 2;
+                while above > 0 {
+                    let ([a, b], [c, d]) = (ends(heap[above].bounds), ends(node.bounds));
+                    let holds = |axis: usize| a[axis] <= c[axis] && d[axis] <= b[axis];
+                    assert!(
+                        (0..3).all(holds) && heap[above].index == INNER_NODE,
+                        "{above}"
+                    );
+                    above /= 2;
+                }
+            }
+            assert!(seen.iter().all(|n| *n == 1), "{count}");
         }
     }
 }

@@ -65,3 +65,4 @@ mod trouble;
 mod unsubmitted;
 mod updates;
 mod viewports;
+mod walks;

@@ -4,7 +4,7 @@ use crate::common::host::{COLOR, DEPTH, Options, dynamic, order};
 use crate::random::Random;
 use ash::vk;
 use revmap::gpu::{HostPass, Output, PassFormats, PassKind};
-use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Solver, Tolerance};
+use revmap::settings::{Plane, PlaneList, Planes, Planning, SearchSettings, Solver, Tolerance};
 
 /// An output, and how its renderer searches.
 #[derive(Clone, Debug)]
@@ -141,6 +141,7 @@ fn search(dice: &mut Random) -> SearchSettings {
             Tolerance::DEFAULT,
             Tolerance::new(8.0).unwrap(),
         ]),
+        planning: dice.pick(&[Planning::Host, Planning::Device]),
         ..SearchSettings::exact()
     }
 }

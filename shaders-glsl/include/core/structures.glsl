@@ -229,15 +229,14 @@ struct BinTile {
 
 // Push constants of a dispatch.
 struct Pushed {
-    uint first; // index of the first tile, or of the first gathered pixel
-    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host
-    uint heads; // index of the first head of their bins
+    uint first; // index of the first tile, or of the first gathered pixel; walks: of the first tile, row by row
+    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: number of tiles in a row
+    uint heads; // index of the first head of their bins; walks: of the hierarchy
     uint tiles; // index of the first tile of their bins
     uint bin; // number of the bin that is read
     uint gathered; // 1 if a work group's pixels come from several tiles
     uint object; // index of the only object
     uint instance; // index of its only copy
-    uint root; // walk: index of the hierarchy; `first` is a tile of the picture, row by row, `tiles` in each
 };
 
 #endif

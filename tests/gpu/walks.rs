@@ -1,0 +1,196 @@
+//! Walks: pictures of crowds whose copies rays find in a hierarchy are those that tiles give.
+
+use super::crowds::{army, seen};
+use crate::common::prelude::*;
+use crate::common::ways::apart;
+
+fn settings(stage: DrawStage, tolerance: Tolerance, planning: Planning) -> Settings {
+    Settings {
+        width: 233,
+        height: 131,
+        stage,
+        planes: Planes::All,
+        tolerance,
+        planning,
+        ..Settings::default()
+    }
+}
+
+/// Draws by this path.
+#[track_caller]
+fn drawn(scene: &Scene, settings: &Settings, path: DrawPath) -> Frame {
+    let mut offscreen = Offscreen::new(device(), scene, settings).unwrap();
+    offscreen.draw().unwrap();
+    assert_eq!(offscreen.renderer().draw_paths()[0], path);
+    offscreen.read().unwrap()
+}
+
+/// Pixels that differ: hit in one frame alone, seen elsewhere, or of another colour.
+fn differing(a: &Frame, b: &Frame) -> (usize, usize) {
+    let (hits, edge, far) = apart(a, b);
+    let colors = a.color.iter().zip(&b.color);
+    let shaded = colors.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 0.01));
+    (hits, edge + far + shaded.count())
+}
+
+/// Draws a crowd by both plannings in both stages. Rounding decides for at most one pixel in 10,000
+/// hits, and for two.
+#[track_caller]
+fn assert_alike(what: &str, scene: &Scene, tolerance: Tolerance) {
+    for stage in STAGES {
+        let [host, device] =
+            [Planning::Host, Planning::Device].map(|p| settings(stage, tolerance, p));
+        let tiles = drawn(scene, &host, DrawPath::Tiles);
+        let walk = drawn(scene, &device, DrawPath::Walk);
+        assert_sound(&walk, what);
+        let (hits, differ) = differing(&tiles, &walk);
+        assert!(hits > 100, "{what}");
+        assert!(
+            differ <= 2 + hits / 10_000,
+            "{what}, {stage:?}: {differ} of {hits} pixels"
+        );
+    }
+    device().check().unwrap();
+}
+
+#[test]
+fn walks_see_what_tiles_see() {
+    for (view, scene) in seen(&army(700)) {
+        assert_alike(view, &scene, Tolerance::EXACT);
+        assert_alike(view, &scene, Tolerance::DEFAULT);
+    }
+}
+
+/// The count that the other tests bound sees one copy in ten that is a hundredth of its size higher.
+#[test]
+fn moved_copies_are_noticed() {
+    let (_, scene) = seen(&army(700)).nth(1).unwrap();
+    let mut moved = scene.clone();
+    let mut copies: Vec<Placement> = moved.objects[0].instances.iter().copied().collect();
+    for copy in copies.iter_mut().step_by(10) {
+        copy.position.z += 0.01;
+    }
+    moved.objects[0].instances = copies.into();
+    let of = settings(DrawStage::Compute, Tolerance::EXACT, Planning::Device);
+    let [a, b] = [scene, moved].map(|scene| drawn(&scene, &of, DrawPath::Walk));
+    let (hits, differ) = differing(&a, &b);
+    assert!(differ > 2 + hits / 10_000, "{differ} of {hits}");
+}
+
+/// A crowd far from the world's origin, seen from a thousand times its size through a narrow lens:
+/// the device places copies with the digits of the host's double numbers.
+#[test]
+fn far_crowds_keep_their_digits() {
+    let (_, mut scene) = seen(&army(700)).nth(1).unwrap();
+    let shift = DVec3::new(3e7, -2e7, 1e6);
+    for object in &mut scene.objects {
+        let far = |p: &Placement| Placement {
+            position: p.position + shift,
+            ..*p
+        };
+        object.instances = object.instances.iter().map(far).collect();
+    }
+    let target = shift + DVec3::new(5.0, 5.0, 0.3);
+    scene.camera = Camera::new(target + DVec3::new(-9000.0, -7000.0, 6000.0), target);
+    scene.camera.fov_y = 0.1;
+    assert_alike("narrow", &scene, Tolerance::EXACT);
+    scene.camera.eye = target + DVec3::new(-9.0, -7.0, 6.0);
+    scene.camera.fov_y = 60.0;
+    assert_alike("near", &scene, Tolerance::EXACT);
+}
+
+/// Copies that the device places throw shadows on each other and on a solid that the host places.
+/// Rays along a surface begin at points that differ by roundings, so the reference judges.
+#[test]
+fn walks_and_proxies_shadow_each_other() {
+    let (_, mut scene) = seen(&army(300)).nth(1).unwrap();
+    let mut ground = Object::new("ground", Arc::new(shapes::discs()));
+    ground.placement = scaled([5.0, 5.0, -1.2], 14.0);
+    scene.objects.push(ground);
+    for shadow in [Shadow::Hard, Shadow::Soft] {
+        scene.shadow = shadow;
+        let of = |stage, planning| settings(stage, Tolerance::EXACT, planning);
+        let truth = reference(&scene, &of(STAGES[0], Planning::Host));
+        for stage in STAGES {
+            let tiles = drawn(&scene, &of(stage, Planning::Host), DrawPath::Tiles);
+            let walk = drawn(&scene, &of(stage, Planning::Device), DrawPath::Walk);
+            let [(hits, by_tiles), (_, by_walk)] = [tiles, walk].map(|f| differing(&truth, &f));
+            let most = by_tiles + 2 + hits / 10_000;
+            assert!(
+                by_walk <= most,
+                "{stage:?}: {by_walk} of {hits}, {by_tiles} by tiles"
+            );
+        }
+    }
+    device().check().unwrap();
+}
+
+/// The same renderer draws views and copies that change as a new one does.
+#[test]
+fn changes_are_seen() {
+    let (_, first) = seen(&army(400)).next().unwrap();
+    for stage in STAGES {
+        let of = settings(stage, Tolerance::DEFAULT, Planning::Device);
+        let mut offscreen = Offscreen::new(device(), &first, &of).unwrap();
+        let mut scene = first.clone();
+        for step in 0..5 {
+            match step {
+                0 | 1 => scene.camera.eye += DVec3::new(-1.0, -0.5, 0.7),
+                2 => {
+                    let copies = scene.objects[1].instances.iter().copied();
+                    scene.objects[1].instances = copies.skip(150).collect();
+                }
+                3 => {
+                    scene.objects.remove(0);
+                }
+                _ => scene.objects[0].offset.extend = 0.02,
+            }
+            let same = updated(&mut offscreen, &scene);
+            let new = drawn(&scene, &of, DrawPath::Walk);
+            assert_eq!(same.first_difference(&new), None, "{stage:?}, step {step}");
+        }
+    }
+    device().check().unwrap();
+}
+
+/// Walks leave to tiles what only tiles draw.
+#[test]
+fn the_host_plans_what_cannot_be_walked() {
+    let (_, crowd) = seen(&army(100)).nth(1).unwrap();
+    let of = settings(DrawStage::Compute, Tolerance::DEFAULT, Planning::Device);
+    let few = |scene: &Scene| {
+        let mut few = scene.clone();
+        for object in &mut few.objects {
+            object.instances = object.instances.iter().copied().take(60).collect();
+        }
+        few
+    };
+    let mut repeated = crowd.clone();
+    repeated.objects[0].repeat = [2, 1, 1];
+    let mut together = few(&crowd);
+    together.objects.truncate(1);
+    let copies = together.objects[0].instances.iter().copied();
+    together.objects[0].instances = copies.clone().chain(copies.take(40)).collect();
+    let live = of.with(|s| s.solver = Solver::Live);
+    for (scene, of) in [
+        (&few(&crowd), of),
+        (&repeated, of),
+        (&together, of),
+        (&crowd, live),
+    ] {
+        drawn(scene, &of, DrawPath::Tiles);
+    }
+    let mut offscreen = Offscreen::new(device(), &crowd, &of).unwrap();
+    let whole = next_frame(&mut offscreen);
+    assert_eq!(offscreen.renderer().draw_paths(), [DrawPath::Walk; 3]);
+    let all = vec![true; whole.pixels()];
+    offscreen.open(Some(&all)).unwrap();
+    let opened = next_frame(&mut offscreen);
+    assert_eq!(offscreen.renderer().draw_paths(), [DrawPath::Tiles; 3]);
+    let (hits, differ) = differing(&whole, &opened);
+    assert!(differ <= 2 + hits / 10_000, "{differ} of {hits}");
+    offscreen.open(None).unwrap();
+    let again = next_frame(&mut offscreen);
+    assert_eq!(whole.first_difference(&again), None);
+    device().check().unwrap();
+}
