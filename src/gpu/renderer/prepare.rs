@@ -243,6 +243,9 @@ impl Renderer {
                 let at = at + size_of::<ObjectBlock>();
                 to.write(SlotBuffer::Objects, at, &level_tables(planned))?;
             }
+            if walks && are_placed && !motion {
+                continue;
+            }
             let shown: Cow<[u32]> = match copies {
                 Some(shown) => shown.into(),
                 None => (0..placements.len() as u32).collect(),
