@@ -258,7 +258,9 @@ fn all_walked_copies_move(bencher: Bencher, count: usize) {
 /// A thousand of the copies are gone in every other frame.
 #[divan::bench(args = [10_000, 100_000])]
 fn copies_come_and_go(bencher: Bencher, count: usize) {
-    copies(bencher, Planning::Host, |frame| field(count - 1000 * (frame % 2), 0));
+    copies(bencher, Planning::Host, |frame| {
+        field(count - 1000 * (frame % 2), 0)
+    });
 }
 
 #[divan::bench(sample_count = 20)]

@@ -12,15 +12,13 @@ void main()
     uvec2 tile = uvec2(number % pushed.count, number / pushed.count);
     uvec2 pixel = GROUP_PIXELS * tile + gl_LocalInvocationID.xy;
     if (all(lessThan(pixel, frame.size))) {
-        float depth = drawn_depth(pixel);
-        uint index;
-        Hit hit;
-        bool found = nearest_walked(pushed.heads, vec2(pixel), depth, index, hit);
-        count_steps(pixel, hit);
-        if (found) {
-            Instance i = placed(instances[index]);
+        Nearest nearest = nothing_nearer_than(drawn_depth(pixel));
+        walk(pushed.heads, vec2(pixel), nearest);
+        count_steps(pixel, nearest.hit);
+        if (nearest.found) {
+            Instance i = placed(instances[nearest.index]);
             load(i);
-            store(pixel, depth, shade(look_of(i, index), pixel_rays(i), pixel, hit));
+            store(pixel, nearest.depth, shade(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit));
         }
     }
 }

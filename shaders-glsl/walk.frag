@@ -14,16 +14,14 @@ void main()
 {
     vec2 pixel = gl_FragCoord.xy - 0.5; // of the sample, where each has a ray
     load_frame(walk_root.y);
-    float depth = 2.0; // behind everything
-    uint index;
-    Hit hit;
-    bool found = nearest_walked(walk_root.x, pixel, depth, index, hit);
-    count_steps(pixel, hit.steps, hit.exhausted);
-    if (!found) {
+    Nearest nearest = nothing_nearer_than(2.0); // behind everything
+    walk(walk_root.x, pixel, nearest);
+    count_steps(pixel, nearest.hit.steps, nearest.hit.exhausted);
+    if (!nearest.found) {
         discard;
     }
-    Instance i = placed(instances[index]);
+    Instance i = placed(instances[nearest.index]);
     load(i);
-    draw(look_of(i, index), pixel_rays(i), pixel, hit);
-    gl_FragDepth = buffer_depth_of(clamp(frame.depth_sense * depth, 0.0, 1.0));
+    draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit);
+    gl_FragDepth = buffer_depth_of(clamp(frame.depth_sense * nearest.depth, 0.0, 1.0));
 }

@@ -110,6 +110,7 @@ impl PipelineCompiler {
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,
                 occlusion_culling: true,
+                plans_on_device: true,
                 ..Conditions::default()
             },
             report: chosen.report,

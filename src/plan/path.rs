@@ -126,12 +126,6 @@ const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
 /// and 0.97 at 250, and 0.68 and 0.71 at 960. At 253 pixels, of 100 copies, they take 1.1 and 0.87.
 const LISTED_PIXELS: u64 = 2;
 
-/// Least pixels of listed tiles on GPUs, where one more pass and its barriers take as long as many
-/// pixels. On an NVIDIA H100 lists of one solid take 1.5 to 2.0 of the tree's time at 200,000 to
-/// 400,000 pixels, 1.1 to 1.2 at 1.5 million, 0.8 to 0.9 at 6 million. Smaller GPUs, none of which
-/// was measured, should gain earlier, so this is less than the H100's own break-even.
-const GPU_LISTED_PIXELS: u64 = 1 << 19;
-
 /// Radius of a solid, in heights, from which lists pay with fewer pixels: the tree visits a ray's
 /// patches by height. A record of 75 takes 4.5 times as long by the tree on an H100, and 21 times on
 /// lavapipe 22; a plate of 10 takes as long as others.
@@ -167,10 +161,13 @@ impl Conditions {
         technique.search == Search::Quadric && !technique.replicas
     }
 
-    /// True if rays walk a hierarchy of an object's copies, in any view.
+    /// True if rays walk a hierarchy of an object's copies, in any view. Fragments draw few copies by
+    /// proxies, and compute draws flat solids by lists of patches.
     pub fn walks_to(&self, of: &PlanObject) -> bool {
         let many = of.object.placements().len() > self.most_proxies();
-        self.walks && many && of.surface().is_some() && self.may_walk(&of.technique)
+        let chooses = self.compute && self.takes_patches && self.least_pixels > 0;
+        let pays = many || (chooses && !(is_flat(of.object) && self.permits_lists(of)));
+        self.walks && pays && of.surface().is_some() && self.may_walk(&of.technique)
     }
 
     /// True if rays may walk a hierarchy of copies of a technique.
@@ -246,8 +243,7 @@ impl Conditions {
     pub fn gains_by_lists(&self, tiles: u64, patches: u64, flat: impl Fn() -> bool) -> bool {
         let least = LISTED_PIXELS * u64::from(self.least_pixels);
         let least = least.saturating_mul(patches);
-        let pays_early = self.software || self.least_pixels == 0 || flat();
-        pixels(tiles) >= least && (pays_early || pixels(tiles) >= GPU_LISTED_PIXELS)
+        pixels(tiles) >= least && (self.software || self.least_pixels == 0 || flat())
     }
 
     /// Most bytes that bins of tiles may take.
@@ -352,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn gpus_list_patches_in_large_pictures_and_for_flat_solids() {
+    fn gpus_list_patches_for_flat_solids() {
         let with = |software, least_pixels| Conditions {
             software,
             least_pixels,
@@ -362,7 +358,7 @@ mod tests {
         let gains =
             |of: &Conditions, pixels: u64, flat| of.gains_by_lists(pixels / 64, 96, || flat);
         assert!(!gains(&cpu, 25_600, false) && gains(&cpu, 32_000, false));
-        assert!(!gains(&gpu, 500_000, false) && gains(&gpu, 530_000, false));
+        assert!(!gains(&gpu, 6_000_000, false));
         assert!(!gains(&gpu, 25_600, true) && gains(&gpu, 32_000, true));
         assert!(gains(&any, 64, false));
     }

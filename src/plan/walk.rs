@@ -6,13 +6,14 @@
 
 use super::casters::Leaf;
 use super::path::Path;
-use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector};
+use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS};
 use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
 use crate::solid::offset_surface::Part;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Steps of the grid along each axis.
 const STEPS: f64 = 65535.0;
@@ -207,10 +208,16 @@ impl FramePlan {
             for &n in &layer.objects {
                 self.parts[n as usize][Part::Tables as usize] = true;
             }
-            let mut variant = variants[object as usize].seen_from_outside(false);
+            let mut variant = variants[object as usize];
             if layer.objects.len() > 1 {
                 variant.speciality.drawn = Drawn::Objects;
             }
+            let of = &objects[object as usize];
+            let apart = |surface: &Arc<_>| proxy::is_seen_from_outside(of.object, surface, view);
+            let outside =
+                variant.speciality.drawn == Drawn::OneCopy && of.surface().is_some_and(apart);
+            self.outside[object as usize] = outside;
+            let variant = variant.seen_from_outside(outside);
             let root = first + layer.root;
             // Each layer compares its depths with those of the layers before it.
             phase += u32::from(with.compute);
@@ -230,7 +237,7 @@ impl FramePlan {
                     first: begin,
                     count: across,
                     heads: root,
-                    object: objects[object as usize].number,
+                    object: of.number,
                     ..Pushed::default()
                 };
                 let groups = MOST_GROUPS.min(tiles.end - begin);

@@ -106,6 +106,7 @@ fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
             DrawStage::Compute => 0,
         },
         tolerance: Tolerance::EXACT,
+        planning: Planning::Host,
         ..Settings::default()
     };
     let mut scene = scene.clone();

@@ -54,6 +54,7 @@ fn settings(stage: DrawStage, occlusion_culling: bool) -> Settings {
         },
         planes: Planes::All,
         occlusion_culling,
+        planning: Planning::Host,
         ..Settings::exact()
     }
 }

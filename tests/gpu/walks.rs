@@ -171,9 +171,10 @@ fn the_host_plans_what_cannot_be_walked() {
     together.objects.truncate(1);
     let copies = together.objects[0].instances.iter().copied();
     together.objects[0].instances = copies.clone().chain(copies.take(40)).collect();
+    let fragment = settings(DrawStage::Fragment, Tolerance::DEFAULT, Planning::Device);
     let live = of.with(|s| s.solver = Solver::Live);
     for (scene, of) in [
-        (&few(&crowd), of),
+        (&few(&crowd), fragment),
         (&repeated, of),
         (&together, of),
         (&crowd, live),

@@ -10,7 +10,7 @@
 
 const float NEVER = 3e38; // in place of the depth at which a ray enters a box
 
-// Returns a depth in the unit of nearest_walked. Fragments read no depths of a buffer, so theirs are in clip space.
+// Returns a depth as copies are compared by. Fragments read no depths of a buffer, so theirs are in clip space.
 float walk_depth_of(float t)
 {
 #ifdef CLIP_DEPTHS
@@ -33,21 +33,55 @@ float entry_of(WalkNode node, vec3 inverse, float most)
     return enter <= min(min(far.x, far.y), min(far.z, most)) ? enter : NEVER;
 }
 
-// Finds the nearest hit. Of equal depths, the first copy wins. Hits that are not nearer than the initial `depth`, which
-// grows away from the eye, are left out. `root`: index of the hierarchy; `at`: position of the ray (pixel_ray.glsl);
-// `index`: instance that was hit. `nearest.steps` and `nearest.exhausted` are those of all searches.
-bool nearest_walked(uint root, vec2 at, inout float depth, out uint index, out Hit nearest)
+// The nearest hit of a pixel so far.
+struct Nearest {
+    bool found;
+    uint index; // instance
+    float depth; // in the unit of walk_depth_of; before the first hit a limit that grows away from the eye
+    float most; // depth behind which nothing is nearer
+    Hit hit; // its steps and `exhausted` are those of all searches
+};
+
+Nearest nothing_nearer_than(float depth)
+{
+    return Nearest(false, INNER_NODE, depth, NEVER, NO_HIT);
+}
+
+// Traces a copy. Of equal depths, the first copy wins.
+void take_nearer(uint number, vec2 at, inout Nearest nearest)
+{
+    Instance i = placed(instances[number]);
+    load_shape(i);
+    PixelRays rays = pixel_rays(i);
+    Hit hit;
+    bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
+    uint steps = nearest.hit.steps + hit.steps;
+    bool exhausted = nearest.hit.exhausted || hit.exhausted;
+    float t = rays.base + hit.t;
+    float depth = walk_depth_of(t);
+    bool first = nearest.found && depth == nearest.depth && number < nearest.index;
+    if (hits && (depth < nearest.depth || first)) {
+        nearest = Nearest(true, number, depth, t * (1.0 + 1e-6), hit);
+    }
+    nearest.hit.steps = steps;
+    nearest.hit.exhausted = exhausted;
+}
+
+// Finds the nearest hit among the copies of a hierarchy. `root`: its index; `at`: position of the ray (pixel_ray.glsl).
+void walk(uint root, vec2 at, inout Nearest nearest)
 {
     vec3 direction = frame.dir_00 + at.x * frame.dir_x + at.y * frame.dir_y;
     vec3 inverse = frame_block.eye.grid_unit / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    if (ONE_OBJECT == 2u) {
+        // The only copy is the same for all invocations.
+        if (entry_of(walk_nodes[root + 1u], inverse, NEVER) < NEVER) {
+            take_nearer(walk_nodes[root + 1u].index, at, nearest);
+        }
+        return;
+    }
     uint leaves = walk_nodes[root].index;
     uint k = 1u; // the current node; 0 at the end
     uint trail = 0u; // bit n: the sibling of the node n levels above is still to be visited
-    float most = NEVER; // depth of the nearest hit
-    uint steps = 0u;
-    bool exhausted = false;
-    bool found = false;
-    index = INNER_NODE;
     for (;;) {
         uint met = INNER_NODE;
         // Invocations meet behind this loop, each with the next copy of its own pixel.
@@ -56,8 +90,8 @@ bool nearest_walked(uint root, vec2 at, inout float depth, out uint index, out H
             uint pair = root + (ends ? k : 2u * k);
             WalkNode first = walk_nodes[pair];
             WalkNode second = walk_nodes[pair + 1u];
-            float to_first = entry_of(first, inverse, most);
-            float to_second = entry_of(second, inverse, most);
+            float to_first = entry_of(first, inverse, nearest.most);
+            float to_second = entry_of(second, inverse, nearest.most);
             bool swaps = to_second < to_first;
             bool both = max(to_first, to_second) < NEVER;
             bool down = !ends && min(to_first, to_second) < NEVER;
@@ -70,26 +104,8 @@ bool nearest_walked(uint root, vec2 at, inout float depth, out uint index, out H
         if (met == INNER_NODE) {
             break;
         }
-        Instance i = placed(instances[met]);
-        load_shape(i);
-        PixelRays rays = pixel_rays(i);
-        Hit hit;
-        bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
-        steps += hit.steps;
-        exhausted = exhausted || hit.exhausted;
-        float t = rays.base + hit.t;
-        float met_at = walk_depth_of(t);
-        if (hits && (met_at < depth || (found && met_at == depth && met < index))) {
-            found = true;
-            index = met;
-            depth = met_at;
-            most = t * (1.0 + 1e-6);
-            nearest = hit;
-        }
+        take_nearer(met, at, nearest);
     }
-    nearest.steps = steps;
-    nearest.exhausted = exhausted;
-    return found;
 }
 
 #endif

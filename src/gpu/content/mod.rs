@@ -175,14 +175,12 @@ impl Content {
             walks: with.walks && precedence.is_empty(),
             ..with
         };
-        // Levels that all objects share change the boxes of casters.
-        let level = |objects: &[PlannedObject]| objects.first().map(|object| object.level);
         let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
         let is_same = |known: &&Arc<ViewPlan>| {
-            let same_level = !shadowed || level(&known.objects) == level(&objects);
-            same_level
-                && known.with.walks == with.walks
-                && known.walked.casters.is_some() == shadowed
+            // Boxes are those of the levels of surfaces.
+            let levels = known.objects.iter().map(|object| object.level);
+            let shadows = known.walked.casters.is_some() == shadowed;
+            shadows && known.with.walks == with.walks && levels.eq(objects.iter().map(|o| o.level))
         };
         let known = known.filter(is_same).map(|known| known.walked.clone());
         self.make_surfaces(&mut new);
