@@ -15,7 +15,7 @@ use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::Conditions;
 use crate::scene::{Clip, Lighting, Object, Shadow};
-use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
+use crate::settings::{DrawStage, Plane, Planes, Planning, SearchSettings, Solver};
 use crate::shader::{
     Drawn, HostLook, Kind, Lights, Outside, ShadowCasters, Speciality, Technique, Variant,
 };
@@ -135,6 +135,7 @@ impl PipelineCompiler {
         let settings = SearchSettings {
             solver,
             map_format: look.format,
+            planning: Planning::Device,
             ..SearchSettings::default()
         };
         let (lighting, object, planes) = (&look.lighting, &look.object, look.planes);

@@ -8,7 +8,7 @@ use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow, Texturing};
-use crate::settings::{Planes, SearchSettings, Solver};
+use crate::settings::{Planes, Planning, SearchSettings, Solver};
 
 /// Properties of the objects that a shadow's ray may meet. The code of the object at which the ray
 /// starts must handle them.
@@ -47,6 +47,8 @@ pub struct Technique {
     pub replicas: bool,
     /// One of `SHADOW_*`.
     pub shadow: u32,
+    /// True if the device may place copies that throw shadows.
+    pub placed_casters: bool,
     /// True if colours come from a map.
     pub color_map: bool,
     /// One of `BUMP_*`.
@@ -82,6 +84,7 @@ impl Technique {
         output: Output::Color,
         replicas: false,
         shadow: g::SHADOW_OFF,
+        placed_casters: false,
         color_map: false,
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
@@ -142,8 +145,10 @@ impl Technique {
         if output == Output::Depth {
             return technique;
         }
+        let places = settings.planning == Planning::Device;
         Self {
             shadow,
+            placed_casters: places && casts && technique.search == Search::Quadric,
             color_map,
             bump,
             projection: match texturing.projection {

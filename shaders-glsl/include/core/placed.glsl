@@ -56,11 +56,11 @@ Instance placed(Instance i)
     return i;
 }
 
-// Returns instance `number` as the view has it.
-Instance seen_instance(uint number)
+// Returns instance `number`, which may throw a shadow, as the view has it.
+Instance caster_instance(uint number)
 {
     Instance i = instances[number];
-    if (i.table == PLACED) {
+    if (PLACED_CASTERS != 0u && i.table == PLACED) {
         i = placed(i);
     }
     return i;

@@ -153,7 +153,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             if (met == INNER_NODE) {
                 break;
             }
-            Instance i = seen_instance(met);
+            Instance i = caster_instance(met);
             load_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load

@@ -74,7 +74,14 @@ impl Content {
             geometry,
             rebuilds: 0,
             notes: Vec::new(),
-            settings: *settings,
+            settings: SearchSettings {
+                planning: match (settings.planning, &*device.chosen.report.kind) {
+                    (Planning::Auto, "cpu") => Planning::Host,
+                    (Planning::Auto, _) => Planning::Device,
+                    (chosen, _) => chosen,
+                },
+                ..*settings
+            },
             output,
             host_shades,
             device: device.clone(),
@@ -217,19 +224,13 @@ impl Content {
     /// The inputs of a plan other than view and objects.
     pub fn conditions(&self) -> Conditions {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
-        let software = chosen.report.kind == "cpu";
-        let on_device = match self.settings.planning {
-            Planning::Auto => !software,
-            Planning::Host => false,
-            Planning::Device => true,
-        };
-        let plans_on_device = on_device && !self.is_parallel();
+        let plans_on_device = self.settings.planning == Planning::Device && !self.is_parallel();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
-            software,
+            software: chosen.report.kind == "cpu",
             subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
             least_pixels: self.settings.proxy_min_pixels,
