@@ -3,6 +3,7 @@
 // Traces a fragment: the nearest copy of a hierarchy.
 #define SINGLE
 #define CLIP_DEPTHS
+#include "core/look.glsl"
 #include "stage/walk.glsl"
 #include "stage/outputs.glsl"
 
@@ -22,6 +23,5 @@ void main()
     }
     Instance i = placed(instances[nearest.index]);
     load(i);
-    draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit);
-    gl_FragDepth = buffer_depth_of(clamp(frame.depth_sense * nearest.depth, 0.0, 1.0));
+    gl_FragDepth = draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit);
 }

@@ -172,7 +172,7 @@ impl Conditions {
 
     /// True if rays may walk a hierarchy of copies of a technique.
     fn may_walk(&self, technique: &Technique) -> bool {
-        self.plans_on_device && technique.is_shaded() && Self::searches_queues(technique)
+        self.plans_on_device && Self::searches_queues(technique)
     }
 
     /// The path of an object in a view: a walk, else cells, else tiles, else boxes.

@@ -217,7 +217,7 @@ pub fn modules() -> Vec<Module> {
         (Entry::TilePatches, patches, &[Color, Planes]),
         (Entry::Cells, patches, &[Planes, List, Depth]),
         (Entry::Tiles, patches, &[Planes, List]),
-        (Entry::Walk, patches, &[Planes, List]),
+        (Entry::Walk, patches, &[Planes, List, Depth]),
         (Entry::WalkTiles, patches, &[Color, Planes]),
     ];
     for (entry, searches, outputs) in rows {

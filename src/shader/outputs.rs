@@ -119,7 +119,7 @@ mod tests {
             assert!(!chained, "{}", module.name());
             found += 1;
         }
-        assert_eq!(found, 4);
+        assert_eq!(found, 5);
     }
 
     /// Vertices write all that fragments read; validation layers report outputs that none reads.

@@ -1,6 +1,9 @@
 //! Walks: pictures of crowds whose copies rays find in a hierarchy are those that tiles give.
 
 use super::crowds::{army, seen};
+use super::embedding::{drawn_by, options};
+use super::embedding_outputs::{depth_only, depths};
+use crate::common::host::{opened, view_of};
 use crate::common::prelude::*;
 use crate::common::ways::apart;
 
@@ -123,6 +126,22 @@ fn walks_and_proxies_shadow_each_other() {
         }
     }
     device().check().unwrap();
+}
+
+/// A prepass of depths has those of the main pass to the last bit: both walk.
+#[test]
+fn a_prepass_has_the_depths_of_the_main_pass() {
+    let (host, device) = opened();
+    let (_, scene) = seen(&army(200)).nth(1).unwrap();
+    let view = view_of(&scene, &options());
+    let search = SearchSettings {
+        planning: Planning::Device,
+        ..SearchSettings::default()
+    };
+    let (before, paths) = depths(&host, &device, &scene, &view, &search, &depth_only(false));
+    assert_eq!(paths, [DrawPath::Walk; 3]);
+    let (_, main) = drawn_by(&host, &device, options(), &scene, &view, &search);
+    assert!(before == main && before.iter().filter(|d| **d < 1.0).count() > 3000);
 }
 
 /// The same renderer draws views and copies that change as a new one does.
