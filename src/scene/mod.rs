@@ -47,6 +47,8 @@ pub struct Scene {
     pub background: [f32; 4],
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
+    /// The sky that surfaces reflect, if there is one.
+    pub environment: Option<Environment>,
     /// The eye.
     pub camera: Camera,
     /// Directional lights.
@@ -65,6 +67,7 @@ impl Scene {
         Self {
             background: [0.0; 4],
             ambient: Self::AMBIENT,
+            environment: None,
             camera,
             lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
@@ -77,6 +80,7 @@ impl Scene {
     pub fn lighting(&self) -> Lighting {
         Lighting {
             ambient: self.ambient,
+            environment: self.environment,
             lights: self.lights.clone(),
             shadow: self.shadow,
         }
@@ -195,11 +199,27 @@ impl Default for Light {
     }
 }
 
+/// A sky of two colours around the scene, linear RGB. Its colour in direction `d`, a unit vector, is
+/// `sky(d) = mix(down, up, 0.5 + 0.5 d.z)`. Nothing hides it.
+///
+/// A surface adds `albedo * sky(n) + specular * mix(1, albedo, metalness) * sky(mix(r, n, roughness))`
+/// to its colour. `n` is the normal and `r` the direction in which the surface reflects the ray from
+/// the eye. `specular` is [`Specular::strength`], the others are of [`Material`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Environment {
+    /// The colour straight up, along `+z`.
+    pub up: [f32; 3],
+    /// The colour straight down.
+    pub down: [f32; 3],
+}
+
 /// The lights and shadows of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
+    /// The sky that surfaces reflect, if there is one. A function of the host shades without it.
+    pub environment: Option<Environment>,
     /// Directional lights.
     pub lights: Vec<Light>,
     /// Shadows of objects on each other and on themselves.
@@ -207,10 +227,11 @@ pub struct Lighting {
 }
 
 impl Default for Lighting {
-    /// A little ambient light, [`Light::pair`], no shadows.
+    /// A little ambient light, no environment, [`Light::pair`], no shadows.
     fn default() -> Self {
         Self {
             ambient: Scene::AMBIENT,
+            environment: None,
             lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
         }

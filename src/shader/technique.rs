@@ -47,6 +47,8 @@ pub struct Technique {
     pub replicas: bool,
     /// One of `SHADOW_*`.
     pub shadow: u32,
+    /// True if surfaces reflect an environment.
+    pub environment: bool,
     /// True if colours come from a map.
     pub color_map: bool,
     /// One of `BUMP_*`.
@@ -82,6 +84,7 @@ impl Technique {
         output: Output::Color,
         replicas: false,
         shadow: g::SHADOW_OFF,
+        environment: false,
         color_map: false,
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
@@ -144,6 +147,7 @@ impl Technique {
         }
         Self {
             shadow,
+            environment: lighting.environment.is_some() && !host.shading,
             color_map,
             bump,
             projection: match texturing.projection {

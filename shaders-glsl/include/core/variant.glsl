@@ -46,6 +46,7 @@ const uint SHADOW = 0u;
 #else
 layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #endif
+layout(constant_id = 7) const uint ENVIRONMENT = 0u; // 1: surfaces reflect the sky
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
 layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*

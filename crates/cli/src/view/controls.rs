@@ -5,7 +5,7 @@ use super::times::Times;
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::Projection;
-use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
+use revmap::scene::{BumpForm, Clip, Environment, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Tolerance};
 use revmap_searches::folder;
 
@@ -123,6 +123,11 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
     changed |= row(ui, "ambient", |ui| {
         ui.color_edit_button_rgb(&mut scene.ambient).changed()
     });
+    if let Some(Environment { up, down }) = &mut scene.environment {
+        changed |= row(ui, "environment", |ui| {
+            any([up, down].into_iter().map(|side| ui.color_edit_button_rgb(side).changed()))
+        });
+    }
     for (n, light) in scene.lights.iter_mut().enumerate() {
         changed |= row(ui, &format!("light {n}"), |ui| {
             let turned = coordinates(ui, light.direction.as_mut());
