@@ -202,15 +202,29 @@ impl Default for Light {
 /// A sky of two colours around the scene, linear RGB. Its colour in direction `d`, a unit vector, is
 /// `sky(d) = mix(down, up, 0.5 + 0.5 d.z)`. Nothing hides it.
 ///
-/// A surface adds `albedo * sky(n) + specular * mix(1, albedo, metalness) * sky(mix(r, n, roughness))`
-/// to its colour. `n` is the normal and `r` the direction in which the surface reflects the ray from
-/// the eye. `specular` is [`Specular::strength`], the others are of [`Material`].
+/// A surface adds `albedo sky(n) + specular mix(f, albedo, metalness) sky(mix(r, n, roughness))` to its
+/// colour. `n` is the normal, and `r` the direction in which the surface reflects the ray from the
+/// eye. `f = 0.04 + 0.96 (1 - n.v)^5`, with `v` towards the eye, is the part that glass or a glaze
+/// reflects (Schlick 1994): more at the rim, so that the albedo keeps its colour elsewhere.
+/// `specular` is [`Specular::strength`]; the others are of [`Object::material`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Environment {
     /// The colour straight up, along `+z`.
     pub up: [f32; 3],
     /// The colour straight down.
     pub down: [f32; 3],
+}
+
+impl Environment {
+    /// The colour in a direction of length 1, or the mean over several such directions for theirs.
+    #[must_use]
+    pub fn sky(&self, direction: DVec3) -> [f64; 3] {
+        let part = 0.5 + 0.5 * direction.z;
+        std::array::from_fn(|c| {
+            let [up, down] = [self.up[c], self.down[c]].map(f64::from);
+            down + part * (up - down)
+        })
+    }
 }
 
 /// The lights and shadows of a scene.

@@ -113,11 +113,11 @@ fn every_value_is_seen() {
         ("up", |s| s.environment.as_mut().unwrap().up[2] = 0.5),
         ("down", |s| s.environment.as_mut().unwrap().down[0] = 0.6),
         ("specular", |s| s.objects[0].specular.strength = 0.4),
-        ("roughness", |s| s.objects[0].material = of(0.9, 0.7)),
-        ("metalness", |s| s.objects[0].material = of(0.3, 0.0)),
+        ("roughness", |s| s.objects[0].material = of(1.0, 0.9)),
+        ("metalness", |s| s.objects[0].material = of(0.0, 0.0)),
     ];
     let base = with_sky(scene_of(shapes::vase(), eye(25.0, 1.8)), |o| {
-        o.material = of(0.3, 0.7);
+        o.material = of(0.0, 0.9);
     });
     let settings = sized(80, 60);
     let truth = reference(&base, &settings);
@@ -143,7 +143,10 @@ fn a_renderer_follows_the_sky() {
         let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
         for scene in [&plain, &bright, &dim, &plain] {
             let wanted = draw(scene, &settings);
-            assert_eq!(updated(&mut renderer, scene).first_difference(&wanted), None);
+            assert_eq!(
+                updated(&mut renderer, scene).first_difference(&wanted),
+                None
+            );
         }
     }
 }

@@ -5,7 +5,7 @@ use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
 use glam::{DVec2, DVec3};
 use revmap::error::Result;
-use revmap::scene::{Environment, Material, Scene, Shadow};
+use revmap::scene::{Material, Scene, Shadow};
 
 /// The colour and the shading normal of a hit.
 pub(super) struct Shaded {
@@ -50,7 +50,7 @@ impl<'a> Colors<'a> {
     /// The colour is `albedo * ambient + environment + sum over lights of light * (albedo * max(0, n.l) + strength *
     /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
     /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-    /// away. [`Environment`] has the formula of its part. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
+    /// away. [`Environment`](revmap::scene::Environment) has the formula of its part. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
     pub(super) fn shade(
         &self,
         reference: &Reference,
@@ -77,16 +77,19 @@ impl<'a> Colors<'a> {
         let lift = (LIFT * hit.t * ray.direction.length()).max(least_lift);
 
         let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
-        if let Some(Environment { up, down }) = &scene.environment {
-            // The component along z is all that a colour depends on.
-            let sky = |z: f64, c: usize| lerp(f64::from(down[c]), f64::from(up[c]), 0.5 + 0.5 * z);
-            let mirrored = 2.0 * normal.dot(view) * normal.z - view.z;
-            let Material { roughness, metalness } = object.material();
-            let seen = lerp(mirrored, normal.z, f64::from(roughness));
-            let strength = f64::from(object.specular.strength);
+        if let Some(environment) = &scene.environment {
+            let Material {
+                roughness,
+                metalness,
+            } = object.material();
+            let (facing, metal) = (normal.dot(view), f64::from(metalness));
+            let reflected = 2.0 * facing * normal - view;
+            let fill = environment.sky(normal);
+            let seen = environment.sky(reflected.lerp(normal, f64::from(roughness)));
+            let glass = 0.04 + 0.96 * (1.0 - facing.clamp(0.0, 1.0)).powi(5);
             for (c, sum) in color.iter_mut().enumerate() {
-                let tint = lerp(1.0, albedo[c], f64::from(metalness));
-                *sum += albedo[c] * sky(normal.z, c) + strength * tint * sky(seen, c);
+                let part = glass + metal * (albedo[c] - glass);
+                *sum += albedo[c] * fill[c] + f64::from(object.specular.strength) * part * seen[c];
             }
         }
         for light in &scene.lights {
@@ -122,10 +125,6 @@ impl<'a> Colors<'a> {
             uv,
         })
     }
-}
-
-fn lerp(from: f64, to: f64, part: f64) -> f64 {
-    from + part * (to - from)
 }
 
 /// Rays towards a light's disc, where they disagree.

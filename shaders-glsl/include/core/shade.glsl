@@ -155,9 +155,10 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
     }
     if (ENVIRONMENT != 0u) {
         vec2 material = unpackUnorm2x16(appearance.material);
-        float height = s.shading_normal.z;
-        float reflected = 2.0 * dot(lit, view) * height - rotate(look.rotation, view).z;
-        vec3 highlight = look.albedo_strength.w * mix(vec3(1.0), s.albedo, material.y);
+        float height = s.shading_normal.z, facing = dot(lit, view);
+        float reflected = 2.0 * facing * height - rotate(look.rotation, view).z;
+        float glass = mix(0.04, 1.0, pow(1.0 - clamp(facing, 0.0, 1.0), 5.0));
+        vec3 highlight = look.albedo_strength.w * mix(vec3(glass), s.albedo, material.y);
         color += s.albedo * sky(height) + highlight * sky(mix(reflected, height, material.x));
     }
     s.color = vec4(color, 1.0);

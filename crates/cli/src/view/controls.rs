@@ -125,7 +125,9 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
     });
     if let Some(Environment { up, down }) = &mut scene.environment {
         changed |= row(ui, "environment", |ui| {
-            any([up, down].into_iter().map(|side| ui.color_edit_button_rgb(side).changed()))
+            any([up, down]
+                .into_iter()
+                .map(|side| ui.color_edit_button_rgb(side).changed()))
         });
     }
     for (n, light) in scene.lights.iter_mut().enumerate() {

@@ -14,8 +14,8 @@ use revmap::error::{Error, Result};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{
-    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow, Specular,
-    Texturing,
+    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
+    Specular, Texturing,
 };
 use std::collections::HashMap;
 use std::hash::Hash;

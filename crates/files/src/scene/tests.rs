@@ -88,7 +88,7 @@ fn every_key_arrives() {
 background = [0.1, 0.2, 0.3, 1]
 ambient = [0.5, 0.6, 0.7]
 shadow = "soft"
-environment = { up = [0.5, 2, 1], down = "#ff0000" }
+environment = { up = [0.5, 2, 1], down = [1, 0, 0] }
 [camera]
 eye = [1.6, 0.3, 1.1]
 target = [0.0, 0.0, 0.5]
@@ -219,10 +219,16 @@ fn a_named_projection_goes_before_the_file_name() {
 #[test]
 fn an_environment_is_refused_by_its_key() {
     for (value, words) in [
-        ("{ up = \"blue\" }", "environment.up: expected 3 numbers, or"),
+        (
+            "{ up = \"blue\" }",
+            "environment.up: expected 3 numbers, or",
+        ),
         ("{ up = [1, 1] }", "environment.up: expected 3 numbers"),
         ("{ down = [0, -1, 0] }", "environment.down: has -1.0"),
-        ("{ upp = [1, 1, 1] }", "environment.upp: unknown key; did you mean `up`?"),
+        (
+            "{ upp = [1, 1, 1] }",
+            "environment.upp: unknown key; did you mean `up`?",
+        ),
         ("\"#ffffff\"", "environment: expected a table"),
     ] {
         let text = format!("environment = {value}\n{CAMERA_LINES}{CONE}");
@@ -425,6 +431,10 @@ fn turns_come_before_rotations_and_colours_may_be_texts() {
     let [red, green, blue] = scene.objects[0].color;
     assert!(red == 1.0 && (green - 0.215_861).abs() < 1e-6 && blue == 0.0);
     assert!((scene.lights[0].color[2] - 0.033_105).abs() < 1e-6);
+    let text = format!("environment.up = \"#ff0000\"\n{CAMERA_LINES}{CONE}");
+    let (up, down) = ([1.0, 0.0, 0.0], [0.0; 3]);
+    let sky = parse(&text, "", &[]).unwrap().environment;
+    assert_eq!(sky, Some(Environment { up, down }));
     for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "red", "#+f8000"] {
         fault(cone(&format!("color = \"{text}\"")), "object.0.color");
     }

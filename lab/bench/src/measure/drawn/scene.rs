@@ -5,8 +5,8 @@ use glam::DVec3;
 use revmap::maps::{ColorMap, DisplacementMap};
 use revmap::profile::{Profile, Raster};
 use revmap::scene::{
-    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow, Specular,
-    Texturing,
+    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
+    Specular, Texturing,
 };
 use revmap::settings::name_of;
 use toml::{Table, Value};

@@ -37,7 +37,7 @@ fn every_value_of_a_scene_is_told_by_its_key() {
         ("camera.fov_y", |v| v.scene.camera.fov_y = 41.0),
         ("background", |v| v.scene.background[3] = 0.5),
         ("ambient", |v| v.scene.ambient[0] = 0.11),
-        ("environment (old not set, new ", |v| {
+        ("environment.down (old not set, new ", |v| {
             let (up, down) = ([1.0; 3], [0.5; 3]);
             v.scene.environment = Some(Environment { up, down });
         }),
