@@ -256,15 +256,12 @@ fn refused(what: &str) -> Error {
 /// when it is made.
 ///
 /// # Errors
-/// [`ErrorKind::Content`] with the scene's key, for shadows of more lights, an environment, replicas, maps of colours and heights,
+/// [`ErrorKind::Content`] with the scene's key, for shadows of more lights, replicas, maps of colours and heights,
 /// and coordinates along the profile.
 pub fn check_scene(scene: &Scene) -> Result<()> {
     if scene.shadow != Shadow::Off && scene.lights.len() > SHADOW_LIGHTS {
         let what = format!("has shadow maps for {SHADOW_LIGHTS} lights; give fewer lights");
         return Err(refused(&what).at_key("light"));
-    }
-    if scene.environment.is_some() {
-        return Err(refused("reflects no environment; leave it out").at_key("environment"));
     }
     scene
         .objects

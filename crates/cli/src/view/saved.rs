@@ -162,6 +162,7 @@ mod tests {
             .unwrap();
         let shown = Shown {
             scene,
+            studio: None,
             search: revmap::settings::SearchSettings::default(),
             stage: revmap::settings::DrawStage::Fragment,
             inspected: super::super::shown::Inspected::Color,
