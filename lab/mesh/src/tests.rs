@@ -332,9 +332,10 @@ fn meshes_reflect_the_environment() {
     scene.objects[0].material = None;
     let dull = wrong(&scene);
     scene.environment = None;
+    // Reflections are strongest at the silhouette, which keeps a quarter of a pixel.
     let without = wrong(&scene);
     assert!(
-        with < 0.01 && dull > 0.03 && without > 0.05,
+        with < 0.03 && dull > 0.06 && without > 0.09,
         "{with} {dull} {without}"
     );
     device.check().unwrap();
