@@ -1,6 +1,6 @@
 //! Checks a scene's values. Every message gives the key as in a scene file.
 
-use super::{CameraFrame, Copies, Light, Lighting, Object, Offset, Placement, Scene};
+use super::{CameraFrame, Copies, Environment, Light, Lighting, Object, Offset, Placement, Scene};
 use crate::error::{Error, Result, content};
 use glam::DVec3;
 use std::fmt::{Debug, Display};
@@ -74,6 +74,10 @@ impl Lighting {
     /// As [`Scene::check`].
     pub fn check(&self) -> Result<()> {
         color("ambient", &self.ambient)?;
+        if let Some(Environment { up, down }) = &self.environment {
+            color("environment.up", up)?;
+            color("environment.down", down)?;
+        }
         under("light", &self.lights, |light| {
             length("direction", light.direction)?;
             if light.direction == DVec3::ZERO {
@@ -241,6 +245,11 @@ mod tests {
         scene
     }
 
+    fn sky(scene: &mut Scene) -> &mut Environment {
+        let (up, down) = ([1.0; 3], [0.0; 3]);
+        scene.environment.insert(Environment { up, down })
+    }
+
     /// Spoils one value and expects an error with its key.
     #[track_caller]
     fn refused(key: &str, spoil: impl Fn(&mut Scene)) {
@@ -258,7 +267,7 @@ mod tests {
     #[test]
     fn values_out_of_range_are_refused() {
         type Case = (&'static str, fn(&mut Scene));
-        let cases: [Case; 20] = [
+        let cases: [Case; 22] = [
             ("camera.eye", |s| s.camera.eye.x = f64::NAN),
             ("camera.eye", |s| s.camera.eye.x = 1e300),
             ("camera.target", |s| s.camera.target = s.camera.eye),
@@ -272,6 +281,8 @@ mod tests {
             }),
             ("background", |s| s.background[3] = -0.1),
             ("ambient", |s| s.ambient[0] = f32::INFINITY),
+            ("environment.up", |s| sky(s).up[1] = -0.5),
+            ("environment.down", |s| sky(s).down[2] = f32::NAN),
             ("light.0.direction", |s| s.lights[0].direction = DVec3::ZERO),
             ("light.0.color", |s| s.lights[0].color[1] = f32::NAN),
             ("object.1.color", |s| s.objects[1].color[2] = -1.0),

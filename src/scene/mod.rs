@@ -47,6 +47,8 @@ pub struct Scene {
     pub background: [f32; 4],
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
+    /// The sky that surfaces reflect, if there is one.
+    pub environment: Option<Environment>,
     /// The eye.
     pub camera: Camera,
     /// Directional lights.
@@ -65,6 +67,7 @@ impl Scene {
         Self {
             background: [0.0; 4],
             ambient: Self::AMBIENT,
+            environment: None,
             camera,
             lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
@@ -77,6 +80,7 @@ impl Scene {
     pub fn lighting(&self) -> Lighting {
         Lighting {
             ambient: self.ambient,
+            environment: self.environment,
             lights: self.lights.clone(),
             shadow: self.shadow,
         }
@@ -195,11 +199,41 @@ impl Default for Light {
     }
 }
 
+/// A sky of two colours around the scene, linear RGB. Its colour in direction `d`, a unit vector, is
+/// `sky(d) = mix(down, up, 0.5 + 0.5 d.z)`. Nothing hides it.
+///
+/// A surface adds `albedo sky(n) + specular mix(f, albedo, metalness) sky(mix(r, n, roughness))` to its
+/// colour. `n` is the normal, and `r` the direction in which the surface reflects the ray from the
+/// eye. `f = 0.04 + 0.96 (1 - n.v)^5`, with `v` towards the eye, is the part that glass or a glaze
+/// reflects (Schlick 1994): more at the rim, so that the albedo keeps its colour elsewhere.
+/// `specular` is [`Specular::strength`]; the others are of [`Object::material`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Environment {
+    /// The colour straight up, along `+z`.
+    pub up: [f32; 3],
+    /// The colour straight down.
+    pub down: [f32; 3],
+}
+
+impl Environment {
+    /// The colour in a direction of length 1, or the mean over several such directions for theirs.
+    #[must_use]
+    pub fn sky(&self, direction: DVec3) -> [f64; 3] {
+        let part = 0.5 + 0.5 * direction.z;
+        std::array::from_fn(|c| {
+            let [up, down] = [self.up[c], self.down[c]].map(f64::from);
+            down + part * (up - down)
+        })
+    }
+}
+
 /// The lights and shadows of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     /// Light that comes from everywhere, linear RGB.
     pub ambient: [f32; 3],
+    /// The sky that surfaces reflect, if there is one. A function of the host shades without it.
+    pub environment: Option<Environment>,
     /// Directional lights.
     pub lights: Vec<Light>,
     /// Shadows of objects on each other and on themselves.
@@ -207,10 +241,11 @@ pub struct Lighting {
 }
 
 impl Default for Lighting {
-    /// A little ambient light, [`Light::pair`], no shadows.
+    /// A little ambient light, no environment, [`Light::pair`], no shadows.
     fn default() -> Self {
         Self {
             ambient: Scene::AMBIENT,
+            environment: None,
             lights: Light::pair().to_vec(),
             shadow: Shadow::Off,
         }

@@ -77,7 +77,8 @@ impl Words {
 }
 
 /// Unpacks words that `build.rs` packed. The bytes are deflated. A byte holds seven bits of a word,
-/// the lowest first; the eighth bit is set if more bytes follow.
+/// the lowest first; the eighth bit is set if more bytes follow. The third word of an instruction is
+/// its difference `d` from that of the instruction before, stored as `2 d` or `-2 d - 1`.
 #[must_use]
 pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
     let bytes = miniz_oxide::inflate::decompress_to_vec(packed).ok()?;
@@ -90,6 +91,14 @@ pub fn unpacked(packed: &[u8]) -> Option<Vec<u32>> {
             words.push(word);
             (word, shift) = (0, 0);
         }
+    }
+    let (mut begin, mut last) = (5, 0u32); // behind the header of SPIR-V
+    while let Some(count) = words.get(begin).map(|first| (first >> 16) as usize) {
+        if let (3.., Some(word)) = (count, words.get_mut(begin + 2)) {
+            last = last.wrapping_add(*word >> 1 ^ (*word & 1).wrapping_neg());
+            *word = last;
+        }
+        begin += count.max(1);
     }
     Some(words)
 }

@@ -35,12 +35,8 @@ fn is_decoration((code, one): &(u32, &[u32])) -> bool {
 pub fn without_contraction(words: &[u32]) -> Vec<u32> {
     let rounded = |(code, _): &(u32, &[u32])| ROUNDED.contains(code);
     // `precise` in the GLSL has decorated some.
-    let is_precise =
-        |(code, one): &(u32, &[u32])| *code == op::DECORATE && one[2..] == [op::NO_CONTRACTION];
-    let precise: HashSet<u32> = instructions(words)
-        .filter(is_precise)
-        .map(|(_, one)| one[1])
-        .collect();
+    let precise = instructions(words).filter(is_decoration);
+    let precise: HashSet<u32> = precise.map(|(_, one)| one[1]).collect();
     let results = instructions(words).filter(rounded).map(|(_, one)| one[2]);
     let decorated = results.filter(|id| !precise.contains(id));
     // Types follow the decorations.

@@ -49,6 +49,8 @@ pub struct Technique {
     pub shadow: u32,
     /// True if the device may place copies that throw shadows.
     pub placed_casters: bool,
+    /// True if surfaces reflect an environment.
+    pub environment: bool,
     /// True if colours come from a map.
     pub color_map: bool,
     /// One of `BUMP_*`.
@@ -85,6 +87,7 @@ impl Technique {
         replicas: false,
         shadow: g::SHADOW_OFF,
         placed_casters: false,
+        environment: false,
         color_map: false,
         bump: g::BUMP_OFF,
         projection: g::PROJECTION_CYLINDRICAL,
@@ -149,6 +152,7 @@ impl Technique {
         Self {
             shadow,
             placed_casters: places && casts && technique.search == Search::Quadric,
+            environment: lighting.environment.is_some() && !host.shading,
             color_map,
             bump,
             projection: match texturing.projection {

@@ -306,13 +306,14 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 18] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, technique.replicas.into()),
             (g::SHADOW_ID, technique.shadow),
             (g::PLACED_CASTERS_ID, technique.placed_casters.into()),
+            (g::ENVIRONMENT_ID, technique.environment.into()),
             (g::COLOR_MAP_ID, technique.color_map.into()),
             (g::BUMP_ID, technique.bump),
             (g::PROJECTION_ID, technique.projection),

@@ -27,6 +27,7 @@ mod embedding_outputs;
 mod embedding_samples;
 mod embedding_tools;
 mod embedding_visibility;
+mod environment;
 mod exhausted;
 mod extremes;
 mod fallback;

@@ -227,6 +227,7 @@ impl<'a> Palette<'a> {
         let count = dice.pick(&[0, 1, 2, 2, 3, 5]);
         Lighting {
             ambient: [0.1 + 0.1 * dice.below(3) as f32; 3],
+            environment: None,
             lights: (0..count).map(|_| light(dice)).collect(),
             shadow: match self.shadows {
                 true => dice.pick(&[Shadow::Off, Shadow::Off, Shadow::Hard, Shadow::Soft]),

@@ -707,6 +707,11 @@ typedef struct RevmapLighting {
     uint32_t light_count;
     /// The lights; read during the call.
     const struct RevmapLight *lights;
+    /// Colour of the environment straight up, along +z, linear RGB. Surfaces reflect it, more at
+    /// their rim. Both colours 0: there is none.
+    float environment_up[3];
+    /// Its colour straight down.
+    float environment_down[3];
 } RevmapLighting;
 
 /// What is drawn. Defaults: revmap_scene_defaults().
@@ -926,6 +931,10 @@ typedef struct RevmapFrameStatistics {
     uint32_t tiles;
     /// Bytes of the slot's buffers.
     uint64_t slot_bytes;
+    /// CPU time of the preparation, milliseconds of the clock.
+    double prepare_ms;
+    /// CPU time of the last recording of the frame, milliseconds; 0 before.
+    double record_ms;
 } RevmapFrameStatistics;
 
 #ifdef __cplusplus

@@ -117,6 +117,7 @@ impl RevmapScene {
             let lighting = self.lighting.lighting()?;
             scene.background = self.background;
             scene.ambient = lighting.ambient;
+            scene.environment = lighting.environment;
             scene.lights = lighting.lights;
             scene.shadow = lighting.shadow;
             for info in read_all(self.objects, self.object_count)? {

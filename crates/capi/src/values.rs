@@ -6,7 +6,7 @@ use crate::pointers::list;
 use crate::structures::{described, fill, read, sized};
 use glam::{DMat4, DQuat, DVec3};
 use revmap::gpu::{View, Viewport};
-use revmap::scene::{Camera, Light, Lighting, Offset, Placement};
+use revmap::scene::{Camera, Environment, Light, Lighting, Offset, Placement};
 use revmap::settings::{SearchSettings, Tolerance};
 use std::sync::LazyLock;
 
@@ -60,6 +60,11 @@ pub struct RevmapLighting {
     pub light_count: u32,
     /// The lights; read during the call.
     pub lights: *const RevmapLight,
+    /// Colour of the environment straight up, along +z, linear RGB. Surfaces reflect it, more at
+    /// their rim. Both colours 0: there is none.
+    pub environment_up: [f32; 3],
+    /// Its colour straight down.
+    pub environment_down: [f32; 3],
 }
 
 /// A pinhole camera. Defaults: revmap_camera_defaults().
@@ -148,7 +153,10 @@ pub struct RevmapSearch {
 }
 
 described! {
-    RevmapLighting { 0 => [size, shadow, ambient, light_count, lights] }
+    RevmapLighting {
+        0 => [size, shadow, ambient, light_count, lights]
+        5 => [environment_up, environment_down]
+    }
     RevmapCamera { 0 => [size, padding, eye, target, up, fov_y] }
     RevmapView {
         0 => [size, depth_order, view, projection, viewport]
@@ -219,8 +227,10 @@ impl RevmapLighting {
             color: light.color,
             radius: light.radius.into(),
         };
+        let (up, down) = (self.environment_up, self.environment_down);
         Ok(Lighting {
             ambient: self.ambient,
+            environment: ([up, down] != [[0.0; 3]; 2]).then_some(Environment { up, down }),
             lights: lights.iter().map(light).collect(),
             shadow: enums::shadow(self.shadow)?,
         })

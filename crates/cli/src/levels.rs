@@ -14,6 +14,7 @@ pub fn painted(scene: &Scene, costs: &[ObjectCost], copies: &[Vec<u8>]) -> Scene
     let mut painted = scene.clone();
     painted.lights.clear();
     painted.ambient = [1.0; 3];
+    painted.environment = None;
     painted.shadow = Shadow::Off;
     painted.objects.clear();
     for ((object, cost), copies) in scene.objects.iter().zip(costs).zip(copies) {

@@ -6,13 +6,15 @@ use revmap::error::Result;
 use revmap::frame::srgb_from_linear;
 use revmap::maps::{ColorMap, Projection};
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Placement, Scene, Shadow};
+use revmap::scene::{Camera, Environment, Light, Object, Placement, Scene, Shadow};
 use revmap_files::scene::Extent;
 use std::sync::Arc;
 
 /// Linear RGB of the ground under the objects, and of the background.
 const GROUND: [f32; 3] = [0.70, 0.69, 0.67];
 const BACKGROUND: [f32; 3] = [0.46, 0.46, 0.45];
+/// The part of the light of the sky above that a white ground sends back.
+const BOUNCE: f32 = 0.6;
 /// The name of the ground's object.
 pub const GROUND_NAME: &str = "ground of --studio";
 /// Texels across the ground.
@@ -113,8 +115,9 @@ impl Studio {
     }
 
     /// Replaces lights, shadows and background of a scene, and puts a ground below its objects.
-    /// The lights stay with the camera. The ground reflects as much light as reaches it from them,
-    /// so it has its own colour, and that of the background at its rim.
+    /// The lights stay with the camera. The sky has what they lack to white above, and light of the
+    /// ground's colour below. The ground reflects as much light as reaches it, so it has its own
+    /// colour, and that of the background at its rim.
     pub fn furnish(&self, scene: &mut Scene) {
         let [ahead, right, up] = directions(&scene.camera);
         let light = |[x, y, z]: [f64; 3], color, radius| Light {
@@ -129,7 +132,13 @@ impl Studio {
         ];
         scene.shadow = Shadow::Soft;
         scene.background = self.background;
-        scene.ambient = [0, 1, 2].map(|c| 1.0 - lit(&scene.lights, up, c));
+        let above = [0, 1, 2].map(|c| 1.0 - lit(&scene.lights, up, c));
+        let below = self.ground.as_ref().map_or(GROUND, |ground| ground.color);
+        let below = [0, 1, 2].map(|c| BOUNCE * below[c] * above[c]);
+        let sky = sky_along(up, above, below);
+        let level = sky.sky(up);
+        scene.ambient = [0, 1, 2].map(|c| (above[c] - level[c] as f32).max(0.0));
+        scene.environment = Some(sky);
         scene.objects.extend(self.ground_below(scene, up));
     }
 
@@ -164,6 +173,17 @@ fn directions(camera: &Camera) -> [DVec3; 3] {
     let level = sight - up * sight.dot(up);
     let ahead = level.normalize_or(up.any_orthonormal_vector());
     [ahead, ahead.cross(up), up]
+}
+
+/// An environment that has two colours above and below where `up` is the world's. It has less of a
+/// difference between them the more `up` is level.
+fn sky_along(up: DVec3, above: [f32; 3], below: [f32; 3]) -> Environment {
+    let part = 0.5 + 0.5 * up.z as f32;
+    let mix = |part: f32| [0, 1, 2].map(|c| below[c] + part * (above[c] - below[c]));
+    Environment {
+        up: mix(part),
+        down: mix(1.0 - part),
+    }
 }
 
 /// The light that falls onto the ground, of channel `c`: all of the lights' discs are above it.
@@ -260,14 +280,17 @@ mod tests {
     /// A plane that faces up reflects all light: it is seen in its own colour.
     #[test]
     fn the_ground_has_its_own_colour() {
-        let mut lit_scene = scene(DVec3::new(4.0, 1.0, 3.0), DVec3::Z);
-        Studio::new(None, None).unwrap().furnish(&mut lit_scene);
-        for c in 0..3 {
-            let all = lit_scene.ambient[c] + lit(&lit_scene.lights, DVec3::Z, c);
-            assert!(
-                (all - 1.0).abs() < 1e-6 && lit_scene.ambient[c] > 0.1,
-                "{c}: {all}"
-            );
+        for up in [DVec3::Z, DVec3::Y, DVec3::new(0.6, 0.0, -0.8)] {
+            let mut lit_scene = scene(DVec3::new(4.0, 1.0, 3.0), up);
+            Studio::new(None, None).unwrap().furnish(&mut lit_scene);
+            let sky = lit_scene.environment.unwrap();
+            let [above, below] = [up, -up].map(|side| sky.sky(side));
+            for c in 0..3 {
+                let around = lit_scene.ambient[c] + above[c] as f32;
+                let all = around + lit(&lit_scene.lights, up, c);
+                assert!((all - 1.0).abs() < 1e-6 && around > 0.1, "{up} {c}: {all}");
+                assert!(below[c] <= above[c], "{up} {c}: {below:?} {above:?}");
+            }
         }
     }
 

@@ -219,11 +219,22 @@ fn keeps() -> bool {
     cfg!(feature = "shaderc") && std::env::var_os("REVMAP_KEEP_SPIRV").is_some_and(|v| v == "1")
 }
 
-/// Words as seven bits a byte, most of them being small; then deflated.
+/// Words as seven bits a byte, most of them being small; then deflated. The third word of each
+/// instruction, mostly the id of a result, is its difference from that of the instruction before.
 #[cfg(feature = "shaderc")]
 fn packed(words: &[u32]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(2 * words.len());
-    for mut word in words.iter().copied() {
+    let mut small = words.to_vec();
+    let (mut begin, mut last) = (5, 0); // behind the header of SPIR-V
+    while let Some(count) = words.get(begin).map(|first| (first >> 16) as usize) {
+        if let (3.., Some(word)) = (count, words.get(begin + 2)) {
+            let change = word.wrapping_sub(last).cast_signed();
+            small[begin + 2] = (change << 1 ^ change >> 31).cast_unsigned();
+            last = *word;
+        }
+        begin += count.max(1);
+    }
+    for mut word in small {
         while word >= 128 {
             bytes.push((word & 127) as u8 | 128);
             word >>= 7;

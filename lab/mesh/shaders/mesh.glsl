@@ -6,6 +6,8 @@ layout(constant_id = 0) const uint LIGHTS = 1u;     // number of lights
 layout(constant_id = 1) const uint SINGLE = 0u;     // 1: one instance, in the object's block
 layout(constant_id = 2) const uint PROJECTION = 1u; // one of PROJECTION_*
 
+layout(constant_id = 4) const uint ENVIRONMENT = 0u; // 1: surfaces reflect the sky
+
 const uint PROJECTION_PLANAR = 0u;
 const uint PROJECTION_CYLINDRICAL = 1u;
 const uint PROJECTION_SPHERICAL = 2u;
@@ -33,6 +35,8 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
     vec4 dir_y;   // its change from row to row
     vec4 ambient; // linear RGB
     Light lights[MAX_LIGHTS];
+    vec4 sky_up; // linear RGB of the environment straight up
+    vec4 sky_down;
 } frame;
 
 layout(set = 0, binding = 1, std430) readonly buffer InstanceBlock {
@@ -46,7 +50,7 @@ layout(push_constant) uniform CasterBlock {
 } caster;
 #else
 layout(push_constant) uniform ObjectBlock {
-    vec4 axis;     // x, y in object units from the middle of the box
+    vec4 axis;     // x, y in object units from the middle of the box; z: roughness, w: metalness
     vec4 albedo;   // linear RGB; w: strength of the highlight
     vec4 specular; // x: shininess; of the box in units of the profile's box: y: height, z: height below z = 0, w: 2 R of the profile's
     Instance single;

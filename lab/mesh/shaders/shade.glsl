@@ -67,6 +67,12 @@ vec3 blinn_phong(vec3 towards, vec3 color, vec3 n, vec3 view)
     return facing > 0.0 ? reflected : vec3(0.0);
 }
 
+// Returns the colour of the environment in a direction of this height, the component along z of a unit vector.
+vec3 sky(float height)
+{
+    return mix(frame.sky_down.rgb, frame.sky_up.rgb, 0.5 + 0.5 * height);
+}
+
 Shaded shade()
 {
     Shaded s;
@@ -104,6 +110,13 @@ Shaded shade()
     for (uint n = NEAR_LIGHTS; n < LIGHTS; ++n) {
         Light light = light_seen(i, n);
         color += blinn_phong(light.towards.xyz, light.color.rgb, lit, view);
+    }
+    if (ENVIRONMENT != 0u) {
+        float height = s.shading_normal.z, facing = dot(lit, view);
+        float reflected = 2.0 * facing * height - rotate(i.rotation, view).z;
+        float glass = mix(0.04, 1.0, pow(1.0 - clamp(facing, 0.0, 1.0), 5.0));
+        vec3 highlight = albedo_strength.w * mix(vec3(glass), s.albedo, object.axis.w);
+        color += s.albedo * sky(height) + highlight * sky(mix(reflected, height, object.axis.z));
     }
     s.color = vec4(color, 1.0);
     return s;

@@ -27,6 +27,7 @@ pub(super) struct FrameBlock {
     dir_y: [f32; 4],
     ambient: [f32; 4],
     lights: [LightBlock; MAX_LIGHTS],
+    sky: [[f32; 4]; 2],
 }
 
 impl FrameBlock {
@@ -42,6 +43,8 @@ impl FrameBlock {
         }
         let vector = |v: DVec3| v.as_vec3().extend(0.0).to_array();
         let [red, green, blue] = lighting.ambient;
+        let sky = lighting.environment.map(|sky| [sky.up, sky.down]);
+        let sky = sky.unwrap_or_default();
         Self {
             clip_from_world: view.clip_from_world().as_mat4().to_cols_array_2d(),
             eye: vector(view.eye()),
@@ -50,6 +53,7 @@ impl FrameBlock {
             dir_y: vector(-camera.up),
             ambient: [red, green, blue, 0.0],
             lights,
+            sky: sky.map(|[r, g, b]| [r, g, b, 0.0]),
         }
     }
 }
@@ -89,9 +93,11 @@ impl ObjectBlock {
     pub fn new(object: &Object, growth: &Growth, first: Option<&InstanceBlock>) -> Self {
         let [x, y] = object.axis_offset();
         let [red, green, blue] = object.color;
-        let axis = DVec3::new(x, y, 0.0).as_vec3();
+        let material = object.material();
+        #[allow(clippy::cast_possible_truncation)]
+        let [x, y] = [x as f32, y as f32];
         Self {
-            axis: axis.extend(0.0).to_array(),
+            axis: [x, y, material.roughness, material.metalness],
             albedo: [red, green, blue, object.specular.strength],
             #[allow(clippy::cast_possible_truncation)]
             specular: [

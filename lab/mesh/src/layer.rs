@@ -15,7 +15,7 @@ use gpu_allocator::MemoryLocation;
 use pipelines::PipelineKey;
 use revmap::error::Result;
 use revmap::gpu::{Buffer, Device, View, vulkan_error as vulkan};
-use revmap::scene::{CameraFrame, Scene, Shadow};
+use revmap::scene::{CameraFrame, Lighting, Scene, Shadow};
 use revmap::settings::{Planes, Settings};
 use revmap_offscreen::{Guest, Offscreen};
 use shadows::ShadowMaps;
@@ -131,16 +131,11 @@ impl MeshLayer {
         if scene.shadow != Shadow::Off && self.shadows.is_none() {
             self.shadows = Some(ShadowMaps::new(&self.pipelines, self.pool)?);
         }
-        self.take(&frame, (lighting.lights.len(), scene.shadow), &placed)
+        self.take(&frame, &lighting, &placed)
     }
 
     /// Takes over a frame's block and its objects in order. Nothing changes where it fails.
-    fn take(
-        &mut self,
-        frame: &FrameBlock,
-        (lights, shadow): (usize, Shadow),
-        placed: &Placed,
-    ) -> Result<()> {
+    fn take(&mut self, frame: &FrameBlock, lighting: &Lighting, placed: &Placed) -> Result<()> {
         let device = self.pipelines.device().clone();
         let mut staged: Vec<(Arc<DeviceMesh>, Buffer)> = Vec::new();
         let mut objects = Vec::new();
@@ -164,11 +159,12 @@ impl MeshLayer {
             let mesh = of_mesh(&one.mesh)?;
             let key = PipelineKey {
                 pass: self.kind,
-                lights: lights.min(MAX_LIGHTS) as u32,
+                lights: lighting.lights.len().min(MAX_LIGHTS) as u32,
                 single: one.instances.len() == 1,
                 projection: one.projection,
                 both_sides: one.both_sides,
-                shadow,
+                shadow: lighting.shadow,
+                environment: lighting.environment.is_some(),
             };
             let first = instances.len() as u32;
             instances.extend(&one.instances);
@@ -183,7 +179,7 @@ impl MeshLayer {
         if let Some(shadows) = &mut self.shadows {
             shadows.take(&placed.maps, &mut instances, of_mesh)?;
         }
-        self.shadow = shadow;
+        self.shadow = lighting.shadow;
         let bytes: &[u8] = bytemuck::cast_slice(&instances);
         if bytes.len() as u64 > self.instances.bytes {
             let mut larger = instance_buffer(&device, instances.len())?;

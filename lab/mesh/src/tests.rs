@@ -6,7 +6,9 @@ use glam::{DVec3, Vec3};
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Light, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{
+    Camera, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
+};
 use revmap::search::unpacked;
 use revmap::settings::Settings;
 use revmap::surface::{Contour, ContourSource};
@@ -278,6 +280,65 @@ fn shadow_maps_agree_with_rays() {
         assert!(with < most, "{shadow:?}: {with}");
         assert!(without > 0.04, "{shadow:?}: {without}");
     }
+}
+
+/// A metal and a glazed solid reflect the sky as in the reference.
+#[test]
+fn meshes_reflect_the_environment() {
+    let device = Device::open_validated(None).unwrap();
+    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
+    let [mut metal, mut glazed] = [64, 256].map(|steps| {
+        Object::new(
+            "ring",
+            Arc::new(Profile::polygon(&ring(steps), 0.5).unwrap()),
+        )
+    });
+    metal.specular.strength = 0.8;
+    metal.material = Some(Material {
+        roughness: 0.2,
+        metalness: 1.0,
+    });
+    glazed.specular.strength = 2.0;
+    glazed.placement.position.x = -1.2;
+    scene.objects = vec![metal, glazed];
+    scene.environment = Some(Environment {
+        up: [0.4, 0.6, 0.9],
+        down: [0.3, 0.1, 0.0],
+    });
+    let own = Settings {
+        width: 320,
+        height: 240,
+        ..Settings::exact()
+    };
+    let options = OffscreenOptions {
+        guests_only: true,
+        ..OffscreenOptions::default()
+    };
+    let pipelines = MeshPipelines::new(&device).unwrap();
+    let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
+    // The part of the pixels whose colours differ by more than a thirtieth of the light.
+    let wrong = |scene: &Scene| {
+        let mut offscreen = Offscreen::with(&device, scene, &own, options).unwrap();
+        let fineness = Fineness::Pixels(0.25);
+        let mut meshes = MeshLayer::new(&pipelines, &offscreen, fineness, &own, 1).unwrap();
+        meshes.update(scene, || Ok(*offscreen.view())).unwrap();
+        offscreen.draw_with(Some(&meshes)).unwrap();
+        let frame = offscreen.read().unwrap();
+        let pixels = truth.color.iter().zip(&frame.color);
+        let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.03);
+        pixels.filter(far).count() as f64 / truth.color.len() as f64
+    };
+    let with = wrong(&scene);
+    scene.objects[0].material = None;
+    let dull = wrong(&scene);
+    scene.environment = None;
+    // Reflections are strongest at the silhouette, which keeps a quarter of a pixel.
+    let without = wrong(&scene);
+    assert!(
+        with < 0.03 && dull > 0.06 && without > 0.09,
+        "{with} {dull} {without}"
+    );
+    device.check().unwrap();
 }
 
 /// Stored SPIR-V was made from today's sources; by the same compiler word for word.

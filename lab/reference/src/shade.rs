@@ -5,7 +5,7 @@ use super::texture::{self, Lengths};
 use super::{Hit, Ray, Reference};
 use glam::{DVec2, DVec3};
 use revmap::error::Result;
-use revmap::scene::{Scene, Shadow};
+use revmap::scene::{Material, Scene, Shadow};
 
 /// The colour and the shading normal of a hit.
 pub(super) struct Shaded {
@@ -47,10 +47,10 @@ impl<'a> Colors<'a> {
     /// Shades a hit that is seen along `ray`; `None` if its object is not in the scene. A ray towards a
     /// light begins at least `least_lift` off the surface, world units.
     ///
-    /// The colour is `albedo * ambient + sum over lights of light * (albedo * max(0, n.l) + strength *
+    /// The colour is `albedo * ambient + environment + sum over lights of light * (albedo * max(0, n.l) + strength *
     /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
     /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-    /// away. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
+    /// away. [`Environment`](revmap::scene::Environment) has the formula of its part. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
     pub(super) fn shade(
         &self,
         reference: &Reference,
@@ -77,6 +77,21 @@ impl<'a> Colors<'a> {
         let lift = (LIFT * hit.t * ray.direction.length()).max(least_lift);
 
         let mut color: [f64; 3] = std::array::from_fn(|c| albedo[c] * f64::from(scene.ambient[c]));
+        if let Some(environment) = &scene.environment {
+            let Material {
+                roughness,
+                metalness,
+            } = object.material();
+            let (facing, metal) = (normal.dot(view), f64::from(metalness));
+            let reflected = 2.0 * facing * normal - view;
+            let fill = environment.sky(normal);
+            let seen = environment.sky(reflected.lerp(normal, f64::from(roughness)));
+            let glass = 0.04 + 0.96 * (1.0 - facing.clamp(0.0, 1.0)).powi(5);
+            for (c, sum) in color.iter_mut().enumerate() {
+                let part = glass + metal * (albedo[c] - glass);
+                *sum += albedo[c] * fill[c] + f64::from(object.specular.strength) * part * seen[c];
+            }
+        }
         for light in &scene.lights {
             let towards = -light.direction.normalize_or_zero();
             let from = point + lift * smooth;

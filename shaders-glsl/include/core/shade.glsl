@@ -51,6 +51,12 @@ vec3 blinn_phong(Look look, Light light, vec3 n, vec3 view, vec3 albedo)
 }
 
 #ifndef HOST_SHADING
+// Returns the colour of the environment in a direction of this height, the component along z of a unit vector.
+vec3 sky(float height)
+{
+    return mix(frame_block.sky_down.rgb, frame_block.sky_up.rgb, 0.5 + 0.5 * height);
+}
+
 // Returns the light reflected from the part of a light's disc that a point sees: the mean over its rays. World axes.
 // `point`: relative to the instance; `outward`: normal without bumps, below whose horizon the surface hides the disc.
 vec3 shadowed(Look look, Light light, vec3 n, vec3 outward, vec3 view, vec3 albedo, vec3 point, uvec2 pixel)
@@ -146,6 +152,14 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
                 color += shadowed(look, light, s.shading_normal, above, to_eye, s.albedo, point, uvec2(pixel + 0.5));
             }
         }
+    }
+    if (ENVIRONMENT != 0u) {
+        vec2 material = unpackUnorm2x16(appearance.material);
+        float height = s.shading_normal.z, facing = dot(lit, view);
+        float reflected = 2.0 * facing * height - rotate(look.rotation, view).z;
+        float glass = mix(0.04, 1.0, pow(1.0 - clamp(facing, 0.0, 1.0), 5.0));
+        vec3 highlight = look.albedo_strength.w * mix(vec3(glass), s.albedo, material.y);
+        color += s.albedo * sky(height) + highlight * sky(mix(reflected, height, material.x));
     }
     s.color = vec4(color, 1.0);
     return s;

@@ -80,6 +80,8 @@ struct FrameData {
     float unused;
     vec2 lag_depth; // change of depth_constant and depth_factor for a lag of 1
     Light lights[MAX_LIGHTS];
+    vec4 sky_up; // linear RGB of the environment straight up
+    vec4 sky_down;
 };
 
 // A copy of an object, relative to the eye. The CPU computes it in double precision for each view, so that no rounding

@@ -49,8 +49,9 @@ layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #ifdef UNSHADOWED
 const uint PLACED_CASTERS = 0u;
 #else
-layout(constant_id = 7) const uint PLACED_CASTERS = 0u; // 1: the device may place copies that throw shadows
+layout(constant_id = 17) const uint PLACED_CASTERS = 0u; // 1: the device may place copies that throw shadows
 #endif
+layout(constant_id = 7) const uint ENVIRONMENT = 0u; // 1: surfaces reflect the sky
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
 layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
 layout(constant_id = 4) const uint PROJECTION = 2u; // one of PROJECTION_*

@@ -37,6 +37,8 @@ pub(in crate::gpu) struct Snapshot {
 #[derive(Clone, Default)]
 pub(in crate::gpu) struct SceneFacts {
     shadow: Shadow,
+    /// True if surfaces reflect an environment.
+    environment: bool,
     /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
     /// all by one search.
     falls_back: bool,
@@ -46,12 +48,14 @@ pub(in crate::gpu) struct SceneFacts {
 
 impl SceneFacts {
     /// The facts of these objects, but for their maps.
-    fn of(shadow: Shadow, objects: &[(u32, &Entry)]) -> Self {
+    fn of(lighting: &Lighting, objects: &[(u32, &Entry)]) -> Self {
+        let shadow = lighting.shadow;
         let objects = if shadow == Shadow::Off { &[] } else { objects };
         let fails = |e: &Entry| e.boundary.as_ref().is_some_and(|b| b.fails());
         let any = |is: fn(&Object) -> bool| objects.iter().any(|(_, e)| is(&e.set.object));
         Self {
             shadow,
+            environment: lighting.environment.is_some(),
             falls_back: objects.iter().any(|(_, e)| fails(e)),
             casters: ShadowCasters {
                 repeated: any(|object| object.repeat != [1; 3]),
@@ -62,7 +66,7 @@ impl SceneFacts {
     }
 
     fn is_same(&self, other: &Self) -> bool {
-        let facts = |of: &Self| (of.shadow, of.falls_back, of.casters);
+        let facts = |of: &Self| (of.shadow, of.environment, of.falls_back, of.casters);
         facts(self) == facts(other) && Arc::ptr_eq(&self.shadow_maps, &other.shadow_maps)
     }
 
@@ -203,7 +207,7 @@ impl Snapshot {
         notes: &mut Vec<String>,
     ) -> Result<Self> {
         let order: Vec<_> = objects.ordered().collect();
-        let mut facts = SceneFacts::of(demands.lighting.shadow, &order);
+        let mut facts = SceneFacts::of(demands.lighting, &order);
         let mut maps = Vec::with_capacity(order.len());
         for (position, (_, entry)) in order.iter().enumerate() {
             let map = find_map(entry, &facts, demands.settings, textures);

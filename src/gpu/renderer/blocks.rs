@@ -235,6 +235,8 @@ pub(super) fn frame_block(
             unused: 0.0,
         };
     }
+    let sky = lighting.environment.map(|e| [e.up, e.down]);
+    let [sky_up, sky_down] = sky.unwrap_or_default().map(|[r, g, b]| [r, g, b, 0.0]);
     let [constant, factor] = view.clip_depth();
     let [least, most] = view.depth_range;
     let [near_depth, sense] = view.order.near_and_sense().map(|value| value as f32);
@@ -274,6 +276,8 @@ pub(super) fn frame_block(
         ray_start: view.start as f32,
         lag_depth: lag_depth(view).map(|part| part as f32),
         lights,
+        sky_up,
+        sky_down,
         ..FrameBlock::default()
     }
 }

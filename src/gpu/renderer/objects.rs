@@ -179,7 +179,7 @@ impl Renderer {
         self.content.objects.end_frame();
     }
 
-    /// Sets lights and shadows for all objects.
+    /// Sets lights, environment and shadows for all objects.
     ///
     /// # Errors
     /// [`Content`](crate::error::ErrorKind::Content) for values out of range, with the key;
@@ -194,7 +194,8 @@ impl Renderer {
         if count > most as usize {
             return content("light", format!("{count} lights; at most {most} are drawn"));
         }
-        self.content.objects.stale |= lighting.shadow != self.content.lighting.shadow;
+        let selects = |of: &Lighting| (of.shadow, of.environment.is_some());
+        self.content.objects.stale |= selects(lighting) != selects(&self.content.lighting);
         self.content.lighting = lighting.clone();
         Ok(())
     }

@@ -17,11 +17,12 @@ use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
 use std::borrow::Cow;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// A frame that was prepared in a slot; the argument of [`Renderer::record`]. Preparing the slot
 /// again makes the frame invalid.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 #[must_use]
 pub struct PreparedFrame {
     pub(super) renderer: u32,
@@ -29,13 +30,24 @@ pub struct PreparedFrame {
     pub(super) serial: u64,
     reads_depths: bool,
     statistics: FrameStatistics,
+    /// Nanoseconds of the last recording.
+    recorded: AtomicU64,
 }
 
 impl PreparedFrame {
-    /// What the frame records.
+    /// What the frame records, and what that cost.
     #[must_use]
     pub fn statistics(&self) -> FrameStatistics {
-        self.statistics
+        FrameStatistics {
+            record_ms: self.recorded.load(Ordering::Relaxed) as f64 * 1e-6,
+            ..self.statistics
+        }
+    }
+
+    /// Keeps the time of a recording that began at `start`.
+    pub(super) fn end_recording(&self, start: Instant) {
+        let spent = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.recorded.store(spent, Ordering::Relaxed);
     }
 
     /// Returns true if compute compares with the depths of its target and writes its own depths
@@ -95,6 +107,7 @@ impl Renderer {
         slot: usize,
         view: &View,
     ) -> Result<PreparedFrame> {
+        let start = Instant::now();
         self.check(slot, view)?;
         let to = &mut self.slots[slot];
         let known = to.bound.as_ref().map(|bound| &bound.plan);
@@ -137,7 +150,11 @@ impl Renderer {
             slot,
             serial: to.serial,
             reads_depths: to.compares_depths(),
-            statistics: to.statistics(),
+            statistics: FrameStatistics {
+                prepare_ms: start.elapsed().as_secs_f64() * 1e3,
+                ..to.statistics()
+            },
+            recorded: AtomicU64::new(0),
         })
     }
 

@@ -10,6 +10,7 @@ use crate::plan::{Call, IndexedDraw, Step};
 use crate::shader::{BinTile, Kind, Pushed};
 use ash::vk;
 use std::ops::Range;
+use std::time::Instant;
 
 /// Bytes of one indirect draw.
 const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
@@ -33,6 +34,7 @@ impl Renderer {
     /// * the renderer lives until the commands have run, and the frame's slot is not prepared again
     ///   before that.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer, frame: &PreparedFrame) -> Result<()> {
+        let start = Instant::now();
         let (slot, bound) = self.frame(frame)?;
         // SAFETY: `cmd` is recording within a render pass; the buffer lives as long as the caller
         // promised.
@@ -44,6 +46,7 @@ impl Renderer {
             // SAFETY: as the caller promised.
             unsafe { self.step(cmd, slot, bound, step, own)? };
         }
+        frame.end_recording(start);
         Ok(())
     }
 
@@ -67,6 +70,7 @@ impl Renderer {
         cmd: vk::CommandBuffer,
         frame: &PreparedFrame,
     ) -> Result<()> {
+        let start = Instant::now();
         let (slot, bound) = self.frame(frame)?;
         let plan = &bound.plan.frame;
         let bins = slot.buffer(SlotBuffer::Bins);
@@ -91,6 +95,7 @@ impl Renderer {
             // SAFETY: as the caller promised.
             unsafe { self.step(cmd, slot, bound, step, own)? };
         }
+        frame.end_recording(start);
         Ok(())
     }
 

@@ -105,8 +105,8 @@ pub(crate) struct BoundStep {
     pub offsets: [u32; 2],
 }
 
-/// The commands and bytes of a prepared frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The commands and bytes of a prepared frame, and what it cost the CPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameStatistics {
     /// Objects of which a part may show.
     pub objects: u32,
@@ -121,6 +121,12 @@ pub struct FrameStatistics {
     pub tiles: u32,
     /// Bytes of the slot's buffers.
     pub slot_bytes: u64,
+    /// CPU time of [`Renderer::prepare`](crate::gpu::Renderer::prepare), milliseconds of the clock: of
+    /// everything from the values that were set to the copies of textures.
+    pub prepare_ms: f64,
+    /// CPU time of the last [`Renderer::record`](crate::gpu::Renderer::record) or
+    /// [`record_compute`](crate::gpu::Renderer::record_compute) of the frame, milliseconds; 0 before.
+    pub record_ms: f64,
 }
 
 impl FrameSlot {

@@ -55,6 +55,10 @@ pub struct RevmapFrameStatistics {
     pub tiles: u32,
     /// Bytes of the slot's buffers.
     pub slot_bytes: u64,
+    /// CPU time of the preparation, milliseconds of the clock.
+    pub prepare_ms: f64,
+    /// CPU time of the last recording of the frame, milliseconds; 0 before.
+    pub record_ms: f64,
 }
 
 described! {
@@ -64,7 +68,10 @@ described! {
             drawn_by_hull, drawn_by_tiles, notes, padding,
         ]
     }
-    RevmapFrameStatistics { 0 => [size, objects, draws, dispatches, hidden, tiles, slot_bytes] }
+    RevmapFrameStatistics {
+        0 => [size, objects, draws, dispatches, hidden, tiles, slot_bytes]
+        5 => [prepare_ms, record_ms]
+    }
 }
 
 impl Recorder {
@@ -119,6 +126,8 @@ pub unsafe extern "C" fn revmap_renderer_frame_statistics(
             hidden: of.hidden,
             tiles: of.tiles,
             slot_bytes: of.slot_bytes,
+            prepare_ms: of.prepare_ms,
+            record_ms: of.record_ms,
             ..sized()
         };
         // SAFETY: the caller's structure.

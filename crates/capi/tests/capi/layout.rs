@@ -27,7 +27,7 @@ fn structures_are_the_same_in_c() {
         RevmapPlacement { rotation, scale }
         RevmapOffset { chamfer }
         RevmapLight { color, radius }
-        RevmapLighting { ambient, light_count, lights }
+        RevmapLighting { ambient, light_count, lights, environment_up, environment_down }
         RevmapCamera { eye, target, up, fov_y }
         RevmapView { view, projection, viewport, last, jitter, depth_bias, mask, layer, depth_range, ray_width }
         RevmapSearch { proxy_min_pixels, tolerance }
@@ -38,7 +38,7 @@ fn structures_are_the_same_in_c() {
         RevmapPass { render_pass, color_formats, color_format_count, stencil_format, attachments, sample_rays, depth_compare, depth_read_only, views, slope_bias, slope_bias_limit }
         RevmapComputeTarget { words, images }
         RevmapStatistics { surfaces_made, notes }
-        RevmapFrameStatistics { hidden, tiles, slot_bytes }
+        RevmapFrameStatistics { hidden, tiles, slot_bytes, prepare_ms, record_ms }
         RevmapMemoryUse { device, visible, host }
         RevmapRay { direction }
         RevmapRayHit { normal, copy, leaves }

@@ -210,6 +210,7 @@ impl Driver<'_> {
                 let mut lighting = defaults!(revmap_lighting_defaults, RevmapLighting);
                 lighting.shadow = dice.one_of(3);
                 lighting.ambient = [dice.number().abs() as f32; 3];
+                lighting.environment_up = lighting.ambient;
                 let light = dice.light();
                 if dice.chance(0.5) {
                     (lighting.lights, lighting.light_count) = (&light, 1);

@@ -164,6 +164,16 @@ fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
                 }
                 let refused = revmap_renderer_record_compute(renderer, cmd, slot);
                 assert_eq!(refused, RevmapResult::Usage);
+                let mut after = sized!(RevmapFrameStatistics);
+                ok! { revmap_renderer_frame_statistics(renderer, slot, &mut after); }
+                let is_time = |ms: f64| (1e-6..6e4).contains(&ms);
+                assert!(is_time(after.prepare_ms), "{after:?}");
+                // A prewarming is no recording.
+                assert!(if warms {
+                    after.record_ms == 0.0
+                } else {
+                    is_time(after.record_ms)
+                });
                 Ok(())
             };
             let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
@@ -191,6 +201,7 @@ fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
             let (picture, statistics) = shown(false);
             assert!(picture == wanted, "pixels differ");
             assert_eq!((statistics.hidden, statistics.objects), (0, 2));
+            assert_eq!(statistics.record_ms, 0.0, "not recorded yet");
             assert!(statistics.draws > 0 && statistics.slot_bytes > 0);
         }
         let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);

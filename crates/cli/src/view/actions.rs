@@ -8,6 +8,7 @@ use super::picture::colors;
 use super::shown::Shown;
 use super::{orbit, saved};
 use crate::output;
+use glam::DVec3;
 use revmap::error::{self, Error, Result};
 use revmap::settings::{Planes, Settings};
 use revmap_files::SceneFile;
@@ -68,8 +69,14 @@ impl App {
         }
         self.keep |= asked.screenshot;
         if asked.save {
-            let (first, shown) = (&self.first.scene, &self.shown.scene);
-            let written = saved::write_scene(&self.source, &self.file, first, shown);
+            let mut first = self.first.scene.clone();
+            if self.first.studio.is_some() {
+                // The camera that a studio has chosen is in no file.
+                (first.camera.eye, first.camera.target) = (DVec3::NAN, DVec3::NAN);
+                first.camera.fov_y = f64::NAN;
+            }
+            let shown = &self.shown.scene;
+            let written = saved::write_scene(&self.source, &self.file, &first, shown);
             self.say(written);
         }
         if asked.turntable {
@@ -120,7 +127,7 @@ impl App {
         };
         for n in 0..saved::TURNTABLE {
             let turned = saved::turned(&self.shown, n);
-            let (drawn, _) = self.painter.draw(&turned, settings)?;
+            let (drawn, _) = self.painter.draw(&turned.furnished(), settings)?;
             let file = folder.join(format!("frame-{n:04}.png"));
             colors(drawn, &settings)?.write_png(file)?;
         }
@@ -129,12 +136,15 @@ impl App {
 
     /// Shows a file that was dropped on the window.
     pub fn load(&mut self, path: &Path) {
-        let read = SceneFile::open(path).and_then(|mut file| Ok((file.scene(&[])?, file)));
+        let read = SceneFile::open(path).and_then(|mut file| {
+            let (scene, studio) = self.options.read(&mut file, &[], &self.framing)?;
+            Ok((scene, studio, file))
+        });
         match read {
-            Ok((scene, file)) => {
+            Ok((scene, studio, file)) => {
                 // The undo list belongs to the former file.
                 (self.undo, self.changing) = (Vec::new(), None);
-                self.shown.scene = scene;
+                (self.shown.scene, self.shown.studio) = (scene, studio);
                 self.first = self.shown.clone();
                 (self.source, self.file) = (path.to_owned(), file);
                 self.problem = None;

@@ -21,12 +21,12 @@ use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 /// Width of the panel at the start, points.
-const PANEL: f32 = 316.0;
+pub(super) const PANEL: f32 = 316.0;
 /// Shown until the help has been shown.
 const HINT: &str = "H: help";
 
 pub struct App {
-    options: View,
+    pub(super) options: View,
     /// The file of the shown scene.
     pub(super) source: PathBuf,
     pub(super) file: SceneFile,

@@ -5,7 +5,7 @@ use super::times::Times;
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, Slider, Ui};
 use revmap::gpu::DrawPath;
 use revmap::maps::Projection;
-use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
+use revmap::scene::{BumpForm, Clip, Environment, Light, Object, Scene, Shadow};
 use revmap::settings::{DrawStage, SearchSettings, Tolerance};
 use revmap_searches::folder;
 
@@ -56,7 +56,12 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told, asked: &mut Asked) {
         asked.changed |= choice(ui, "stage", &mut shown.stage, &DrawStage::NAMES);
         asked.changed |= choice(ui, "show", &mut shown.inspected, &Inspected::NAMES);
     });
-    let Shown { scene, search, .. } = shown;
+    let Shown {
+        scene,
+        search,
+        studio,
+        ..
+    } = shown;
     for (n, one) in scene.objects.iter_mut().enumerate() {
         let path = told.draw_paths.get(n);
         let path = path.map_or(String::new(), |p| format!(" ({p:?})"));
@@ -66,7 +71,9 @@ pub fn show(ui: &mut Ui, shown: &mut Shown, told: &Told, asked: &mut Asked) {
             .default_open(n == 0)
             .show(ui, |ui| asked.changed |= object(ui, one));
     }
-    CollapsingHeader::new("Lights").show(ui, |ui| asked.changed |= lights(ui, scene));
+    if studio.is_none() {
+        CollapsingHeader::new("Lights").show(ui, |ui| asked.changed |= lights(ui, scene));
+    }
     CollapsingHeader::new("Search").show(ui, |ui| asked.changed |= how(ui, search));
     CollapsingHeader::new("Camera").show(ui, |ui| {
         let angle = Slider::new(&mut scene.camera.fov_y, 5.0..=120.0).text("fov_y");
@@ -123,6 +130,13 @@ fn lights(ui: &mut Ui, scene: &mut Scene) -> bool {
     changed |= row(ui, "ambient", |ui| {
         ui.color_edit_button_rgb(&mut scene.ambient).changed()
     });
+    if let Some(Environment { up, down }) = &mut scene.environment {
+        changed |= row(ui, "environment", |ui| {
+            any([up, down]
+                .into_iter()
+                .map(|side| ui.color_edit_button_rgb(side).changed()))
+        });
+    }
     for (n, light) in scene.lights.iter_mut().enumerate() {
         changed |= row(ui, &format!("light {n}"), |ui| {
             let turned = coordinates(ui, light.direction.as_mut());

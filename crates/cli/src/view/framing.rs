@@ -39,6 +39,12 @@ impl Framing {
         framed
     }
 
+    /// Width over height of the part of the unframed camera's picture that the free part shows.
+    pub fn aspect(&self) -> f64 {
+        let (width, _) = self.free();
+        self.shrinking() * f64::from(width) / f64::from(self.window.1.max(1))
+    }
+
     /// The height that the field of view of the unframed camera has in the window, pixels.
     pub fn height(&self) -> f64 {
         f64::from(self.window.1) / self.shrinking()
@@ -86,6 +92,10 @@ mod tests {
             let edge = |frame: &CameraFrame, side: f64| frame.up.length() * side;
             let (a, b) = (shorter(window), shorter(framing.free()));
             assert!((edge(&before, a) - edge(&frame, b)).abs() < 1e-12);
+            // The free part is as wide as the picture of `aspect` that the unframed camera sees.
+            let half = (0.5 * camera.fov_y.to_radians()).tan() * framing.aspect();
+            let wide = 2.0 * half / frame.up.length();
+            assert!((wide - f64::from(framing.free().0)).abs() < 1e-9);
             let half = framing.camera(&camera, 2);
             assert_eq!(2.0 * half.shift[0], framed.shift[0]);
         }

@@ -18,18 +18,22 @@ mod times;
 
 use super::output;
 use super::reading::ShownOutline;
+use super::studio::Studio;
 use clap::Args;
 use eframe::egui::{ViewportBuilder, vec2};
 use revmap::error::{Error, ErrorKind, Result};
+use revmap::scene::Scene;
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use revmap_files::SceneFile;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Shows a scene in a window: drag to turn, drag with the right button to shift, turn the wheel to
 /// go nearer; drop a file to see it; H shows all keys
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap view assets/profiles/rook.svg\n  \
+    revmap view assets/profiles/king.svg --studio --color \"#c8502a\"\n  \
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
@@ -52,6 +56,8 @@ pub struct View {
     tolerance: Tolerance,
     #[command(flatten)]
     device: super::options::DeviceChoice,
+    #[command(flatten)]
+    surroundings: super::options::Surroundings,
     /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -70,10 +76,29 @@ pub struct View {
 }
 
 impl View {
+    /// The scene of a file, and the studio around it. The camera is chosen as `render --studio`
+    /// chooses it, for the free part of the window.
+    fn read(
+        &self,
+        file: &mut SceneFile,
+        sets: &[String],
+        framing: &framing::Framing,
+    ) -> Result<(Scene, Option<Arc<Studio>>)> {
+        let sets = self.surroundings.sets(file, sets);
+        let mut scene = file.scene(&sets)?;
+        let mut studio = self.surroundings.studio()?;
+        if let Some(studio) = studio.as_mut().filter(|_| file.chooses_camera(&sets)) {
+            studio.frame(&[(scene.clone(), 0.0)], framing.aspect());
+            studio.place_camera(&mut scene);
+        }
+        Ok((scene, studio.map(Arc::new)))
+    }
+
     pub fn run(self) -> Result<()> {
         output::check(&self.screenshot, "--screenshot", &["png"], &[&self.scene])?;
         let mut file = SceneFile::open(&self.scene)?;
-        let scene = file.scene(&self.set)?;
+        let framing = framing::Framing::new(self.size, app::PANEL as u32);
+        let (scene, studio) = self.read(&mut file, &self.set, &framing)?;
         output::spare(file.files(), &self.screenshot, "--screenshot")?;
         output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
         output::spare(file.files(), &self.times, "--times")?;
@@ -86,6 +111,7 @@ impl View {
         };
         let shown = shown::Shown {
             scene,
+            studio,
             search,
             stage: self.stage,
             inspected: self.show,

@@ -66,7 +66,7 @@ impl Painter {
             words: String::new(),
             draw_paths: Vec::new(),
         };
-        painter.draw(shown, shown.settings(size))?;
+        painter.draw(&shown.furnished(), shown.settings(size))?;
         painter.compiled = painter.device.pipelines_compiled();
         Ok(painter)
     }
@@ -108,7 +108,7 @@ impl Painter {
         };
         let (width, height) = framing.window;
         let settings = shown.settings((width.div_ceil(side), height.div_ceil(side)));
-        let mut framed = shown.clone();
+        let mut framed = shown.furnished();
         framed.scene.camera = framing.camera(&shown.scene.camera, side);
         framed.scene.background[3] = 1.0;
         let reference = match shown.inspected {
@@ -156,7 +156,7 @@ impl Painter {
         }))
     }
 
-    /// Draws a frame with these settings, to be read.
+    /// Draws a frame of a furnished state with these settings, to be read.
     pub fn draw(&mut self, shown: &Shown, settings: Settings) -> Result<(&mut Offscreen, Times)> {
         let fits = |(made, _): &(Settings, Offscreen)| *made == settings;
         let mut offscreen = match self.offscreen.take().filter(fits) {

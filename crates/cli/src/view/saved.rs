@@ -4,7 +4,7 @@ use super::shown::Shown;
 use super::times::Cost;
 use crate::animate::turn_about_target;
 use revmap::error::Result;
-use revmap::scene::{BumpForm, Clip, Light, Object, Scene, Shadow};
+use revmap::scene::{BumpForm, Clip, Environment, Light, Object, Scene, Shadow};
 use revmap::settings::name_of;
 use revmap_files::SceneFile;
 use revmap_files::write_bytes;
@@ -81,6 +81,10 @@ fn assignments(scene: &Scene) -> Vec<String> {
         format!("ambient={:?}", scene.ambient),
         format!("shadow={:?}", name_of(&Shadow::NAMES, &scene.shadow)),
     ];
+    if let Some(Environment { up, down }) = &scene.environment {
+        all.push(format!("environment.up={up:?}"));
+        all.push(format!("environment.down={down:?}"));
+    }
     let light = |light: &Light| {
         let direction = light.direction.to_array();
         let (color, radius) = (light.color, light.radius);
@@ -158,6 +162,7 @@ mod tests {
             .unwrap();
         let shown = Shown {
             scene,
+            studio: None,
             search: revmap::settings::SearchSettings::default(),
             stage: revmap::settings::DrawStage::Fragment,
             inspected: super::super::shown::Inspected::Color,

@@ -1,7 +1,9 @@
 //! The state of the window: the values that the controls change and that can be undone.
 
+use crate::studio::Studio;
 use revmap::scene::Scene;
 use revmap::settings::{DrawStage, Planes, SearchSettings, Settings};
+use std::sync::Arc;
 
 /// The quantity that the window shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +34,26 @@ impl Inspected {
 /// The shown scene and its settings.
 #[derive(Clone)]
 pub struct Shown {
+    /// The scene without the studio.
     pub scene: Scene,
+    /// The studio in which the scene is drawn.
+    pub studio: Option<Arc<Studio>>,
     pub search: SearchSettings,
     pub stage: DrawStage,
     pub inspected: Inspected,
 }
 
 impl Shown {
+    /// This state as it is drawn: the scene has the ground and the lights of its studio, which follow
+    /// the camera.
+    pub fn furnished(&self) -> Self {
+        let mut drawn = self.clone();
+        if let Some(studio) = &self.studio {
+            studio.furnish(&mut drawn.scene);
+        }
+        drawn
+    }
+
     /// Settings of a frame of this size with what is inspected.
     pub fn settings(&self, (width, height): (u32, u32)) -> Settings {
         Settings {

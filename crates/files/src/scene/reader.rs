@@ -14,8 +14,8 @@ use revmap::error::{Error, Result};
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{
-    BumpForm, Camera, Clip, Light, Material, Object, Offset, Placement, Scene, Shadow, Specular,
-    Texturing,
+    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
+    Specular, Texturing,
 };
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -24,9 +24,11 @@ use std::sync::Arc;
 use toml::Table;
 
 /// Keys of the whole file.
-pub(super) const SCENE: &str = "background ambient shadow stand camera light object";
+pub(super) const SCENE: &str = "background ambient environment shadow stand camera light object";
 /// Keys of `[camera]`.
 pub(super) const CAMERA: &str = "eye target up fov_y";
+/// Keys of `environment`.
+pub(super) const ENVIRONMENT: &str = "up down";
 /// Keys of `[[light]]`.
 pub(super) const LIGHT: &str = "direction color radius";
 /// Keys that place one copy.
@@ -119,6 +121,7 @@ impl Reader {
         let mut scene = Scene::new(camera(keys.table("camera")?.unwrap_or(&empty))?);
         keys.set("background", &mut scene.background)?;
         keys.set("ambient", &mut scene.ambient)?;
+        scene.environment = keys.table("environment")?.map(environment).transpose()?;
         keys.choose("shadow", &Shadow::NAMES, &mut scene.shadow)?;
         if let Some(tables) = keys.tables("light")? {
             let lights = tables.into_iter().enumerate();
@@ -330,6 +333,18 @@ fn camera(table: &Table) -> Result<Camera> {
     keys.set("up", &mut camera.up)?;
     keys.set("fov_y", &mut camera.fov_y)?;
     Ok(camera)
+}
+
+/// The side that is left out is black.
+fn environment(table: &Table) -> Result<Environment> {
+    let keys = Keys::new(table, "environment", ENVIRONMENT)?;
+    let mut sky = Environment {
+        up: [0.0; 3],
+        down: [0.0; 3],
+    };
+    keys.color("up", &mut sky.up)?;
+    keys.color("down", &mut sky.down)?;
+    Ok(sky)
 }
 
 fn light((index, table): (usize, &Table)) -> Result<Light> {

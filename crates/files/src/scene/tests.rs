@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used)]
 use super::keys::OBJECT;
-use super::reader::{CAMERA, LIGHT};
+use super::reader::{CAMERA, ENVIRONMENT, LIGHT};
 use super::*;
 use glam::DQuat;
 use revmap::maps::Projection;
-use revmap::scene::{BumpForm, Light, Material, Offset, Placement, Shadow, Specular, Texturing};
+use revmap::scene::{
+    BumpForm, Environment, Light, Material, Offset, Placement, Shadow, Specular, Texturing,
+};
 use std::sync::Arc;
 
 const CAMERA_LINES: &str = "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n";
@@ -63,6 +65,7 @@ fn what_is_not_said_has_the_documented_default() {
         scene.camera.fov_y => 40.0;
         scene.lights => Light::pair();
         scene.shadow => Shadow::Off;
+        scene.environment => None;
         object.name => "polygon";
         object.profile.radius => 0.5;
         object.map_rows => 512;
@@ -85,6 +88,7 @@ fn every_key_arrives() {
 background = [0.1, 0.2, 0.3, 1]
 ambient = [0.5, 0.6, 0.7]
 shadow = "soft"
+environment = { up = [0.5, 2, 1], down = [1, 0, 0] }
 [camera]
 eye = [1.6, 0.3, 1.1]
 target = [0.0, 0.0, 0.5]
@@ -137,6 +141,7 @@ instances = "copies.csv"
         scene.background => [0.1, 0.2, 0.3, 1.0];
         scene.ambient => [0.5, 0.6, 0.7];
         scene.shadow => Shadow::Soft;
+        scene.environment => Some(Environment { up: [0.5, 2.0, 1.0], down: [1.0, 0.0, 0.0] });
         scene.camera.eye => DVec3::new(1.6, 0.3, 1.1);
         scene.camera.up => DVec3::Y;
         scene.camera.fov_y => 25.5;
@@ -209,6 +214,26 @@ fn a_named_projection_goes_before_the_file_name() {
     );
     let scene = parse(&text, folder.path(), &[]).unwrap();
     assert_eq!(scene.objects[0].texturing.projection, Projection::Arc);
+}
+
+#[test]
+fn an_environment_is_refused_by_its_key() {
+    for (value, words) in [
+        (
+            "{ up = \"blue\" }",
+            "environment.up: expected 3 numbers, or",
+        ),
+        ("{ up = [1, 1] }", "environment.up: expected 3 numbers"),
+        ("{ down = [0, -1, 0] }", "environment.down: has -1.0"),
+        (
+            "{ upp = [1, 1, 1] }",
+            "environment.upp: unknown key; did you mean `up`?",
+        ),
+        ("\"#ffffff\"", "environment: expected a table"),
+    ] {
+        let text = format!("environment = {value}\n{CAMERA_LINES}{CONE}");
+        fault(parse(&text, "", &[]), words);
+    }
 }
 
 #[test]
@@ -366,12 +391,13 @@ fn every_key_is_documented() {
         ("object.N.", OBJECT),
         ("camera.", CAMERA),
         ("light.N.", LIGHT),
+        ("environment.", ENVIRONMENT),
     ] {
         for key in keys.split_whitespace() {
             assert!(documented(&format!("{table}{key}")), "{key}");
         }
     }
-    for key in ["background", "ambient", "shadow"] {
+    for key in ["background", "ambient", "environment", "shadow"] {
         assert!(documented(key), "{key}");
     }
 }
@@ -405,6 +431,10 @@ fn turns_come_before_rotations_and_colours_may_be_texts() {
     let [red, green, blue] = scene.objects[0].color;
     assert!(red == 1.0 && (green - 0.215_861).abs() < 1e-6 && blue == 0.0);
     assert!((scene.lights[0].color[2] - 0.033_105).abs() < 1e-6);
+    let text = format!("environment.up = \"#ff0000\"\n{CAMERA_LINES}{CONE}");
+    let (up, down) = ([1.0, 0.0, 0.0], [0.0; 3]);
+    let sky = parse(&text, "", &[]).unwrap().environment;
+    assert_eq!(sky, Some(Environment { up, down }));
     for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "red", "#+f8000"] {
         fault(cone(&format!("color = \"{text}\"")), "object.0.color");
     }

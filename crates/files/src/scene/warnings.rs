@@ -49,6 +49,10 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
     };
     color("background", &scene.background, 1.0);
     color("ambient", &scene.ambient, BRIGHT);
+    if let Some(sky) = &scene.environment {
+        color("environment.up", &sky.up, BRIGHT);
+        color("environment.down", &sky.down, BRIGHT);
+    }
     for (i, light) in scene.lights.iter().enumerate() {
         color(&format!("light.{i}.color"), &light.color, BRIGHT);
     }

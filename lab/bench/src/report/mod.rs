@@ -238,11 +238,15 @@ impl<'a> Writer<'a> {
             exhibit::Records::Flights => flight::table(self.run.flights, context.rows),
             _ => table.shown(context, &place.rows)?,
         };
+        let shown = match context.over_pictures(1).is_empty() {
+            true => shown.without("pictures"),
+            false => shown,
+        };
         if shown.records.is_empty() {
-            let missing = table.print && table.over == Some(Over::Baseline);
-            if let Some(heading) = place.heading.as_ref().filter(|_| missing) {
+            if table.print && table.over == Some(Over::Baseline) {
                 let none = "no ratios: no usable row of the RBM baseline";
-                self.text += &format!("{heading}\n\n{none}\n\n");
+                let heading = place.heading.iter().map(|heading| format!("{heading}\n\n"));
+                self.text += &heading.chain([format!("{none}\n\n")]).collect::<String>();
             }
             return Ok(());
         }

@@ -78,6 +78,11 @@ impl Table {
         })
     }
 
+    /// The table without the columns of this heading.
+    pub fn without(&self, heading: &str) -> Self {
+        self.columns(|column| self.header[column] != heading)
+    }
+
     /// The characters of each column's longest field.
     fn widths(&self) -> Vec<usize> {
         let width = |column: usize| {

@@ -41,6 +41,7 @@ pub(in super::super) struct PipelineKey {
     /// Whether backs of triangles are drawn.
     pub both_sides: bool,
     pub shadow: Shadow,
+    pub environment: bool,
 }
 
 /// The pipelines of one device, shared by all its mesh drawers.
@@ -157,14 +158,15 @@ impl MeshPipelines {
                 .offset(4 * id)
                 .size(4)
         };
-        let entries = [0, 1, 2, 3].map(entry);
+        let entries = [0, 1, 2, 3, 4].map(entry);
         let projection = match key.projection {
             Projection::Planar => 0,
             Projection::Spherical => 2,
             Projection::Cylindrical | Projection::Arc => 1,
         };
         let soft = u32::from(key.shadow == Shadow::Soft);
-        let values = [key.lights, u32::from(key.single), projection, soft];
+        let [single, environment] = [key.single, key.environment].map(u32::from);
+        let values = [key.lights, single, projection, soft, environment];
         let constants = vk::SpecializationInfo::default()
             .map_entries(&entries)
             .data(bytemuck::cast_slice(&values));

@@ -5,8 +5,8 @@ use glam::DVec3;
 use revmap::maps::{ColorMap, DisplacementMap};
 use revmap::profile::{Profile, Raster};
 use revmap::scene::{
-    BumpForm, Camera, Clip, Light, Material, Object, Offset, Placement, Scene, Shadow, Specular,
-    Texturing,
+    BumpForm, Camera, Clip, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
+    Specular, Texturing,
 };
 use revmap::settings::name_of;
 use toml::{Table, Value};
@@ -17,6 +17,7 @@ pub(super) fn scene(of: &Scene) -> Table {
     let Scene {
         background,
         ambient,
+        environment,
         camera:
             Camera {
                 eye,
@@ -38,14 +39,19 @@ pub(super) fn scene(of: &Scene) -> Table {
         ("shift", list(shift.map(real))),
         ("ray_width", real(*ray_width)),
     ];
-    table([
+    let mut all = table([
         ("background", list(background.map(single))),
         ("ambient", list(ambient.map(single))),
         ("camera", table(camera).into()),
         ("light", tables(lights.iter().map(light))),
         ("shadow", name_of(&Shadow::NAMES, shadow).into()),
         ("object", tables(objects.iter().map(object))),
-    ])
+    ]);
+    if let Some(Environment { up, down }) = environment {
+        let sky = [("up", up), ("down", down)].map(|(key, color)| (key, list(color.map(single))));
+        all.insert("environment".to_owned(), table(sky).into());
+    }
+    all
 }
 
 fn light(of: &Light) -> Table {

@@ -5,7 +5,7 @@ use crate::plan::view::Framing;
 use crate::plan::view::tests::spindle;
 use revmap::maps::{ColorMap, DisplacementMap};
 use revmap::profile::{Profile, Raster};
-use revmap::scene::{Light, Material, Placement};
+use revmap::scene::{Environment, Light, Material, Placement};
 use std::sync::Arc;
 
 /// A change of a view, and the key under which it is told.
@@ -37,6 +37,10 @@ fn every_value_of_a_scene_is_told_by_its_key() {
         ("camera.fov_y", |v| v.scene.camera.fov_y = 41.0),
         ("background", |v| v.scene.background[3] = 0.5),
         ("ambient", |v| v.scene.ambient[0] = 0.11),
+        ("environment.down (old not set, new ", |v| {
+            let (up, down) = ([1.0; 3], [0.5; 3]);
+            v.scene.environment = Some(Environment { up, down });
+        }),
         ("shadow (old \"off\", new \"soft\")", |v| {
             v.scene.shadow = revmap::scene::Shadow::Soft
         }),

@@ -64,42 +64,12 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
     all.extend(exactness(context));
     let loses: Vec<_> = rivals(context, context.rows)
         .into_iter()
-        .chain(meshes(context))
+        .chain(super::losses::to_meshes(context))
         .collect();
     if !loses.is_empty() {
         all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
     }
     all
-}
-
-/// The largest time of the default over that of the fastest mesh of the same picture, and the mesh's
-/// name and error.
-fn meshes(context: &Context) -> Option<String> {
-    let timed = |r: &Row| r.time().map_or(f64::INFINITY, |t| t.value);
-    let rows = || context.rows.iter().copied();
-    let mut all: Vec<Pair> = Vec::new();
-    for row in rows().filter(|r| r.settings.method == Method::DEFAULT) {
-        let same = |r: &&Row| r.settings.method.is_mesh() && r.picture() == row.picture();
-        let fastest = rows()
-            .filter(same)
-            .min_by(|a, b| timed(a).total_cmp(&timed(b)));
-        let time = fastest.and_then(|mesh| Some((row, mesh, between(row, mesh)?)));
-        all.extend(time);
-    }
-    let (row, mesh, time) = worst(context, all.iter())?;
-    let error = mesh.errors.view.map(|v| v.silhouette_max);
-    Some(format!(
-        "Against the fastest mesh of the picture it takes at most {} of the time: {} at {} in the {} stage, against `{}`{}.",
-        Cell::Known(*time).shown(),
-        row.scene,
-        row.size(),
-        row.settings.stage.name(),
-        mesh.settings.method,
-        error.map_or_else(String::new, |e| format!(
-            ", whose silhouettes are within {} pixels",
-            number(e, 2)
-        )),
-    ))
 }
 
 /// The worst errors of the default, of the RBM baseline and of each mesh.
@@ -218,8 +188,8 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
     )
 }
 
-/// A row of the default search, the fastest other search, and the ratio of their times.
-type Pair<'a> = (&'a Row, &'a Row, Interval);
+/// A row of the default search, the fastest other way, and the ratio of their times.
+pub(super) type Pair<'a> = (&'a Row, &'a Row, Interval);
 
 fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
     let pair = |row: &&'a Row| {
@@ -230,7 +200,7 @@ fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
 }
 
 /// The pair whose ratio is largest, of those that are resolved.
-fn worst<'a, 'b>(
+pub(super) fn worst<'a, 'b>(
     context: &Context,
     pairs: impl Iterator<Item = &'b Pair<'a>>,
 ) -> Option<&'b Pair<'a>>
@@ -421,6 +391,14 @@ mod tests {
         let wanted = "Where it loses, if anywhere: Against the fastest mesh of the picture it takes at most 4 (4 to 4) of the time: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
         assert!(told.contains(wanted), "{told}");
         assert!(!told.contains("1 picture"), "{told}");
+        // Times that are not resolved still have a fastest mesh.
+        let rows = [
+            mesh(Method::DEFAULT, &[10.0, 90.0, 30.0]),
+            mesh(coarse, &[2.5, 2.55, 2.5]),
+        ];
+        let told = with_context(&rows, findings).join(" ");
+        let wanted = "No ratio to a mesh is resolved; the fastest is `mesh:4px`.";
+        assert!(told.contains(wanted), "{told}");
     }
 
     /// The quadric search is faster in one picture; a wider interval with a larger ratio does not

@@ -107,7 +107,9 @@ pub(crate) fn places<'a>(context: &Context, rows: &[&'a Row], per: Per) -> Vec<P
                     Framing::Whole => "Views of whole solids",
                     Framing::Close => "Close views",
                 };
-                let heading = Some(title(framing.name(), rows));
+                // A run of one picture says in one place what that is.
+                let several = grouped(context.rows, |r| r.picture()).len() > 1;
+                let heading = several.then(|| title(framing.name(), rows));
                 Place::new(context, rows.clone(), heading, (views, &ending(*framing)))
             }));
             parts
@@ -176,6 +178,10 @@ mod tests {
             // One framing needs no part of its own.
             assert_eq!(places(context, &context.rows[..2], Per::Part).len(), 1);
             assert!(places(context, &[], Per::Part).is_empty());
+        });
+        with_context(&rows[..2], |context| {
+            let found = places(context, context.rows, Per::Part);
+            assert_eq!((found.len(), found[0].heading.as_ref()), (1, None));
         });
     }
 }
