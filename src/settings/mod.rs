@@ -287,8 +287,8 @@ pub struct Settings {
     /// Minimum number of pixels of an object's box, for each visible frustum of its cells, at which
     /// the fragment stage draws the cells. Triangles cost the same at any size. Smaller objects are
     /// drawn by tiles. Software drivers multiply this number by 2 to 11. Compute lists patches for
-    /// tiles if they have twice this number of pixels for each patch of a mean object, and on GPUs
-    /// 524,288 at least, unless a solid's radius is more than 32 times its height. 0 always draws
+    /// tiles if they have twice this number of pixels for each patch of a mean object; GPUs do so only
+    /// for solids whose radius is more than 32 times their height. 0 always draws
     /// cells and lists; `u32::MAX` disables cells and lists of patches.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.

@@ -906,7 +906,7 @@ typedef struct RevmapStatistics {
     uint32_t drawn_by_box;
     /// Number of objects drawn by hulls.
     uint32_t drawn_by_hull;
-    /// Number of objects drawn by tiles of the screen.
+    /// Number of objects drawn by tiles of the screen, or by rays that walk to copies.
     uint32_t drawn_by_tiles;
     /// Notes that revmap_renderer_note() gives.
     uint32_t notes;
