@@ -108,7 +108,8 @@ fn reflections_are_the_references() {
 /// Each value of the sky and of the material changes the pictures of the test above.
 #[test]
 fn every_value_is_seen() {
-    let changes: &[(&str, fn(&mut Scene))] = &[
+    type Change = (&'static str, fn(&mut Scene));
+    let changes: [Change; 6] = [
         ("no sky", |s| s.environment = None),
         ("up", |s| s.environment.as_mut().unwrap().up[2] = 0.5),
         ("down", |s| s.environment.as_mut().unwrap().down[0] = 0.6),
