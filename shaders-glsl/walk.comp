@@ -16,7 +16,7 @@ void main()
         walk(pushed.heads, vec2(pixel), nearest);
         count_steps(pixel, nearest.hit);
         if (nearest.found) {
-            Instance i = placed(instances[nearest.index]);
+            Instance i = walked_instance(nearest.index);
             load(i);
             store(pixel, nearest.depth, shade(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit));
         }

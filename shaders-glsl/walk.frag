@@ -21,7 +21,7 @@ void main()
     if (!nearest.found) {
         discard;
     }
-    Instance i = placed(instances[nearest.index]);
+    Instance i = walked_instance(nearest.index);
     load(i);
     gl_FragDepth = draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit);
 }

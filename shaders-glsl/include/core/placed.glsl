@@ -56,11 +56,11 @@ Instance placed(Instance i)
     return i;
 }
 
-// Returns instance `number`, which may throw a shadow, as the view has it.
-Instance caster_instance(uint number)
+// Returns instance `number` as the view has it, whoever places it.
+Instance walked_instance(uint number)
 {
     Instance i = instances[number];
-    if (PLACED_CASTERS != 0u && i.table == PLACED) {
+    if (i.table == PLACED) {
         i = placed(i);
     }
     return i;

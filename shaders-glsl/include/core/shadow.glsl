@@ -153,7 +153,10 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             if (met == INNER_NODE) {
                 break;
             }
-            Instance i = caster_instance(met);
+            Instance i = instances[met];
+            if (PLACED_CASTERS != 0u) {
+                i = walked_instance(met);
+            }
             load_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load

@@ -50,7 +50,7 @@ Nearest nothing_nearer_than(float depth)
 // Traces a copy. Of equal depths, the first copy wins.
 void take_nearer(uint number, vec2 at, inout Nearest nearest)
 {
-    Instance i = placed(instances[number]);
+    Instance i = walked_instance(number);
     load_shape(i);
     PixelRays rays = pixel_rays(i);
     Hit hit;

@@ -260,7 +260,9 @@ impl Renderer {
                 let at = at + size_of::<ObjectBlock>();
                 to.write(SlotBuffer::Objects, at, &level_tables(planned))?;
             }
-            if walks && are_placed && !motion {
+            // A single copy costs the host less than the device would need in each pixel.
+            let placed = walks && placements.len() > 1;
+            if placed && are_placed && !motion {
                 continue;
             }
             let shown: Cow<[u32]> = match copies {
@@ -268,10 +270,10 @@ impl Renderer {
                 None => (0..placements.len() as u32).collect(),
             };
             let first = object.instances.start;
-            if walks && !are_placed {
+            if placed && !are_placed {
                 let block = |copy| placed_block(&placements[copy as usize], number);
                 to.write_instances(first, &shown, block)?;
-            } else if !walks {
+            } else if !placed {
                 let starts =
                     |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
                 let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
