@@ -254,6 +254,7 @@ bevle = 1                           => object.0.bevle: unknown key; did you mean
 bevel = "1"                         => object.0.bevel: expected a number
 scale = [1, 0, 1]                   => object.0.scale: has 0.0
 scale = 2                           => object.0.scale: expected 3 numbers in brackets, found 2
+color = "greenish"                  => object.0.color: expected 3 numbers, or an opaque colour such as "orange"
 rotation = [0, 0, 0, 0]             => object.0.rotation:
 repeat = [1, 0, 1]                  => object.0.repeat: has 0
 chamfer = 2                         => object.0.chamfer: is 2.0
@@ -405,7 +406,12 @@ fn turns_come_before_rotations_and_colours_may_be_texts() {
     let [red, green, blue] = scene.objects[0].color;
     assert!(red == 1.0 && (green - 0.215_861).abs() < 1e-6 && blue == 0.0);
     assert!((scene.lights[0].color[2] - 0.033_105).abs() < 1e-6);
-    for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "red", "#+f8000"] {
+    let [named, digits] = ["steelblue", "#4682b4"].map(|c| cone(&format!("color = \"{c}\"")));
+    assert_eq!(
+        named.unwrap().objects[0].color,
+        digits.unwrap().objects[0].color
+    );
+    for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "reddish", "#+f8000"] {
         fault(cone(&format!("color = \"{text}\"")), "object.0.color");
     }
 }
