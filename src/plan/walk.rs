@@ -255,8 +255,12 @@ mod tests {
         let part = |step: f64| (f64::from(n) * step).fract();
         let middle = DVec3::new(part(0.754_877), part(0.569_840), 0.1 * part(0.41)) * 100.0;
         // Copies far larger than others, and many at one place.
-        let size = if n % 97 == 0 { 30.0 } else { 0.2 + part(0.3) };
-        let middle = if n % 5 == 0 {
+        let size = if n.is_multiple_of(97) {
+            30.0
+        } else {
+            0.2 + part(0.3)
+        };
+        let middle = if n.is_multiple_of(5) {
             DVec3::splat(7.0)
         } else {
             middle

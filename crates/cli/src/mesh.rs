@@ -99,9 +99,10 @@ impl Mesh {
             None => format!("{} object units", self.tolerance),
         };
         output::result(&format!(
-            "{}: {count} triangles of {} solids, {copies} copies, within {within}; {bytes} bytes",
+            "{}: {count} triangles of {}, {}, within {within}; {bytes} bytes",
             self.output.display(),
-            meshes.len(),
+            counted(meshes.len(), "solid", "solids"),
+            counted(copies, "copy", "copies"),
         ));
         Ok(())
     }
@@ -188,4 +189,8 @@ fn warnings(scene: &Scene) -> Vec<String> {
         }
     }
     found
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }

@@ -145,9 +145,16 @@ impl Candidate {
             score,
         })
     }
-}
 
-impl Candidate {
+    /// Returns true for a larger thing on the same axis that holds this one and is nearly as likely.
+    pub fn continues(&self, best: &Self) -> bool {
+        let [own, other] = [self, best].map(|c| count(&c.mask) as f64);
+        let beside = (self.axis - best.axis).abs() / f64::from(best.mask.width());
+        let alike = likeness(&self.mask, &best.mask);
+        let both = alike * (own + other) / (1.0 + alike);
+        self.score > 0.8 * best.score && own > 1.4 * other && both > 0.93 * other && beside < 0.015
+    }
+
     /// The part of the mask that is on both sides of its axis.
     pub fn mirrored(&self, work: &Work) -> Mask {
         let (axis, angle) = (self.axis, self.rows.angle);

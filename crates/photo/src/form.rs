@@ -54,12 +54,11 @@ impl Border {
 
     pub fn rows(&self, angle: f64) -> Rows {
         let points: Vec<_> = self.points.iter().map(|p| self.turned(*p, angle)).collect();
-        let range = |low: f64, high: f64| (low, high);
-        let (low, high) = points
-            .iter()
-            .fold(range(f64::MAX, f64::MIN), |(low, high), p| {
-                (low.min(p[1]), high.max(p[1]))
-            });
+        let heights = || points.iter().map(|p| p[1]);
+        let (low, high) = (
+            heights().fold(f64::MAX, f64::min),
+            heights().fold(f64::MIN, f64::max),
+        );
         let top = (low - 0.5).ceil() + 0.5;
         let count = ((high - top).floor().max(0.0) as usize) + 1;
         let mut ends = vec![NONE; count];

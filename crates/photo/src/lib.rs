@@ -18,7 +18,7 @@
 //! let photo = Photo { width: 120, height: 160, rgba: &rgba };
 //! assert!(!is_drawing(&photo));
 //! let reading = read(&photo).map_err(|fault| fault.to_string())?;
-//! assert!((reading.radius_at(0.5) - 0.25).abs() < 0.01); // 40 of 160 pixels
+//! assert!((reading.radii[reading.radii.len() / 2] - 0.25).abs() < 0.01); // 40 of 160 pixels
 //! # Ok::<(), String>(())
 //! ```
 

@@ -71,6 +71,8 @@ pub enum LeftOut {
 /// A reason for which an outline may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {
+    /// The thing may go on above or below the outline.
+    Part,
     /// Thing and ground are nearly alike along this part of the outline.
     Faint(f64),
     /// The thing is wider on one side by what looks like a shadow.
@@ -101,18 +103,6 @@ const FAINT: f64 = 0.06;
 const ONE_SIDED: f64 = 0.2;
 /// What is left out is told from this part of the thing's area on.
 const TOLD: f64 = 0.03;
-
-impl Reading {
-    /// The radius at a height above the picture's lower edge.
-    #[must_use]
-    pub fn radius_at(&self, z: f64) -> f64 {
-        let row = (self.top - z) / (self.top - self.bottom) * self.radii.len() as f64;
-        match (0.0..=self.radii.len() as f64).contains(&row) {
-            true => above::at(&self.radii, row - 0.5),
-            false => 0.0,
-        }
-    }
-}
 
 /// Reads the half profile of the thing in a photograph.
 ///
@@ -186,7 +176,10 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
         cut: halves.cut,
         elevation,
         score: best.score,
-        doubts: doubts(best, &sides, &halves),
+        doubts: match found.iter().any(|other| other.continues(best)) {
+            true => vec![Doubt::Part],
+            false => doubts(best, &sides, &halves),
+        },
     })
 }
 

@@ -82,6 +82,9 @@ impl Display for Doubt {
                 "the edge is faint along {:.0} % of the outline: thing and ground have too little contrast; take the photograph before another ground",
                 100.0 * part
             ),
+            Self::Part => f.write_str(
+                "the thing may go on above or below the outline, where the ground is nearly alike, as at a table's edge; look at it with --show-outline, and take the photograph before another ground",
+            ),
             Self::Shadow => f.write_str(
                 "the outline may hold a shadow; look at it with --show-outline, and move the thing away from the wall",
             ),

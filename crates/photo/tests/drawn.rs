@@ -125,9 +125,9 @@ fn likeness(reading: &Reading) -> f64 {
     let (mut both, mut either) = (0.0, 0.0);
     for k in 0..400 {
         let part = (f64::from(k) + 0.5) / 400.0;
-        let z = reading.bottom + part * (reading.top - reading.bottom);
+        let row = ((1.0 - part) * reading.radii.len() as f64) as usize;
         let (a, b) = (
-            reading.radius_at(z) / (reading.top - reading.bottom),
+            reading.radii[row] / (reading.top - reading.bottom),
             radius(part),
         );
         both += a.min(b);
@@ -283,6 +283,30 @@ fn a_faint_edge_is_doubted() {
         ),
         Err(fault) => assert_ne!(fault, Fault::NoSymmetry),
     }
+}
+
+#[test]
+fn a_thing_that_may_go_on_below_a_tables_edge_is_doubted() {
+    let scene = changed(|s| (s.color, s.ground) = ([0.9, 0.75, 0.55], [0.89, 0.85, 0.77]));
+    let before = |table: Color, grain: f64| {
+        let pixels = scene.draw(|[u, z], inside, color| match inside || z > 0.62 {
+            true => color,
+            false => {
+                let rings = 170.0 * z + 6.0 * (3.0 * u).sin() + 2.0 * (9.0 * z).sin();
+                table.map(|v| v * (1.0 + grain * rings.sin()))
+            }
+        });
+        read(&photo(&pixels)).unwrap()
+    };
+    // The head alone is found: the thing and the table are of one wood.
+    for grain in [0.03, 0.06] {
+        let reading = before([0.77, 0.64, 0.49], grain);
+        assert!(likeness(&reading) < 0.5, "{reading}");
+        assert_eq!(reading.doubts, [Doubt::Part]);
+    }
+    let whole = before([0.8, 0.7, 0.55], 0.03);
+    assert!(likeness(&whole) > 0.97, "{whole}");
+    assert_eq!(whole.doubts, []);
 }
 
 #[test]

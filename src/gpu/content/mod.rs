@@ -75,7 +75,7 @@ impl Content {
             rebuilds: 0,
             notes: Vec::new(),
             settings: SearchSettings {
-                planning: match (settings.planning, &*device.chosen.report.kind) {
+                planning: match (settings.planning, device.chosen.report.kind) {
                     (Planning::Auto, "cpu") => Planning::Host,
                     (Planning::Auto, _) => Planning::Device,
                     (chosen, _) => chosen,

@@ -13,6 +13,8 @@ fn triangles(bench: &Bench, arguments: &str) -> usize {
 fn meshes_are_as_fine_as_they_are_seen() {
     let bench = Bench::new();
     let count = |options: &str| triangles(&bench, &format!("scene.toml -o a.stl {options}"));
+    let said = bench.said("mesh scene.toml -o a.stl");
+    assert!(said.contains(" of 1 solid, 1 copy, within "), "{said}");
     let (coarse, fine) = (count("--tolerance 0.01"), count("--tolerance 0.0001"));
     assert!(6 * coarse < fine, "{coarse} {fine}");
     // An eye 1.7 units from the box, and one at 17; rows make pixels smaller.

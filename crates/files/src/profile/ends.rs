@@ -10,9 +10,9 @@ const SLACK: f64 = 0.02;
 /// The part of the rows that an edge must follow to be straight.
 const MOST: f64 = 0.8;
 /// The part of the rows that an edge must follow to be the axis of a hollow half, and how many times
-/// more rows it must follow than the other edge.
-const SOME: f64 = 0.1;
-const MORE: f64 = 2.0;
+/// more rows it must follow than the other edge; then the same on the page's left border.
+const LONG: [f64; 2] = [0.1, 2.0];
+const LONG_AT_BORDER: [f64; 2] = [0.05, 1.0];
 /// Bands of rows whose halves are compared.
 const BANDS: usize = 16;
 /// Columns that are looked at.
@@ -78,13 +78,18 @@ impl Ends {
     /// The outermost edge that far more rows follow than the other: the axis of a hollow half.
     pub fn long_edge(&self) -> Option<Edge> {
         let [low, high] = self.reach();
+        let at_left = match low.abs() <= 1.0 {
+            true => LONG_AT_BORDER,
+            false => LONG,
+        };
         let share = |is: &dyn Fn(&[f64; 3]) -> bool| {
             self.rows.iter().filter(|row| is(row)).count() as f64 / self.rows.len() as f64
         };
         let left = share(&|row| row[1] <= low + 1.0);
         let right = share(&|row| row[2] >= high - 1.0);
-        let is_long = |one: f64, other: f64| one >= SOME && one >= MORE * other;
-        match (is_long(left, right), is_long(right, left)) {
+        let is_long =
+            |[some, more]: [f64; 2], one: f64, other: f64| one >= some && one >= more * other;
+        match (is_long(at_left, left, right), is_long(LONG, right, left)) {
             (true, _) => Some(Edge::Left(low)),
             (_, true) => Some(Edge::Right(high)),
             _ => None,

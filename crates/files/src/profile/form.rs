@@ -21,6 +21,8 @@ const RUN: usize = 3;
 const LOW: f64 = 0.5;
 /// A solid of which more than this part of the width is on one side may be half a profile.
 const ONE_SIDED: f64 = 0.4;
+/// The same for a solid on the page's left border, which is the usual axis of half a profile.
+const ONE_SIDED_AT_BORDER: f64 = 0.2;
 /// A half that is this many times wider than high may be on its side.
 const FLAT: f64 = 1.5;
 /// A wall below this part of the height is thin.
@@ -122,7 +124,12 @@ impl<'a> Silhouette<'a> {
         }
         let hollow = || hollow(half).filter(|_| !self.is_low());
         let found = self.placed(axis).or_else(hollow);
-        found.into_iter().chain(gaps::hints(half)).collect()
+        // The right part of half a profile has no meaning, nor have its gaps.
+        let gaps = match found.iter().any(|hint| hint.contains("half a profile")) {
+            true => Vec::new(),
+            false => gaps::hints(half),
+        };
+        found.into_iter().chain(gaps).collect()
     }
 
     /// A warning about the place of the solid about the axis.
@@ -258,7 +265,12 @@ impl<'a> Silhouette<'a> {
         let line = ends.middle_line();
         let is_even = line.residual <= ends.slack();
         let is_tilted = is_even && line.drift.abs() > (1.5 * ends.slack()).max(2.0);
-        let may_be_half = (is_tilted || !is_even) && ends.one_sided(|_| self.axis) > ONE_SIDED;
+        let [low, high] = ends.reach();
+        let least = match low.abs() <= 1.0 && high < self.width - ends.slack() {
+            true => ONE_SIDED_AT_BORDER,
+            false => ONE_SIDED,
+        };
+        let may_be_half = (is_tilted || !is_even) && ends.one_sided(|_| self.axis) > least;
         let hollow_edge = || ends.long_edge().filter(|_| may_be_half);
         if let Some(edge) = ends.edge().or_else(hollow_edge) {
             return Some(self.half(edge));

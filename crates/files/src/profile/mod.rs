@@ -4,6 +4,7 @@ mod canvas;
 mod dark;
 mod drawing;
 mod ends;
+mod fair;
 mod form;
 mod gaps;
 mod image;

@@ -1,17 +1,21 @@
 //! Profiles from photographs, as [`revmap_photo`] reads them.
 
+use super::fair::fair;
 use super::{KINDS, ProfileOptions, ProfileRead, Smooth};
 use crate::Picture;
 use crate::pixels::{Pixels, decode};
-use crate::trace::trace;
 use crate::{content_fault, profile_from_bytes};
+use glam::DVec2;
 use revmap::error::Result;
-use revmap::host_memory;
-use revmap::profile::{Profile, Raster};
+use revmap::profile::{FillRule, Outline, Profile};
 use revmap_photo::{Fault, Photo, Reading};
 
-/// Rows of the raster that the outline is traced from.
-const ROWS: [u32; 2] = [512, 1024];
+/// Noise of radii that is fairly measured, rows: less is in steep parts alone, more is form.
+const NOISE: [f64; 2] = [0.05, 0.2];
+/// Reach of the fairing for the root of the noise, rows.
+const REACH: f64 = 14.0;
+/// Reach of the fairing for the standard deviation of a Gaussian that halves the same waves.
+const GAUSSIAN: f64 = 0.85;
 
 /// The profile of a photograph; `None` for a drawing.
 pub(super) fn profile(picture: &Pixels, options: &ProfileOptions) -> Result<Option<Profile>> {
@@ -19,13 +23,14 @@ pub(super) fn profile(picture: &Pixels, options: &ProfileOptions) -> Result<Opti
     let Some(reading) = reading(picture, &rgba)? else {
         return Ok(None);
     };
-    let mut raster = raster(picture, &reading)?;
-    let smooth = match options.smooth == Smooth::default() {
-        true => Smooth::Auto,
-        false => options.smooth,
+    let height = f64::from(picture.height);
+    let blur = match options.smooth {
+        Smooth::Pixels(pixels) if pixels > 0.0 => Some(pixels / height),
+        _ => None,
     };
-    smooth.apply(&mut raster, false)?;
-    let mut profile = trace(raster)?;
+    let widest = reading.radii.iter().copied().fold(0.0, f64::max);
+    let radius = (0.5 * f64::from(picture.width) / height).max(1.02 * widest);
+    let mut profile = Profile::new(outline(&reading, blur), radius);
     profile.notes = vec![reading.to_string()];
     profile.warnings = reading.doubts.iter().map(ToString::to_string).collect();
     Ok(Some(profile))
@@ -44,31 +49,59 @@ fn reading(picture: &Pixels, rgba: &[[u8; 4]]) -> Result<Option<Reading>> {
     revmap_photo::read(&photo).map(Some).map_err(refused)
 }
 
-/// The half profile as coverage. The top edge of the picture is `z = 1`, the bottom edge `z = 0`.
-fn raster(picture: &Pixels, reading: &Reading) -> Result<Raster> {
-    let rows = picture.height.clamp(ROWS[0], ROWS[1]);
-    let height = f64::from(rows);
-    let widest = reading.radii.iter().copied().fold(0.0, f64::max);
-    let radius = (0.5 * f64::from(picture.width) / f64::from(picture.height)).max(1.02 * widest);
-    let columns = (radius * height).ceil() as u32;
-    let what = "the pixels of a picture";
-    let mut coverage = host_memory::reserved(columns as usize * rows as usize, what)?;
-    for row in 0..rows {
-        let (low, high) = (
-            f64::from(rows - row - 1) / height,
-            f64::from(rows - row) / height,
-        );
-        let part = (high.min(reading.top) - low.max(reading.bottom)).max(0.0) * height;
-        let reach =
-            reading.radius_at(0.5 * (high.min(reading.top) + low.max(reading.bottom))) * height;
-        let pixel = |column: u32| (part * (reach - f64::from(column)).clamp(0.0, 1.0)) as f32;
-        coverage.extend((0..columns).map(pixel));
+/// The outline through the radii, faired by their noise, or as by a Gaussian of this standard
+/// deviation (heights of the picture). The top edge of the picture is `z = 1`, the bottom edge
+/// `z = 0`.
+fn outline(reading: &Reading, blur: Option<f64>) -> Outline {
+    let count = reading.radii.len();
+    let row = (reading.top - reading.bottom) / count as f64;
+    // The median of five rows: where the edge is not found in a row or two, the radius leaps.
+    let radii: Vec<f64> = (0..count)
+        .map(|k| {
+            let reach = 2.min(k).min(count - 1 - k);
+            let mut near = reading.radii[k - reach..=k + reach].to_vec();
+            near.sort_by(f64::total_cmp);
+            near[reach] / row
+        })
+        .collect();
+    let noise = noise(&radii).clamp(NOISE[0], NOISE[1]);
+    let reach = blur.map_or(REACH * noise.sqrt(), |blur| GAUSSIAN * blur / row);
+    let (first, last) = (radii[0], radii[count - 1]);
+    let ends = [DVec2::new(last, 0.0), DVec2::new(first, count as f64)];
+    let side = (0..count)
+        .rev()
+        .map(|k| DVec2::new(radii[k], (count - k) as f64 - 0.5));
+    let corners = ends[..1].iter().copied().chain(side);
+    let corners = corners.chain([ends[1], DVec2::new(0.0, count as f64)]);
+    // Points one row apart along the line, which fairing takes for even ones.
+    let mut points = vec![DVec2::ZERO];
+    for corner in corners {
+        let from = points[points.len() - 1];
+        let parts = from.distance(corner).round().max(1.0);
+        points.extend((1..=parts as u32).map(|k| from.lerp(corner, f64::from(k) / parts)));
     }
-    Ok(Raster {
-        columns,
-        rows,
-        coverage,
-    })
+    let place = |p: DVec2| DVec2::new(p.x.max(0.0) * row, reading.bottom + p.y * row);
+    let line: Vec<DVec2> = fair(&points, reach, noise).into_iter().map(place).collect();
+    Outline::enclosed(&[line], FillRule::NonZero)
+}
+
+/// Standard deviation of the noise of values a row apart, across the line through them: from third
+/// differences, which curves do not change.
+fn noise(radii: &[f64]) -> f64 {
+    const APART: usize = 3;
+    let mut found: Vec<f64> = radii
+        .windows(3 * APART + 1)
+        .map(|r| {
+            let rise = r[3 * APART] - r[0];
+            let third = rise - 3.0 * (r[2 * APART] - r[APART]);
+            third.abs() / (rise / (3 * APART) as f64).hypot(1.0)
+        })
+        .collect();
+    found.sort_by(f64::total_cmp);
+    // The median of a normal distribution's size is 0.6745 of its standard deviation.
+    found
+        .get(found.len() / 2)
+        .map_or(0.0, |middle| middle / (0.6745 * 20f64.sqrt()))
 }
 
 /// The picture with the outline over it.
@@ -118,6 +151,58 @@ mod tests {
                 false => Rgb([60, 80 + (y / 8) as u8, 130]),
             }
         }))
+    }
+
+    /// A lit vase with a ledge, in grain of 3 grey levels: its height is 300 of 360 pixels.
+    fn vase(z: f64) -> f64 {
+        match z {
+            0.88.. => 52.0,
+            _ => 60.0 + 30.0 * (6.0 * z).sin() - 20.0 * z,
+        }
+    }
+
+    #[test]
+    fn a_photograph_has_no_ridges_and_keeps_its_ledge() {
+        let grain = |x: u32, y: u32| {
+            let mixed = (x * 0x9e37 + y * 0x79b9).wrapping_mul(0x85eb_ca6b);
+            f64::from((mixed ^ mixed >> 15).wrapping_mul(0x2c1b_3c6d) >> 16) / 65535.0 - 0.5
+        };
+        let picture = RgbImage::from_fn(240, 360, |x, y| {
+            let z = (330.5 - f64::from(y) - 0.5) / 300.0;
+            let reach = if (0.0..1.0).contains(&z) {
+                vase(z)
+            } else {
+                0.0
+            };
+            let solid = (0.5 + 0.25 * (reach - (f64::from(x) - 119.5).abs())).clamp(0.0, 1.0);
+            let lit = 90.0 - 0.5 * (f64::from(x) - 120.0);
+            let grey = 220.0 + solid * (lit - 220.0) + 40.0 * grain(x, y);
+            Rgb([grey as u8, (0.95 * grey) as u8, (0.9 * grey) as u8])
+        });
+        let options = ProfileOptions {
+            read: ProfileRead::Auto,
+            ..ProfileOptions::default()
+        };
+        let profile = profile_from_bytes(&png_bytes(picture), options).unwrap();
+        let (mut sum, mut length, mut ledge) = (0.0, 0.0, 0.0f64);
+        for segment in profile.outline.surface_segments() {
+            let z = |p: glam::DVec2| (360.0 * p.y - 29.5) / 300.0;
+            let (a, b) = (segment.a * 360.0, segment.b * 360.0);
+            let middle = 0.5 * (z(segment.a) + z(segment.b));
+            if (0.05..0.84).contains(&middle) {
+                let slope = (vase(middle + 1e-4) - vase(middle - 1e-4)) / 0.06;
+                let off = ((b.x - a.x) / (b.y - a.y)).atan() - slope.atan();
+                sum += off.to_degrees().powi(2) * (b - a).length();
+                length += (b - a).length();
+                assert!((a.midpoint(b).x - vase(middle)).abs() < 0.5, "{middle}");
+            }
+            if (0.86..0.9).contains(&middle) {
+                ledge = ledge.max((b - a).normalize().x.abs());
+            }
+        }
+        let slopes = (sum / length).sqrt();
+        assert!(slopes < 1.0, "{slopes} degrees");
+        assert!(ledge > 0.9, "{ledge}");
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! A table of a scene file: only known keys, each read as its required type. Every message has the
 //! key's full path.
 
-use crate::content_fault;
+use crate::{content_fault, css_color};
 use glam::DVec3;
 use revmap::error::{Error, Result};
-use revmap::frame::linear_from_srgb;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -166,19 +165,16 @@ impl<'a> Keys<'a> {
         })
     }
 
-    /// Replaces `slot` with the colour of the key: three linear numbers, or `"#rrggbb"` in sRGB.
+    /// Replaces `slot` with the colour of the key: three linear numbers, or an opaque colour of CSS.
     pub(super) fn color(&self, key: &str, slot: &mut [f32; 3]) -> Result<()> {
         let Some(text) = self.table.get(key).and_then(Value::as_str) else {
             return self.set(key, slot);
         };
-        let is_hex = |d: &&str| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit());
-        let digits = text.strip_prefix('#').filter(is_hex);
-        let code = |at: usize| u8::from_str_radix(digits?.get(at..at + 2)?, 16).ok();
-        let [Some(red), Some(green), Some(blue)] = [0, 2, 4].map(code) else {
-            let wanted = "3 numbers, or \"#rrggbb\"";
+        let Some([red, green, blue, 1.0]) = css_color(text) else {
+            let wanted = "3 numbers, or an opaque colour such as \"orange\" or \"#e0a030\"";
             return Err(self.wrong(key, wanted, &format!("the text {text:?}")));
         };
-        *slot = [red, green, blue].map(|v| linear_from_srgb(f64::from(v) / 255.0) as f32);
+        *slot = [red, green, blue];
         Ok(())
     }
 

@@ -279,6 +279,7 @@ bevle = 1                           => object.0.bevle: unknown key; did you mean
 bevel = "1"                         => object.0.bevel: expected a number
 scale = [1, 0, 1]                   => object.0.scale: has 0.0
 scale = 2                           => object.0.scale: expected 3 numbers in brackets, found 2
+color = "greenish"                  => object.0.color: expected 3 numbers, or an opaque colour such as "orange"
 rotation = [0, 0, 0, 0]             => object.0.rotation:
 repeat = [1, 0, 1]                  => object.0.repeat: has 0
 chamfer = 2                         => object.0.chamfer: is 2.0
@@ -435,7 +436,12 @@ fn turns_come_before_rotations_and_colours_may_be_texts() {
     let (up, down) = ([1.0, 0.0, 0.0], [0.0; 3]);
     let sky = parse(&text, "", &[]).unwrap().environment;
     assert_eq!(sky, Some(Environment { up, down }));
-    for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "red", "#+f8000"] {
+    let [named, digits] = ["steelblue", "#4682b4"].map(|c| cone(&format!("color = \"{c}\"")));
+    assert_eq!(
+        named.unwrap().objects[0].color,
+        digits.unwrap().objects[0].color
+    );
+    for text in ["ff8000", "#ff80", "#ff80zz", "#ff80é", "reddish", "#+f8000"] {
         fault(cone(&format!("color = \"{text}\"")), "object.0.color");
     }
 }

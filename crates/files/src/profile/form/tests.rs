@@ -1,3 +1,4 @@
+#![allow(clippy::unwrap_used)]
 use super::*;
 use crate::{png_bytes, profile_from_bytes};
 use image::{GrayImage, Luma};
@@ -48,6 +49,30 @@ fn forms_about_the_axis_bring_no_warning() {
         assert!(found.len() == 1 && found[0].contains(&words), "{found:?}");
         assert_eq!(warnings(ProfileAxis::At(middle), &form), [""; 0]);
     }
+}
+
+#[test]
+fn hollow_halves_on_the_left_border_name_their_axis() {
+    for name in ["vase", "plate", "jewel"] {
+        let file = format!(
+            "{}/../../assets/gallery/{name}.svg",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let read = |axis: ProfileAxis| crate::profile(&file, axis).unwrap().warnings;
+        let found = read(ProfileAxis::Center);
+        assert_eq!(found.len(), 1, "{name}: {found:?}");
+        assert!(found[0].contains("profile_axis = \"left\""), "{found:?}");
+        assert_eq!(read(ProfileAxis::Left), [""; 0], "{name}");
+    }
+    // A jug whose handle ends at the left border is no half.
+    let jug = |x: f64, y: f64| {
+        let handle = (x - 0.25).hypot(y - 0.6);
+        (x - 0.5).hypot(y - 0.6) < 0.3
+            || (x - 0.5).abs() < 0.1 && (0.2..0.6).contains(&y)
+            || (0.17..0.25).contains(&handle)
+    };
+    let found = warnings(ProfileAxis::Center, &jug);
+    assert!(found[0].contains("halves of the solid differ"), "{found:?}");
 }
 
 #[test]
