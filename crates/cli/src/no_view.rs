@@ -10,7 +10,7 @@ use std::ffi::OsString;
     cargo install --path crates/cli --features viewer\n\n\
     Examples:\n  \
     revmap view assets/profiles/rook.svg\n  \
-    revmap view assets/profiles/king.svg --studio --color \"#c8502a\"\n  \
+    revmap view assets/profiles/king.svg --studio --color steelblue\n  \
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
     /// The scene and the options of a build with the window

@@ -33,7 +33,7 @@ use std::sync::Arc;
 #[derive(Args)]
 #[command(after_help = "Examples:\n  \
     revmap view assets/profiles/rook.svg\n  \
-    revmap view assets/profiles/king.svg --studio --color \"#c8502a\"\n  \
+    revmap view assets/profiles/king.svg --studio --color steelblue\n  \
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
     /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with

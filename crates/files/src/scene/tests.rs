@@ -220,7 +220,7 @@ fn a_named_projection_goes_before_the_file_name() {
 fn an_environment_is_refused_by_its_key() {
     for (value, words) in [
         (
-            "{ up = \"blue\" }",
+            "{ up = \"bluish\" }",
             "environment.up: expected 3 numbers, or",
         ),
         ("{ up = [1, 1] }", "environment.up: expected 3 numbers"),

@@ -1,9 +1,10 @@
 //! Questions that a report answers in one sentence, and the tables behind the answers: fragment or
 //! compute, and whether another search than the default is faster.
 
+use super::losses::{Pair, to_meshes, worst};
 use crate::measure::ratios::{Over, Ratio, between, mean_ms, over};
 use crate::measure::row::Row;
-use crate::measure::stats::{Interval, Verdict};
+use crate::measure::stats::Verdict;
 use crate::plan::method::Method;
 use crate::plan::names::{count, number, range};
 use crate::plan::{grouped, is_rbm_baseline};
@@ -64,7 +65,7 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
     all.extend(exactness(context));
     let loses: Vec<_> = rivals(context, context.rows)
         .into_iter()
-        .chain(super::losses::to_meshes(context))
+        .chain(to_meshes(context))
         .collect();
     if !loses.is_empty() {
         all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
@@ -188,27 +189,12 @@ pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
     )
 }
 
-/// A row of the default search, the fastest other way, and the ratio of their times.
-pub(super) type Pair<'a> = (&'a Row, &'a Row, Interval);
-
 fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
     let pair = |row: &&'a Row| {
         let other = Over::Rival.of(context.rows, row)?;
         Some((*row, other, between(row, other)?))
     };
     rows.iter().filter_map(pair).collect()
-}
-
-/// The pair whose ratio is largest, of those that are resolved.
-pub(super) fn worst<'a, 'b>(
-    context: &Context,
-    pairs: impl Iterator<Item = &'b Pair<'a>>,
-) -> Option<&'b Pair<'a>>
-where
-    'a: 'b,
-{
-    let known = pairs.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
-    known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
 }
 
 fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {

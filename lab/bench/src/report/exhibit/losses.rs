@@ -1,11 +1,26 @@
 //! Where the default search loses against meshes.
 
-use super::answers::{Pair, worst};
 use crate::measure::ratios::between;
 use crate::measure::row::Row;
+use crate::measure::stats::{Interval, Verdict};
 use crate::plan::method::Method;
 use crate::plan::names::number;
 use crate::report::table::columns::{Cell, Context};
+
+/// A row of the default search, the fastest other way, and the ratio of their times.
+pub(super) type Pair<'a> = (&'a Row, &'a Row, Interval);
+
+/// The pair whose ratio is largest, of those that are resolved.
+pub(super) fn worst<'a, 'b>(
+    context: &Context,
+    pairs: impl Iterator<Item = &'b Pair<'a>>,
+) -> Option<&'b Pair<'a>>
+where
+    'a: 'b,
+{
+    let known = pairs.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
+    known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
+}
 
 /// The largest time of the default over that of the fastest mesh of the same picture, and the mesh's
 /// name and error.
