@@ -5,7 +5,6 @@
 //! level. Boxes have 16 bits per coordinate, in steps of one grid around all copies.
 
 use super::casters::Leaf;
-use super::path::Path;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS};
 use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
@@ -17,6 +16,8 @@ use std::sync::Arc;
 
 /// Steps of the grid along each axis.
 const STEPS: f64 = 65535.0;
+/// Least extent of the grid along an axis, as a part of the largest one.
+const FLATTEST: f64 = 1e-6;
 /// Number of leaves from which subtrees are filled in parallel.
 const PARALLEL: usize = 2048;
 
@@ -37,7 +38,7 @@ struct Layer {
     root: u32,
 }
 
-/// The hierarchies of all objects whose path is [`Path::Walk`].
+/// The hierarchies of all objects whose path is [`Path::Walk`](super::path::Path::Walk).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walks {
     pub grid: Grid,
@@ -51,7 +52,9 @@ impl Grid {
         let (low, high) = leaves.fold(none, |(low, high), leaf| {
             (low.min(leaf.low), high.max(leaf.high))
         });
-        let size = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
+        // Steps far below those of other axes have no digits in 32 bits, where the eye counts them.
+        let size = high - low;
+        let size = size.max(DVec3::splat(FLATTEST * size.max_element()));
         Self {
             low,
             unit: size / STEPS,
@@ -138,6 +141,11 @@ fn add(nodes: &mut Vec<WalkNode>, leaves: &mut [Leaf], grid: &Grid) -> u32 {
 }
 
 impl Walks {
+    /// True if rays walk to no object.
+    pub fn is_empty(&self) -> bool {
+        self.layers.is_empty()
+    }
+
     /// The hierarchies of the objects that rays from the eye walk.
     pub fn new(objects: &[PlanObject], with: &Conditions) -> Self {
         let mut layers: Vec<(Layer, Vec<Leaf>)> = Vec::new();
@@ -182,7 +190,7 @@ impl FramePlan {
     pub(super) fn add_walks(
         &mut self,
         view: &View,
-        (objects, paths): (&[PlanObject], &[Path]),
+        objects: &[PlanObject],
         variants: &[Variant],
         (walks, first): (&Walks, u32),
         with: &Conditions,
@@ -199,12 +207,6 @@ impl FramePlan {
         let tiles = projector.picture()[1] / GROUP_PIXELS * across..down * across;
         for layer in &walks.layers {
             let object = layer.objects[0];
-            debug_assert!(
-                layer
-                    .objects
-                    .iter()
-                    .all(|&n| paths[n as usize] == Path::Walk)
-            );
             for &n in &layer.objects {
                 self.parts[n as usize][Part::Tables as usize] = true;
             }
@@ -276,6 +278,21 @@ mod tests {
 
     fn ends(bounds: [u32; 3]) -> [[u32; 3]; 2] {
         [bounds.map(|b| b & 0xffff), bounds.map(|b| b >> 16)]
+    }
+
+    /// Copies in one plane, of almost no height, have a grid that 32 bits hold, also from afar.
+    #[test]
+    fn flat_crowds_have_a_grid() {
+        let flat = |n: u32| {
+            let middle = DVec3::new(f64::from(n), f64::from(n % 7), 5.0);
+            let half = DVec3::new(0.4, 0.4, 1e-200);
+            let (low, high) = (middle - half, middle + half);
+            let leaf = leaf(n);
+            Leaf { low, high, ..leaf }
+        };
+        let grid = Grid::around((0..100).map(flat));
+        let eye = DVec3::splat(1e9) / grid.unit;
+        assert!(grid.unit.as_vec3().min_element() > 0.0 && eye.as_vec3().is_finite());
     }
 
     /// Each copy is once in the heap, within its node's box and those of all nodes above.

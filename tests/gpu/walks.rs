@@ -37,7 +37,7 @@ fn differing(a: &Frame, b: &Frame) -> (usize, usize) {
 }
 
 /// Draws a crowd by both plannings in both stages. Rounding decides for at most one pixel in 10,000
-/// hits, and for two.
+/// hits, and for two. Measured on lavapipe 22: for one pixel of 30,518, and of 2,704, else for none.
 #[track_caller]
 fn assert_alike(what: &str, scene: &Scene, tolerance: Tolerance) {
     for stage in STAGES {

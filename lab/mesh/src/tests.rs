@@ -229,6 +229,37 @@ fn meshes_and_searches_hide_each_other() {
     device.check().unwrap();
 }
 
+/// Settings of a picture of 320 x 240.
+fn small() -> Settings {
+    Settings {
+        width: 320,
+        height: 240,
+        ..Settings::exact()
+    }
+}
+
+/// Draws a scene by meshes that follow the view, and checks the device's messages.
+fn by_meshes(
+    device: &Device,
+    pipelines: &Arc<MeshPipelines>,
+    scene: &Scene,
+    own: &Settings,
+) -> Frame {
+    let options = OffscreenOptions {
+        guests_only: true,
+        ..OffscreenOptions::default()
+    };
+    let mut offscreen = Offscreen::with(device, scene, own, options).unwrap();
+    let fineness = Fineness::Pixels(0.25);
+    let mut meshes = MeshLayer::new(pipelines, &offscreen, fineness, own, 1).unwrap();
+    meshes.update(scene, || Ok(*offscreen.view())).unwrap();
+    offscreen.draw_with(Some(&meshes)).unwrap();
+    let frame = offscreen.read().unwrap();
+    drop((meshes, offscreen));
+    device.check().unwrap();
+    frame
+}
+
 /// A torus over a plate, lit from the side: shadow maps put shadows where the reference has them, but
 /// for some pixels at their edges.
 #[test]
@@ -245,27 +276,9 @@ fn shadow_maps_agree_with_rays() {
         radius: 4.0,
         ..Light::default()
     }];
-    let own = Settings {
-        width: 320,
-        height: 240,
-        ..Settings::exact()
-    };
-    let options = OffscreenOptions {
-        guests_only: true,
-        ..OffscreenOptions::default()
-    };
+    let own = small();
     let pipelines = MeshPipelines::new(&device).unwrap();
-    let drawn = |scene: &Scene| {
-        let mut offscreen = Offscreen::with(&device, scene, &own, options).unwrap();
-        let fineness = Fineness::Pixels(0.25);
-        let mut meshes = MeshLayer::new(&pipelines, &offscreen, fineness, &own, 1).unwrap();
-        meshes.update(scene, || Ok(*offscreen.view())).unwrap();
-        offscreen.draw_with(Some(&meshes)).unwrap();
-        let frame = offscreen.read().unwrap();
-        drop((meshes, offscreen));
-        device.check().unwrap();
-        frame
-    };
+    let drawn = |scene: &Scene| by_meshes(&device, &pipelines, scene, &own);
     let unshaded = drawn(&scene);
     for (shadow, most) in [(Shadow::Hard, 0.01), (Shadow::Soft, 0.02)] {
         scene.shadow = shadow;
@@ -305,25 +318,12 @@ fn meshes_reflect_the_environment() {
         up: [0.4, 0.6, 0.9],
         down: [0.3, 0.1, 0.0],
     });
-    let own = Settings {
-        width: 320,
-        height: 240,
-        ..Settings::exact()
-    };
-    let options = OffscreenOptions {
-        guests_only: true,
-        ..OffscreenOptions::default()
-    };
+    let own = small();
     let pipelines = MeshPipelines::new(&device).unwrap();
     let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
     // The part of the pixels whose colours differ by more than a thirtieth of the light.
     let wrong = |scene: &Scene| {
-        let mut offscreen = Offscreen::with(&device, scene, &own, options).unwrap();
-        let fineness = Fineness::Pixels(0.25);
-        let mut meshes = MeshLayer::new(&pipelines, &offscreen, fineness, &own, 1).unwrap();
-        meshes.update(scene, || Ok(*offscreen.view())).unwrap();
-        offscreen.draw_with(Some(&meshes)).unwrap();
-        let frame = offscreen.read().unwrap();
+        let frame = by_meshes(&device, &pipelines, scene, &own);
         let pixels = truth.color.iter().zip(&frame.color);
         let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.03);
         pixels.filter(far).count() as f64 / truth.color.len() as f64

@@ -50,7 +50,8 @@ impl<'a> Colors<'a> {
     /// The colour is `albedo * ambient + environment + sum over lights of light * (albedo * max(0, n.l) + strength *
     /// (n.l > 0 ? max(0, n.h)^shininess : 0))`. `l` points towards the light, `h` half way between `l`
     /// and the viewer. `n`, tilted by the bumps, is turned to the viewer's side if the surface faces
-    /// away. [`Environment`](revmap::scene::Environment) has the formula of its part. Of a soft light, the mean over the directions to its disc that [`reaches`] it counts.
+    /// away. [`Environment`](revmap::scene::Environment) has the formula of its part. A soft light counts
+    /// by the mean over those directions to its disc that reach it.
     pub(super) fn shade(
         &self,
         reference: &Reference,

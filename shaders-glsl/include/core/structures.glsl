@@ -232,7 +232,7 @@ struct BinTile {
 // Push constants of a dispatch.
 struct Pushed {
     uint first; // index of the first tile, or of the first gathered pixel; walks: of the first tile, row by row
-    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: number of tiles in a row
+    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: of tiles in a row
     uint heads; // index of the first head of their bins; walks: of the hierarchy
     uint tiles; // index of the first tile of their bins
     uint bin; // number of the bin that is read

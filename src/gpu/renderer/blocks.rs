@@ -81,7 +81,7 @@ pub(super) fn placed_eye(view: &View, grid: &Grid) -> PlacedEye {
     let cut = |part: f32| f32::from_bits(part.to_bits() & 0xffff_f000);
     let [dir_high, dir_middle, _] = parts(view.dir_00, cut);
     let [high_part, middle_part] = [dir_high, dir_middle].map(|part| Vec3::from(part).as_dvec3());
-    let at = (view.eye - grid.low) / grid.unit.max(DVec3::splat(f64::MIN_POSITIVE));
+    let at = (view.eye - grid.low) / grid.unit;
     // Roundings of the eye's position, and of directions from a far eye.
     let margin = DVec3::splat(1.0) + 1e-6 * at.abs();
     let vector = |v: DVec3| v.as_vec3().to_array();

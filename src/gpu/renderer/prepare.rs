@@ -140,7 +140,10 @@ impl Renderer {
             let maps = snapshot.facts.shadow_maps.maps.len();
             block.casters = caster_root(casters, view.eye, maps);
         }
-        block.eye = placed_eye(view, &plan.walked.seen.grid);
+        let seen = &plan.walked.seen;
+        if !seen.is_empty() {
+            block.eye = placed_eye(view, &seen.grid);
+        }
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
         // Last, so that a failed call records nothing.
