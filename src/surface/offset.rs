@@ -339,8 +339,15 @@ impl Trimmer<'_> {
                 parts.begin();
                 parts.point(a);
                 if let Curve::Conic { .. } = curve {
-                    let omega = layer.offset(middle.y).abs();
-                    let step = (8.0 * SAGITTA / omega.max(1e-12)).sqrt();
+                    let beta = layer.beta;
+                    // Curvature times the square of the speed by angle. The divisor is the slope of F.
+                    let bend = |x: f64, p: DVec2| {
+                        let slope = (1.0 - 2.0 * beta * x.sin() + beta * beta).sqrt();
+                        layer.offset(p.y).abs() / slope.max(1e-6)
+                    };
+                    let most = bend(x0, a).max(bend(x1, b));
+                    let most = most.max(bend(0.5 * (x0 + x1), middle));
+                    let step = (8.0 * SAGITTA / most.max(1e-12)).sqrt();
                     let n = ((x1 - x0).abs() / step).ceil().clamp(1.0, 4096.0);
                     parts.reserve(n as usize);
                     for i in 1..n as u32 {

@@ -101,6 +101,17 @@ proptest! {
     }
 }
 
+/// A conic of a steep bevel whose radius grows threefold along one piece.
+#[test]
+fn chords_of_steep_bevels_are_short() {
+    let steep = Offset {
+        extend: -0.266_600_493_827_753_47,
+        bevel: 1.108_185_604_371_689_3,
+        chamfer: 0.626_622_292_160_112_2,
+    };
+    sound(&samples::random(60_596), steep).unwrap();
+}
+
 /// Solids and cavities that touch the axis in a point, both faces sloping the same way or not.
 #[test]
 fn tips_on_the_axis() {
