@@ -5,7 +5,6 @@
 //! ([`tiles`]). Objects with the same pipeline and the same set of textures share
 //! draws and dispatches, so their number does not grow with the number of objects.
 
-pub(crate) mod casters;
 pub(crate) mod levels;
 mod path;
 pub(crate) mod precedence;
@@ -27,11 +26,12 @@ use tiles::Projector;
 
 use crate::shader::generated::{BOX_INDICES, FEW_PATCHES, RING_CORNERS};
 use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
-use crate::solid::offset_surface::Part;
+use crate::solid::offset_surface::{OffsetSurface, Part};
 use crate::surface::Frustum;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 use walk::Walks;
 
 /// Number of objects from which paths are chosen on all cores. Waking the cores takes as long as
@@ -90,23 +90,16 @@ pub(crate) enum Call {
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
 pub(crate) type IndexedDraw = [u32; 5];
 
-/// Plans a frame. `many_new`: true if many objects got a surface since the last frame, so that
-/// choosing a path may make many hulls. `open`: the pixels that compute draws; all if none.
-/// `walks`: the hierarchies that rays walk, and the index of their first node.
+/// Plans a frame. `open`: the pixels that compute draws; all if none. `walks`: the hierarchies that rays
+/// walk.
 pub(crate) fn plan(
     view: &View,
     objects: &[PlanObject],
     with: &Conditions,
-    many_new: bool,
     open: Option<&OpenPixels>,
-    walks: (&Walks, u32),
+    walks: &Walks,
 ) -> FramePlan {
-    let chosen = |of: &PlanObject| with.choose(of, view);
-    let paths: Vec<Path> = if objects.len() < MANY && !many_new {
-        objects.iter().map(chosen).collect()
-    } else {
-        objects.par_iter().with_min_len(16).map(chosen).collect()
-    };
+    let paths = for_each(objects, |of| with.choose(of, view));
     let mut plan = FramePlan {
         paths: paths.iter().map(Path::public).collect(),
         copies: vec![None; objects.len()],
@@ -117,12 +110,33 @@ pub(crate) fn plan(
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
     plan.add_tiles(view, objects, (&paths, &variants), (with, open));
-    plan.add_walks(view, objects, &variants, walks, with);
+    plan.add_walks(view, objects, &variants, (walks, with));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
     }
     plan
+}
+
+/// The surfaces whose hulls must be made before [`plan()`] reads them.
+pub(crate) fn missing_hulls(
+    view: &View,
+    objects: &[PlanObject],
+    with: &Conditions,
+) -> impl Iterator<Item = Arc<OffsetSurface>> {
+    let lacking = for_each(objects, |of| with.lacks_hull(of, view));
+    lacking.into_iter().flatten()
+}
+
+/// The values of a function for all objects, on all cores for [`MANY`].
+fn for_each<T: Send>(
+    objects: &[PlanObject],
+    of: impl Fn(&PlanObject) -> T + Send + Sync,
+) -> Vec<T> {
+    match objects.len() < MANY {
+        true => objects.iter().map(of).collect(),
+        false => objects.par_iter().with_min_len(16).map(of).collect(),
+    }
 }
 
 /// The projector of a view, with a margin for the levels of copies.
@@ -242,7 +256,8 @@ impl FramePlan {
                 }
                 Path::Cells([cut, whole]) => {
                     let corners = |frusta: usize| 6 * RING_CORNERS * frusta as u32;
-                    let frusta = of.surface().map(|s| s.hull().hull.frusta.as_slice());
+                    let hull = of.surface().and_then(|s| s.hull());
+                    let frusta = hull.map(|made| made.hull.frusta.as_slice());
                     let is_few = |f: &Frustum| f.count <= FEW_PATCHES;
                     // The draws of the parts of a run whose cells have few patches, or many.
                     let of_run = |run: &Range<u32>, few: bool| {

@@ -175,6 +175,15 @@ impl Conditions {
         self.plans_on_device && Self::searches_queues(technique)
     }
 
+    /// The surface of an object whose path follows from its hull, if the hull is not made yet.
+    pub fn lacks_hull(&self, of: &PlanObject, view: &View) -> Option<Arc<OffsetSurface>> {
+        let surface = of.surface().filter(|surface| surface.hull().is_none())?;
+        let least = self.least_pixels(of.object.placements().len());
+        let reads = !self.walks_to(of) && self.takes_cells(of);
+        let lacks = reads && proxy::may_pay(of.object, surface, view, least);
+        lacks.then(|| surface.clone())
+    }
+
     /// The path of an object in a view: a walk, else cells, else tiles, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
         if self.walks_to(of) {

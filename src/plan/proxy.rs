@@ -57,6 +57,17 @@ pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
     surface.extent()[0] > Object::WIDEST * object.profile.radius
 }
 
+/// True if cells may pay for an object in a view: it covers enough pixels, and does not fill its box.
+pub(crate) fn may_pay(
+    object: &Object,
+    surface: &OffsetSurface,
+    view: &View,
+    least_pixels: u32,
+) -> bool {
+    let least = u64::from(least_pixels) * object.placements().len() as u64;
+    covered_pixels(object, view) >= least && !fills_box(object, surface)
+}
+
 /// The frusta of `object`'s cells: of those that the box's sides cut, and of those that are whole.
 /// Returns none unless they show all that the box shows from this camera: the eye is outside all
 /// shells, and the near plane cuts none.
@@ -68,17 +79,11 @@ pub(crate) fn frusta(
     view: &View,
     least_pixels: u32,
 ) -> Option<[Vec<Range<u32>>; 2]> {
-    let radius = object.profile.radius;
-    let copies = object.placements();
-    let covered: u64 = (copies.iter())
-        .map(|copy| covered_pixels(view, radius, copy))
-        .sum();
-    // Hulls are made for large objects alone.
-    let least = u64::from(least_pixels) * copies.len() as u64;
-    if covered < least || fills_box(object, surface) || surface.hull().touches {
+    let made = surface.hull().filter(|hull| !hull.touches)?;
+    if !may_pay(object, surface, view, least_pixels) {
         return None;
     }
-    let hull = &surface.hull().hull;
+    let (hull, copies) = (&made.hull, object.placements());
     let seen: Vec<_> = (copies.iter())
         .map(|copy| seen_from(object, copy, view))
         .collect();
@@ -92,7 +97,8 @@ pub(crate) fn frusta(
     };
     let frusta = [cut, whole];
     let drawn: usize = frusta.iter().flatten().map(ExactSizeIterator::len).sum();
-    let pays = covered >= least * drawn as u64;
+    let least = u64::from(least_pixels) * (copies.len() * drawn) as u64;
+    let pays = covered_pixels(object, view) >= least;
     let in_front = |&of: &(DVec3, DVec3)| is_in_front(hull, of, view);
     (pays && seen.iter().all(in_front)).then_some(frusta)
 }
@@ -113,9 +119,16 @@ fn is_in_front(hull: &ProxyHull, (eye, forward): (DVec3, DVec3), view: &View) ->
     all_ahead && (view.parallel || hull.clear_of(flat(eye), CLEARANCE))
 }
 
+/// Pixels in the rectangles around the boxes of all copies.
+fn covered_pixels(object: &Object, view: &View) -> u64 {
+    let copies = object.placements().iter();
+    let of_copy = |copy| pixels_of_copy(view, object.profile.radius, copy);
+    copies.map(of_copy).sum()
+}
+
 /// Pixels in the rectangle around a copy's box; 0 if the box is behind the eye or outside of the
 /// picture.
-fn covered_pixels(view: &View, radius: f64, copy: &Placement) -> u64 {
+fn pixels_of_copy(view: &View, radius: f64, copy: &Placement) -> u64 {
     let corners: [_; 8] = std::array::from_fn(|corner| {
         let side = |bit: usize| [-radius, radius][corner >> bit & 1];
         let p = DVec3::new(side(0), side(1), (corner >> 2) as f64);

@@ -88,7 +88,10 @@ fn planned(view: &View, compute: bool) -> FramePlan {
         occlusion_culling: true,
         ..Conditions::default()
     };
-    plan(view, &objects, &with, false, None, (&Walks::default(), 0))
+    let walks = Walks::default();
+    let [planned, again] = [0; 2].map(|_| plan(view, &objects, &with, None, &walks));
+    assert!(planned == again, "the same input gives two plans");
+    planned
 }
 
 /// Ends of the pixels that a viewport may draw: left, top, right, bottom.

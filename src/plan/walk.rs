@@ -1,17 +1,20 @@
-//! Objects with many copies that rays from the eye find by walking a hierarchy of boxes. Nothing here
+//! Hierarchies of boxes around copies, which rays from the eye and towards lights walk. Nothing here
 //! depends on the view.
 //!
 //! A hierarchy is a heap: the children of node `k` are `2 k` and `2 k + 1`, and all copies are on one
-//! level. Boxes have 16 bits per coordinate, in steps of one grid around all copies.
+//! level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid around all
+//! copies.
 
-use super::casters::Leaf;
+use super::tiles::Cylinder;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
+use crate::scene::Placement;
 use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS};
 use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
 use crate::solid::offset_surface::Part;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Steps of the grid along each axis.
@@ -20,6 +23,20 @@ const STEPS: f64 = 65535.0;
 const FLATTEST: f64 = 1e-6;
 /// Number of leaves from which subtrees are filled in parallel.
 const PARALLEL: usize = 2048;
+/// Extent of a large copy, as a part of the extent of all. Boxes of nodes above a large copy contain
+/// little more than it, so large copies are in a subtree of their own.
+const LARGE: f64 = 0.25;
+/// Numbers of leaves of which large ones are told from others. The heap has up to twice as many nodes
+/// then.
+const MANY: Range<u32> = 64..1 << 17;
+
+/// A copy and its box in the world.
+#[derive(Clone, Copy, Debug)]
+struct Leaf {
+    instance: u32,
+    low: DVec3,
+    high: DVec3,
+}
 
 /// The grid of the boxes of hierarchies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,12 +55,37 @@ struct Layer {
     root: u32,
 }
 
-/// The hierarchies of all objects whose path is [`Path::Walk`](super::path::Path::Walk).
+/// All hierarchies of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walks {
     pub grid: Grid,
     pub nodes: Vec<WalkNode>,
+    /// Index of the first node of the copies that cast shadows; `None` if nothing is shaded in shadow.
+    pub casters: Option<u32>,
+    /// Objects whose path is [`Path::Walk`](super::path::Path::Walk).
     layers: Vec<Layer>,
+}
+
+impl Leaf {
+    /// The box around a copy of a solid.
+    fn new(instance: u32, placement: &Placement, solid: &Cylinder) -> Self {
+        let turn = DMat3::from_quat(placement.rotation.normalize());
+        let scale = placement.scale;
+        let middle = solid.axis.extend(0.5 * (solid.low + solid.high));
+        let middle = placement.position + turn * (scale * middle);
+        let [x, y] = [turn.x_axis * scale.x, turn.y_axis * scale.y].map(|way| way * solid.radius);
+        let disc = DVec3::new(x.x.hypot(y.x), x.y.hypot(y.y), x.z.hypot(y.z));
+        let half = disc + (turn.z_axis * scale.z).abs() * (0.5 * (solid.high - solid.low));
+        Self {
+            instance,
+            low: middle - half,
+            high: middle + half,
+        }
+    }
+
+    fn middle(&self) -> DVec3 {
+        0.5 * (self.low + self.high)
+    }
 }
 
 impl Grid {
@@ -91,11 +133,11 @@ fn around(a: &WalkNode, b: &WalkNode) -> WalkNode {
 fn fill(leaves: &mut [Leaf], level: &mut [WalkNode], grid: &Grid) {
     let (half, room) = (leaves.len().div_ceil(2), level.len() / 2);
     if let [leaf] = leaves {
-        // Nodes without a copy have its box, and no child of their own.
+        // Nodes without a copy have a corner of its box, which few rays meet.
         let node = grid.node(leaf);
         level.fill(WalkNode {
+            bounds: node.bounds.map(|ends| (ends & 0xffff) * 0x1_0001),
             index: INNER_NODE,
-            ..node
         });
         level[0] = node;
         return;
@@ -119,14 +161,35 @@ fn fill(leaves: &mut [Leaf], level: &mut [WalkNode], grid: &Grid) {
     }
 }
 
+/// Orders leaves so that large ones come first. Returns their number, or 0 if all are alike.
+fn large_first(leaves: &mut [Leaf], grid: &Grid) -> usize {
+    let least = LARGE * STEPS * grid.unit.max_element();
+    let is_large = |leaf: &Leaf| (leaf.high - leaf.low).max_element() > least;
+    let count = leaves.iter().filter(|leaf| is_large(leaf)).count();
+    if !MANY.contains(&(leaves.len() as u32)) || count == leaves.len() {
+        return 0;
+    }
+    leaves.sort_unstable_by_key(|leaf| (!is_large(leaf), leaf.instance));
+    count
+}
+
 /// Adds a hierarchy over copies, whose order changes. Returns the index of its first node.
 fn add(nodes: &mut Vec<WalkNode>, leaves: &mut [Leaf], grid: &Grid) -> u32 {
     let root = nodes.len();
-    let width = leaves.len().next_power_of_two();
+    let count = large_first(leaves, grid);
+    let (large, small) = leaves.split_at_mut(count);
+    let half = large.len().max(small.len()).next_power_of_two();
+    let divides = !large.is_empty() && !small.is_empty();
+    let width = if divides { 2 * half } else { half };
     nodes.resize(root + 2 * width, WalkNode::default());
     let all = &mut nodes[root..];
     all[0].index = width as u32;
-    fill(leaves, &mut all[width..], grid);
+    let (first, second) = all[width..].split_at_mut(width - half);
+    for (leaves, level) in [(large, first), (small, second)] {
+        if !leaves.is_empty() {
+            fill(leaves, level, grid);
+        }
+    }
     let mut level = width / 2;
     while level > 0 {
         let (parents, children) = all[level..].split_at_mut(level);
@@ -141,59 +204,75 @@ fn add(nodes: &mut Vec<WalkNode>, leaves: &mut [Leaf], grid: &Grid) -> u32 {
 }
 
 impl Walks {
-    /// True if rays walk to no object.
-    pub fn is_empty(&self) -> bool {
-        self.layers.is_empty()
-    }
-
-    /// The hierarchies of the objects that rays from the eye walk.
-    pub fn new(objects: &[PlanObject], with: &Conditions) -> Self {
-        let mut layers: Vec<(Layer, Vec<Leaf>)> = Vec::new();
+    /// The hierarchies of the objects that rays from the eye walk, and of all objects if rays towards
+    /// lights do.
+    pub fn new(objects: &[PlanObject], with: &Conditions, shadowed: bool) -> Self {
+        let mut layers: Vec<Layer> = Vec::new();
         let mut numbers = HashMap::new();
         for (n, of) in (0..).zip(objects).filter(|(_, of)| with.walks_to(of)) {
             let next = layers.len();
             let layer = *numbers.entry((of.technique, of.textures)).or_insert(next);
             if layer == next {
                 let objects = Vec::new();
-                layers.push((Layer { objects, root: 0 }, Vec::new()));
+                layers.push(Layer { objects, root: 0 });
             }
-            let (layer, leaves) = &mut layers[layer];
-            layer.objects.push(n);
-            let copies = of.object.placements().par_iter().enumerate();
-            leaves.par_extend(copies.map(|(copy, placement)| {
-                let instance = of.first_instance + copy as u32;
-                Leaf::new(instance, 0, placement, &of.shape)
-            }));
+            layers[layer].objects.push(n);
         }
-        if layers.is_empty() {
+        let mut sets: Vec<Vec<Leaf>> = Vec::new();
+        sets.extend(layers.iter().map(|layer| leaves(objects, &layer.objects)));
+        // A layer of all objects is the hierarchy of those that cast shadows, too.
+        let is_all = layers.len() == 1 && layers[0].objects.len() == objects.len();
+        if shadowed && !is_all && !objects.is_empty() {
+            let all: Vec<u32> = (0..objects.len() as u32).collect();
+            sets.push(leaves(objects, &all));
+        }
+        if sets.is_empty() {
             return Self::default();
         }
-        let grid = Grid::around(layers.iter().flat_map(|(_, leaves)| leaves).copied());
+        let grid = Grid::around(sets.iter().flatten().copied());
         let mut nodes = Vec::new();
-        let built = layers.into_iter().map(|(mut layer, mut leaves)| {
-            layer.root = add(&mut nodes, &mut leaves, &grid);
-            layer
-        });
-        let layers = built.collect();
+        let mut roots = sets.iter_mut().map(|set| add(&mut nodes, set, &grid));
+        for layer in &mut layers {
+            layer.root = roots.next().unwrap_or_default();
+        }
+        let casters = match shadowed {
+            true if is_all => Some(layers[0].root),
+            true => roots.next(),
+            false => None,
+        };
+        drop(roots);
         // A walk reads the node after the last one.
         nodes.push(WalkNode::default());
         Self {
             grid,
             nodes,
+            casters,
             layers,
         }
     }
 }
 
+/// The boxes of all copies of these objects.
+fn leaves(objects: &[PlanObject], numbers: &[u32]) -> Vec<Leaf> {
+    let mut all = Vec::new();
+    for &n in numbers {
+        let of = &objects[n as usize];
+        let copies = of.object.placements().par_iter().enumerate();
+        all.par_extend(copies.map(|(copy, placement)| {
+            Leaf::new(of.first_instance + copy as u32, placement, &of.shape)
+        }));
+    }
+    all
+}
+
 impl FramePlan {
-    /// The walks, after all else. `first`: index of the first node of their hierarchies.
+    /// The walks, after all else.
     pub(super) fn add_walks(
         &mut self,
         view: &View,
         objects: &[PlanObject],
         variants: &[Variant],
-        (walks, first): (&Walks, u32),
-        with: &Conditions,
+        (walks, with): (&Walks, &Conditions),
     ) {
         let kind = if with.compute {
             Kind::WalkTiles
@@ -220,7 +299,7 @@ impl FramePlan {
                 variant.speciality.drawn == Drawn::OneCopy && of.surface().is_some_and(apart);
             self.outside[object as usize] = outside;
             let variant = variant.seen_from_outside(outside);
-            let root = first + layer.root;
+            let root = layer.root;
             // Each layer compares its depths with those of the layers before it.
             phase += u32::from(with.compute);
             let step = |call| Step {
@@ -270,7 +349,6 @@ mod tests {
         let half = DVec3::new(size, size, 0.5 * size);
         Leaf {
             instance: n,
-            map: 0,
             low: middle - half,
             high: middle + half,
         }
@@ -306,7 +384,8 @@ mod tests {
             assert_eq!(root, 3);
             let heap = &nodes[root..];
             let width = heap[0].index as usize;
-            assert!(heap.len() == 2 * width && width < 2 * count as usize);
+            let most = if count < MANY.start { 2 } else { 4 };
+            assert!(heap.len() == 2 * width && width < most * count as usize);
             let mut seen = vec![0; count as usize];
             for (k, node) in heap.iter().enumerate().skip(width) {
                 if node.index == INNER_NODE {
@@ -316,6 +395,9 @@ mod tests {
                 let copy = leaf(node.index);
                 let [low, high] = ends(node.bounds)
                     .map(|end| grid.low + grid.unit * DVec3::from(end.map(f64::from)));
+                // One copy of 97 is large; these are in a half of their own.
+                let is_large = node.index.is_multiple_of(97) && count >= MANY.start;
+                assert_eq!(is_large, count >= MANY.start && k < width + width / 2);
                 let slack = 1e-9;
                 assert!(
                     (low - copy.low).max_element() < slack,

@@ -1,7 +1,7 @@
 //! Data that the CPU passes to the GPU: the structures of `include/core/structures.glsl`.
 
 pub use super::generated::{
-    Appearance as AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, Frame as FrameView,
+    Appearance as AppearanceBlock, BinTile, CasterRoot, CopyTile, Frame as FrameView,
     FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy, LevelTables,
     Light as LightBlock, Object as ObjectBlock, PlacedEye, Pushed, QueueBlock, QueueTile,
     QueuedCopy, Shape as ShapeBlock, WalkNode,

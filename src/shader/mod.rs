@@ -14,9 +14,9 @@ mod textures;
 mod variant;
 
 pub use blocks::{
-    AppearanceBlock, BinTile, CasterNode, CasterRoot, CopyTile, FrameBlock, FrameView,
-    GatheredPixel, InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock,
-    PlacedEye, Pushed, QueueBlock, QueueTile, QueuedCopy, ShapeBlock, WalkNode,
+    AppearanceBlock, BinTile, CasterRoot, CopyTile, FrameBlock, FrameView, GatheredPixel,
+    InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock, PlacedEye,
+    Pushed, QueueBlock, QueueTile, QueuedCopy, ShapeBlock, WalkNode,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

@@ -152,10 +152,15 @@ impl OffsetSurface {
         self.listed.get_or_init(make)
     }
 
-    /// The hull that the rasteriser draws; empty for another search's table.
-    pub fn hull(&self) -> &GpuProxyHull {
+    /// Makes the hull that the rasteriser draws; an empty one for another search's table.
+    pub fn make_hull(&self) {
         let make = || GpuProxyHull::new(self.quadrics().unwrap_or_default());
-        self.hull.get_or_init(make)
+        self.hull.get_or_init(make);
+    }
+
+    /// The hull that the rasteriser draws; `None` before it is made.
+    pub fn hull(&self) -> Option<&GpuProxyHull> {
+        self.hull.get()
     }
 
     /// Cylinders inside its solid, which hide everything behind them, and around it; only for patches.
@@ -195,7 +200,7 @@ impl OffsetSurface {
     pub fn vectors(&self, part: Part) -> &[[u32; 4]] {
         match part {
             Part::Tables => &self.tables().vectors,
-            Part::Frusta => &self.hull().vectors,
+            Part::Frusta => self.hull().map_or(&[], |hull| &hull.vectors),
             Part::Patches => self.listed(),
         }
     }

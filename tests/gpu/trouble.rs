@@ -3,10 +3,13 @@
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, Mask};
-use crate::common::host::{Checked, Host, borrow, borrow_through, open, open_with};
+use crate::common::host::{
+    Checked, Host, HostBuffer, add, borrow, borrow_through, once, open, open_with, renderer_of,
+    target, view_of,
+};
 use crate::common::prelude::*;
 use crate::common::ways::apart;
-use crate::embedding::three;
+use crate::embedding::{far_words, options, three};
 use crate::memory_types::simulated;
 
 pub fn settings(stage: DrawStage) -> Settings {
@@ -389,4 +392,60 @@ fn a_thousand_renderers_leave_nothing_behind() {
     assert_eq!(alive[0], alive[1]);
     drop(device);
     assert_eq!(layer.alive(), 0);
+}
+
+/// A preparation that fails leaves the frame before it valid, or that frame names the failure.
+#[test]
+fn a_failed_preparation_keeps_the_frame_before_it_or_is_named() {
+    let (layer, host, raw) = layered();
+    let device = borrow_through(&host, &host.instance, &raw).unwrap();
+    let [before, after] = scenes();
+    let options = options();
+    let view = view_of(&before, &options);
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let words = HostBuffer::of(&host, &far_words(&options), usage).unwrap();
+    // Records a frame that is older than a second preparation, after a change. The n-th call fails.
+    let record = |search: &SearchSettings, n: usize, change: &dyn Fn(&mut Renderer)| {
+        let output = Output::Compute(Planes::Color);
+        let mut renderer = renderer_of(&device, output, search, 1, &before);
+        // SAFETY: the buffer has two words per pixel, and frames are drawn one after the other.
+        unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
+        let mut ends = None;
+        // SAFETY: the commands are recorded outside of a pass, and no frame is in flight.
+        once(&host, |cmd| unsafe {
+            let frame = renderer.prepare(cmd, 0, &view).unwrap();
+            change(&mut renderer);
+            layer.fail_at(n);
+            let second = renderer.prepare(cmd, 0, &view);
+            layer.fail_at(usize::MAX);
+            ends = Some((second.err(), renderer.record_compute(cmd, &frame).err()));
+        });
+        ends.unwrap()
+    };
+    let search = SearchSettings::default();
+    let grows = |renderer: &mut Renderer| {
+        (0..100).for_each(|_| drop(add(renderer, &after)));
+    };
+    let mut refused = 0;
+    while let (Some(_), refusal) = record(&search, refused, &grows) {
+        let message = refusal.expect("its buffers are written").message;
+        assert!(message.contains("preparation"), "call {refused}: {message}");
+        refused += 1;
+    }
+    assert!(refused > 0);
+    let (_, refusal) = record(&search, usize::MAX, &grows);
+    assert!(refusal.unwrap().message.contains("prepared again"));
+    // Content that cannot be drawn is found before anything is written.
+    let by_map = SearchSettings {
+        solver: Solver::Live,
+        map_format: MapFormat::Rgba8,
+        ..search
+    };
+    let shrinks = |renderer: &mut Renderer| {
+        let mut object = before.objects[0].clone();
+        object.offset.extend = -0.05;
+        renderer.add(object).unwrap();
+    };
+    let (error, refusal) = record(&by_map, usize::MAX, &shrinks);
+    assert!(error.unwrap().to_string().contains("rgba8") && refusal.is_none());
 }

@@ -26,11 +26,7 @@ layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
     Instance instances[];
 };
 
-// Nodes of all hierarchies of copies: first that of the copies that may cast shadows, in depth-first order
-// (src/plan/casters.rs), then those that rays from the eye walk (src/plan/walk.rs).
-layout(set = 0, binding = 3, std430) readonly buffer CasterBlock {
-    CasterNode casters[];
-};
+// Nodes of all hierarchies of copies (src/plan/walk.rs).
 layout(set = 0, binding = 3, std430) readonly buffer WalkBlock {
     WalkNode walk_nodes[];
 };

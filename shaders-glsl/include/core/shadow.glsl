@@ -66,7 +66,7 @@ vec2 next_angle(vec2 angle)
 
 // The cone of rays from a point to a disc.
 struct Cone {
-    vec3 from; // from the origin of the hierarchy
+    vec3 from; // from the lower corner of the grid of hierarchies
     vec3 inverse; // 1 / the middle ray
     float widens; // tangent of the angle between the middle ray and the outermost one
     float slack;
@@ -79,7 +79,8 @@ Cone cone_to(Disc disc, vec3 origin, vec3 point)
     cone.inverse = 1.0 / mix(disc.middle, vec3(1e-20), lessThan(abs(disc.middle), vec3(1e-20)));
     cone.widens = sqrt(disc.cap * (2.0 - disc.cap)) / max(1.0 - disc.cap, 1e-4);
     // Rays begin in the hierarchy's box.
-    cone.slack = 2e-6 * (length(frame_block.casters.eye) + length(frame_block.casters.half_size));
+    vec3 corner = frame_block.casters.middle + frame_block.casters.half_size;
+    cone.slack = 2e-6 * (length(frame_block.casters.eye) + length(corner));
     return cone;
 }
 
@@ -113,20 +114,29 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
     return left;
 }
 
-// Returns `met` if that is a copy, else the next copy that the rays may hit, or INNER_NODE. `k`: index of the next of
-// `count` nodes. `map`: index of the copy's shape map, where searches read maps.
-uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, uint count, inout uint k)
+// Returns `met` if that is a copy, else the next copy that the rays may hit, or INNER_NODE. `k`: the next node, or 0 at
+// the end. `map`: index of the copy's shape map, where searches read maps.
+uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, inout uint k)
 {
     // The cone is made anew for each copy, since it would take 8 registers while rays are traced.
     Cone cone = cone_to(disc, origin, point);
-    while (met == INNER_NODE && k < count) {
-        CasterNode node = casters[k];
-        bool meets = may_meet(cone, node.middle, node.half_size);
-        k = meets || node.instance != INNER_NODE ? k + 1u : node.next;
+    uint root = frame_block.casters.root;
+    uint leaves = walk_nodes[root].index;
+    vec3 half_unit = 0.5 * frame_block.eye.grid_unit;
+    while (met == INNER_NODE && k != 0u) {
+        WalkNode node = walk_nodes[root + k];
+        uvec3 low = node.bounds & 0xffffu;
+        uvec3 high = node.bounds >> 16;
+        bool meets = may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
+        bool ends = k >= leaves;
+        met = meets && ends ? node.index : INNER_NODE;
 #if READS_MAP
-        meets = meets && node.next == map;
+        if (met != INNER_NODE && objects[instances[met].object].object.shape.shadow_map != map) {
+            met = INNER_NODE;
+        }
 #endif
-        met = meets ? node.instance : INNER_NODE;
+        uint next = k + 1u >> findLSB(k + 1u);
+        k = meets && !ends ? 2u * k : next == 1u ? 0u : next;
     }
     return met;
 }
@@ -137,8 +147,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
     // The root is in the block of the frame, which software drivers read much faster than the nodes.
     CasterRoot all = frame_block.casters;
     bool meets = may_meet(cone_to(disc, origin, point), all.middle, all.half_size);
-    uint count = meets ? all.node_count : 0u;
-    uint root = meets ? all.only_copy : INNER_NODE;
+    uint only = meets ? all.only_copy : INNER_NODE;
     // The index of a map must be the same in all invocations, so each map has a walk of its own.
 #if READS_MAP
     uint maps = frame_block.casters.map_count;
@@ -146,10 +155,10 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
     uint maps = 1u;
 #endif
     for (uint map = 0u; map < maps; ++map) {
-        uint k = 1u;
+        uint k = meets && only == INNER_NODE ? 2u : 0u;
         // All invocations first find a copy each (Aila and Laine 2009), then trace together.
-        for (uint met = root; left != 0u; met = INNER_NODE) {
-            met = next_caster(origin, point, disc, map, met, count, k);
+        for (uint met = only; left != 0u; met = INNER_NODE) {
+            met = next_caster(origin, point, disc, map, met, k);
             if (met == INNER_NODE) {
                 break;
             }

@@ -36,10 +36,10 @@ struct Frame {
 
 // The root of the hierarchy of copies that may cast shadows, and the eye.
 struct CasterRoot {
-    vec3 eye; // from the origin of the hierarchy
+    vec3 eye; // from the lower corner of the grid of hierarchies
     uint map_count; // number of shape maps
     vec3 middle; // of the root's box
-    uint node_count;
+    uint root; // index of the node before it
     vec3 half_size;
     uint only_copy; // index of the only copy, or INNER_NODE
 };
@@ -172,15 +172,8 @@ struct LevelTables {
     uint unused_2;
 };
 
-// A node of the hierarchy of boxes around the copies of all objects.
-struct CasterNode {
-    vec3 middle; // of its box, from the origin of the hierarchy, world axes
-    uint next; // index of the node after its subtree; of a copy: index of its shape map
-    vec3 half_size;
-    uint instance; // index of the copy, or INNER_NODE
-};
-
-// A node of a hierarchy that rays from the eye walk. `index` of a node without children is its copy, or INNER_NODE.
+// A node of a hierarchy. `index` of a node without children is its copy, or INNER_NODE. The node before the root has the
+// index of the first node without children; the children of node `k` are 2 k and 2 k + 1.
 struct WalkNode {
     uvec3 bounds; // along each axis: least step of the grid | largest << 16
     uint index;

@@ -1,8 +1,5 @@
 // Finds the nearest hit of a pixel among all copies of a hierarchy. Rays walk its boxes, nearest first.
-//
-// Nodes are in the order of a heap: the children of node k are 2 k and 2 k + 1, and nodes without children are on one
-// level. Node 0 has the index of the first of them. A walk needs no stack: a bit for each level says whether the sibling
-// of the way's node is still to be visited.
+// A walk needs no stack: a bit for each level says whether the sibling of the way's node is still to be visited.
 #ifndef WALK_GLSL
 #define WALK_GLSL
 #include "core/placed.glsl"

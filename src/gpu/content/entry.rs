@@ -1,6 +1,6 @@
 //! An object as the host set it, and the same object as prepared: with all that its frames read.
 
-use crate::error::{Result, lock};
+use crate::error::Result;
 use crate::gpu::resources::shape_texture::{ArcTexture, MapFacts, ShapeTexture};
 use crate::gpu::resources::textures::{ObjectImages, TextureSet};
 use crate::plan::levels;
@@ -12,7 +12,7 @@ use crate::solid::contour::OffsetContour;
 use crate::solid::farthest_corner;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use std::ops::{Deref, Range};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, OnceLock};
 
 /// An object as set, and its state in the last snapshot.
 pub(in crate::gpu) struct Entry {
@@ -81,7 +81,7 @@ pub(in crate::gpu) struct Boundary {
     /// The table of a search that has one.
     pub table: Option<Arc<OffsetSurface>>,
     /// Surfaces of patches that views needed, by level. Keeps them alive.
-    pub levels: Mutex<Vec<(u8, Arc<OffsetSurface>)>>,
+    pub levels: [OnceLock<Arc<OffsetSurface>>; levels::COARSEST as usize + 1],
 }
 
 impl Boundary {
@@ -213,19 +213,13 @@ impl PreparedObject {
         self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
     }
 
-    /// The level whose surface was made first; `None` before one was made.
-    pub fn first_level(&self) -> Result<Option<u8>> {
-        let known = lock(&self.boundary.levels)?;
-        Ok(known.first().map(|(level, _)| *level))
+    /// The coarsest level that a view needed; `None` before the first view.
+    pub fn known_level(&self) -> Option<u8> {
+        (0..=levels::COARSEST).rfind(|&level| self.boundary.levels[level as usize].get().is_some())
     }
 
-    /// The surface of a level; none for a search on the map. A new surface is added to `new`; it is
-    /// not made yet.
-    pub fn surface(
-        &self,
-        level: u8,
-        new: &mut Vec<Arc<OffsetSurface>>,
-    ) -> Result<Option<Arc<OffsetSurface>>> {
+    /// The surface of a level; none for a search on the map. A new surface is not made yet.
+    pub fn surface(&self, level: u8) -> Result<Option<Arc<OffsetSurface>>> {
         let boundary = &self.boundary;
         // Surfaces of patches may be left from before the fallback.
         if self.derived.solver.reads_map() {
@@ -234,16 +228,14 @@ impl PreparedObject {
         if !self.derived.solver.follows_tolerance() {
             return Ok(boundary.table.clone());
         }
-        let mut known = lock(&boundary.levels)?;
-        if let Some((_, surface)) = known.iter().find(|(known, _)| *known == level) {
-            return Ok(Some(surface.clone()));
+        let known = &boundary.levels[level as usize];
+        if known.get().is_none() {
+            let tolerance = levels::bound(level) / self.growth().height().max(1.0);
+            let recipe = Recipe::Patches { level, tolerance };
+            let surface = boundary.solid.surface(&self.drawn().offset, recipe)?;
+            known.get_or_init(|| surface);
         }
-        let tolerance = levels::bound(level) / self.growth().height().max(1.0);
-        let recipe = Recipe::Patches { level, tolerance };
-        let surface = boundary.solid.surface(&self.drawn().offset, recipe)?;
-        known.push((level, surface.clone()));
-        new.push(surface.clone());
-        Ok(Some(surface))
+        Ok(known.get().cloned())
     }
 
     /// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside

@@ -16,17 +16,17 @@ use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
 use crate::plan::walk::Walks;
-use crate::plan::{Conditions, FramePlan, OpenPixels, View, plan};
+use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
 use crate::settings::{Planes, Planning, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
-use crate::solid::offset_surface::{OffsetSurface, Part};
+use crate::solid::offset_surface::OffsetSurface;
 use entry::Stale;
 use objects::Objects;
 use rayon::prelude::*;
 use snapshot::{Demands, Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
-use view_plan::{LevelRules, PlannedObject, ViewPlan, Walked, hierarchy, precedence};
+use view_plan::{LevelRules, PlannedObject, ViewPlan, precedence};
 
 /// Objects and lights as set, the last snapshot of all objects, and the last plan. One owner has them,
 /// because a failed step must leave all of them as they were.
@@ -98,16 +98,6 @@ impl Content {
         self.lighting.shadow != Shadow::Off
     }
 
-    /// What techniques depend on beside the object.
-    pub fn demands(&self) -> Demands<'_> {
-        Demands {
-            settings: &self.settings,
-            planes: self.output.planes(),
-            host_shades: self.host_shades,
-            lighting: &self.lighting,
-        }
-    }
-
     /// The snapshot of all objects as set. A failed call changes nothing, and the next one tries
     /// again.
     pub fn refresh(&mut self) -> Result<Arc<Snapshot>> {
@@ -115,15 +105,15 @@ impl Content {
         if !self.objects.stale {
             return Ok(self.snapshot.clone());
         }
-        let mut new = find_boundaries(&mut self.objects, &self.geometry, &self.settings)?;
+        let new = find_boundaries(&mut self.objects, &self.geometry, &self.settings)?;
         self.rebuilds += new.failed as u64;
-        self.make_surfaces(&mut new.tables);
-        let demands = Demands {
-            settings: &self.settings,
-            planes: self.output.planes(),
-            host_shades: self.host_shades,
-            lighting: &self.lighting,
-        };
+        self.make_surfaces(new.tables.iter());
+        let demands = Demands::new(
+            &self.settings,
+            &self.output,
+            self.host_shades,
+            &self.lighting,
+        );
         let (textures, notes) = (&mut self.textures, &mut self.notes);
         let snapshot = Snapshot::new(&self.objects, &self.snapshot, demands, textures, notes)?;
         for object in &snapshot.objects {
@@ -141,7 +131,7 @@ impl Content {
     /// the view's slot, is of this view and of all objects as set.
     pub fn plan(&mut self, view: &View, known: Option<&Arc<ViewPlan>>) -> Result<Arc<ViewPlan>> {
         let snapshot = self.refresh()?;
-        let with = self.conditions();
+        let with = self.conditions(&snapshot);
         let is_same = |p: &&Arc<ViewPlan>| {
             let opens_same =
                 p.open.as_ref().map(Arc::as_ptr) == self.open.as_ref().map(Arc::as_ptr);
@@ -170,11 +160,10 @@ impl Content {
             most_proxies: with.most_proxies(),
             walks: with.walks,
         };
-        let mut new = Vec::new();
         let known = self.plan.as_ref().filter(|known| {
             Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
         });
-        let objects = rules.planned(view, &snapshot, &mut new)?;
+        let objects = rules.planned(view, &snapshot)?;
         let order = known.map(|known| known.precedence.clone());
         let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
         // What lags depends on the view.
@@ -186,29 +175,18 @@ impl Content {
         let is_same = |known: &&Arc<ViewPlan>| {
             // Boxes are those of the levels of surfaces.
             let levels = known.objects.iter().map(|object| object.level);
-            let shadows = known.walked.casters.is_some() == shadowed;
+            let shadows = known.walks.casters.is_some() == shadowed;
             shadows && known.with.walks == with.walks && levels.eq(objects.iter().map(|o| o.level))
         };
-        let known = known.filter(is_same).map(|known| known.walked.clone());
-        self.make_surfaces(&mut new);
+        let known = known.filter(is_same).map(|known| known.walks.clone());
+        self.make_surfaces(objects.iter().flat_map(|object| &object.surfaces));
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
-        let walked = known.unwrap_or_else(|| {
-            Arc::new(Walked {
-                casters: shadowed.then(|| hierarchy(&objects, &inputs)),
-                seen: Walks::new(&inputs, &chosen),
-            })
-        });
-        let frame = plan(
-            view,
-            &inputs,
-            &chosen,
-            new.len() > MANY_NEW,
-            self.open.as_deref(),
-            (&walked.seen, walked.first_seen()),
+        in_parallel(
+            missing_hulls(view, &inputs, &chosen),
+            OffsetSurface::make_hull,
         );
-        if !new.is_empty() {
-            make_vectors(&objects, &frame);
-        }
+        let walks = known.unwrap_or_else(|| Arc::new(Walks::new(&inputs, &chosen, shadowed)));
+        let frame = plan(view, &inputs, &chosen, self.open.as_deref(), &walks);
         Ok(ViewPlan {
             view: *view,
             snapshot,
@@ -216,13 +194,13 @@ impl Content {
             open: self.open.clone(),
             frame,
             precedence,
-            walked,
+            walks,
             objects,
         })
     }
 
-    /// The inputs of a plan other than view and objects.
-    pub fn conditions(&self) -> Conditions {
+    /// The inputs of a plan of a snapshot, other than view and objects.
+    pub fn conditions(&self, snapshot: &Snapshot) -> Conditions {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
         let plans_on_device = self.settings.planning == Planning::Device && !self.is_parallel();
         Conditions {
@@ -245,24 +223,18 @@ impl Content {
                 false => Lights::of(self.lighting.lights.len()),
             },
             casts: self.casts(),
-            single_copy: self.has_single_copy(),
+            single_copy: match snapshot.objects.as_slice() {
+                [object] => object.drawn().placements().len() == 1,
+                _ => false,
+            },
             host_depths: self.is_compute() && self.target.as_ref().is_none_or(|t| t.depths),
         }
     }
 
-    fn has_single_copy(&self) -> bool {
-        match self.snapshot.objects.as_slice() {
-            [object] => object.drawn().placements().len() == 1,
-            _ => false,
-        }
-    }
-
-    /// Makes all surfaces that are not made yet, on all cores; the list keeps these.
-    fn make_surfaces(&mut self, surfaces: &mut Vec<Arc<OffsetSurface>>) {
-        surfaces.retain(|surface| !surface.is_made());
-        let new = distinct(surfaces);
-        new.par_iter().for_each(|surface| surface.make());
-        self.rebuilds += new.len() as u64;
+    /// Makes all of these surfaces that are not made yet, on all cores.
+    fn make_surfaces<'a>(&mut self, surfaces: impl Iterator<Item = &'a Arc<OffsetSurface>>) {
+        let new = surfaces.filter(|surface| !surface.is_made());
+        self.rebuilds += in_parallel(new.cloned(), OffsetSurface::make) as u64;
     }
 
     /// True if the view has parallel rays.
@@ -271,21 +243,15 @@ impl Content {
     }
 }
 
-/// Number of new surfaces above which all cores choose paths: each may need a hull, which takes some
-/// microseconds.
-const MANY_NEW: usize = 16;
-
-/// Makes the vectors that a frame reads, on all cores.
-fn make_vectors(objects: &[PlannedObject], frame: &FramePlan) {
-    let objects = objects.par_iter().zip(&frame.parts);
-    objects.for_each(|(object, parts)| {
-        let read = Part::ALL.into_iter().zip(parts).filter(|(_, read)| **read);
-        for (part, _) in read {
-            for surface in &object.surfaces {
-                surface.vectors(part);
-            }
-        }
-    });
+/// Calls `make` once for each of these surfaces, on all cores. Returns their number.
+fn in_parallel(
+    surfaces: impl IntoIterator<Item = Arc<OffsetSurface>>,
+    make: impl Fn(&OffsetSurface) + Sync,
+) -> usize {
+    let mut all: Vec<_> = surfaces.into_iter().collect();
+    let all = distinct(&mut all);
+    all.par_iter().for_each(|surface| make(surface));
+    all.len()
 }
 
 /// Upper limit on instances: their records are in one storage buffer, with those of the last frame

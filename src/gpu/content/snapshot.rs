@@ -8,6 +8,7 @@ use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
 use crate::gpu::resources::textures::{BoundTextures, ObjectImages, ShadowMaps, Textures};
+use crate::gpu::vk::output::Output;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{Lighting, Object, Shadow};
 use crate::settings::{Planes, SearchSettings, Solver};
@@ -120,7 +121,22 @@ pub(in crate::gpu) struct Demands<'a> {
     pub lighting: &'a Lighting,
 }
 
-impl Demands<'_> {
+impl<'a> Demands<'a> {
+    /// The demands of a renderer's content.
+    pub fn new(
+        settings: &'a SearchSettings,
+        output: &Output,
+        host_shades: bool,
+        lighting: &'a Lighting,
+    ) -> Self {
+        Self {
+            settings,
+            planes: output.planes(),
+            host_shades,
+            lighting,
+        }
+    }
+
     /// The technique that draws an object with these images by this search.
     pub fn technique(
         &self,
@@ -187,7 +203,7 @@ pub(in crate::gpu) fn find_boundaries(
             solid,
             contour,
             table,
-            levels: Mutex::default(),
+            levels: Default::default(),
         }));
     }
     drop(geometry);

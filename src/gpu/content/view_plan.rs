@@ -1,17 +1,15 @@
-//! A frame's plan, the surfaces that it draws, and the hierarchy of copies that cast shadows.
+//! A frame's plan, and the surfaces that it draws.
 
 use super::entry::PreparedObject;
 use super::snapshot::Snapshot;
 use crate::error::Result;
-use crate::plan::casters::{Hierarchy, Leaf};
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
 use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{CasterNode, InstanceBlock, Search, WalkNode};
+use crate::shader::{InstanceBlock, Search};
 use crate::solid::offset_surface::{OffsetSurface, Part};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -27,24 +25,7 @@ pub(crate) struct ViewPlan {
     /// Those of their copies that lag behind others.
     pub precedence: Arc<Precedence>,
     /// The hierarchies of copies that rays walk.
-    pub walked: Arc<Walked>,
-}
-
-/// The hierarchies of copies that rays walk.
-#[derive(Default)]
-pub(crate) struct Walked {
-    /// Copies that cast shadows; `None` if nothing is shaded in shadow.
-    pub casters: Option<Hierarchy>,
-    /// Copies that rays from the eye find.
-    pub seen: Walks,
-}
-
-impl Walked {
-    /// Number of nodes before those of [`Walked::seen`].
-    pub fn first_seen(&self) -> u32 {
-        let before = self.casters.as_ref().map_or(0, |all| all.nodes.len());
-        (before * size_of::<CasterNode>() / size_of::<WalkNode>()) as u32
-    }
+    pub walks: Arc<Walks>,
 }
 
 /// An object in a plan.
@@ -112,14 +93,9 @@ pub(super) struct LevelRules {
 }
 
 impl LevelRules {
-    /// The objects that a view shows, with surfaces of the levels that it allows. Surfaces that are
-    /// new are added to `new`; they are not made yet.
-    pub fn planned(
-        self,
-        view: &View,
-        snapshot: &Snapshot,
-        new: &mut Vec<Arc<OffsetSurface>>,
-    ) -> Result<Vec<PlannedObject>> {
+    /// The objects that a view shows, with surfaces of the levels that it allows. New surfaces are not
+    /// made yet.
+    pub fn planned(self, view: &View, snapshot: &Snapshot) -> Result<Vec<PlannedObject>> {
         let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
         let mut all = Vec::with_capacity(snapshot.objects.len());
         for object in shown {
@@ -135,7 +111,7 @@ impl LevelRules {
                 .iter()
                 .flat_map(|of| &COPY_LEVELS[of.first + 1..]);
             for level in [one.level].iter().chain(coarser) {
-                one.surfaces.extend(one.object.surface(*level, new)?);
+                one.surfaces.extend(one.object.surface(*level)?);
             }
         }
         Ok(all)
@@ -164,8 +140,8 @@ impl LevelRules {
             let pixels = object.pixels_per_unit(view, self.casts);
             // An object that does not show takes a level that is already made.
             let hidden = pixels <= 0.0 && !self.casts;
-            let made = if hidden { object.first_level()? } else { None };
-            planned.level = made.unwrap_or_else(|| coarsest(self.tolerance, pixels));
+            let known = object.known_level().filter(|_| hidden);
+            planned.level = known.unwrap_or_else(|| coarsest(self.tolerance, pixels));
         }
         Ok(planned)
     }
@@ -196,20 +172,6 @@ pub(super) fn precedence(objects: &[PlannedObject]) -> Precedence {
         });
         bodies.collect()
     })
-}
-
-/// The hierarchy over the copies of these objects.
-pub(super) fn hierarchy(objects: &[PlannedObject], inputs: &[PlanObject]) -> Hierarchy {
-    let mut leaves = Vec::new();
-    for (planned, input) in objects.iter().zip(inputs) {
-        let map = planned.object.derived.shadow_map;
-        let copies = input.object.placements().par_iter().enumerate();
-        leaves.par_extend(copies.map(|(copy, placement)| {
-            let instance = input.first_instance + copy as u32;
-            Leaf::new(instance, map, placement, &input.shape)
-        }));
-    }
-    Hierarchy::new(&mut leaves)
 }
 
 impl PreparedObject {

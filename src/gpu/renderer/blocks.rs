@@ -4,9 +4,8 @@ use crate::gpu::content::entry::{Last, PreparedObject};
 use crate::gpu::content::view_plan::PlannedObject;
 use crate::gpu::vk::output::Output;
 use crate::plan::View;
-use crate::plan::casters::Hierarchy;
 use crate::plan::precedence::lag_depth;
-use crate::plan::walk::Grid;
+use crate::plan::walk::{Grid, Walks};
 use crate::scene::{Lighting, Object, Placement};
 use crate::shader::generated::{MAX_LIGHTS, OUTSIDE_BIT, PLACED};
 use crate::shader::{
@@ -282,15 +281,27 @@ pub(super) fn frame_block(
     }
 }
 
-/// The root of the hierarchy of copies that cast shadows. `maps`: number of shape maps.
-pub(super) fn caster_root(all: &Hierarchy, eye: DVec3, maps: usize) -> CasterRoot {
-    let root = all.nodes.first().copied().unwrap_or(Hierarchy::EMPTY);
+/// The root of the hierarchy of copies that cast shadows; without copies a box that no ray meets.
+/// `maps`: number of shape maps.
+pub(super) fn caster_root(walks: &Walks, eye: DVec3, maps: usize) -> CasterRoot {
+    let Some(root) = walks.casters else {
+        return CasterRoot {
+            half_size: [-1e30; 3],
+            ..CasterRoot::default()
+        };
+    };
+    let (heap, grid) = (&walks.nodes[root as usize..], &walks.grid);
+    let [low, high] = [0, 16].map(|shift| {
+        let steps = heap[1].bounds.map(|ends| f64::from(ends >> shift & 0xffff));
+        grid.unit * DVec3::from(steps)
+    });
+    let vector = |v: DVec3| v.as_vec3().to_array();
     CasterRoot {
-        eye: (eye - all.origin).as_vec3().to_array(),
+        eye: vector(eye - grid.low),
         map_count: maps as u32,
-        middle: root.middle,
-        node_count: all.nodes.len() as u32,
-        half_size: root.half_size,
-        only_copy: root.instance,
+        middle: vector(0.5 * (low + high)),
+        root,
+        half_size: vector(0.5 * (high - low)),
+        only_copy: heap[1].index,
     }
 }

@@ -136,13 +136,10 @@ impl Renderer {
         let snapshot = &plan.snapshot;
         let (output, lighting) = (&self.content.output, &self.content.lighting);
         let mut block = frame_block(view, output, lighting, snapshot.instances);
-        if let Some(casters) = &plan.walked.casters {
-            let maps = snapshot.facts.shadow_maps.maps.len();
-            block.casters = caster_root(casters, view.eye, maps);
-        }
-        let seen = &plan.walked.seen;
-        if !seen.is_empty() {
-            block.eye = placed_eye(view, &seen.grid);
+        let maps = snapshot.facts.shadow_maps.maps.len();
+        block.casters = caster_root(&plan.walks, view.eye, maps);
+        if !plan.walks.nodes.is_empty() {
+            block.eye = placed_eye(view, &plan.walks.grid);
         }
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
@@ -246,7 +243,7 @@ impl Renderer {
         let to = &mut self.slots[slot];
         let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
         let bytes = records * size_of::<InstanceBlock>() as u64;
-        let are_placed = to.write_hierarchies(&plan.walked, bytes)?;
+        let are_placed = to.write_walks(&plan.walks, bytes)?;
         let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
         to.write_plan(&plan.frame)?;
@@ -294,7 +291,7 @@ impl Renderer {
                 to.write_instances(snapshot.instances + first, &shown, last)?;
             }
         }
-        to.walked = Some(plan.walked.clone());
+        to.walks = Some(plan.walks.clone());
         Ok(())
     }
 }

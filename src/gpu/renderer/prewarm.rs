@@ -4,7 +4,7 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
-use crate::gpu::content::snapshot::FALLBACK;
+use crate::gpu::content::snapshot::{Demands, FALLBACK};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
 use crate::shader::{Kind, Lights, Pushed, Variant};
@@ -143,10 +143,12 @@ impl Content {
     /// lights, and the general forms of the technique that replaces it if its contour does
     /// not close. No view, mask or parameter has an influence, and no number of objects or copies.
     fn prewarmed_forms(&self) -> Vec<(Variant, Kind)> {
-        let (with, solver) = (self.conditions(), self.settings.solver);
+        let (with, solver) = (self.conditions(&self.snapshot), self.settings.solver);
         let mut known = HashSet::new();
         let mut all = Vec::new();
-        let (demands, common) = (self.demands(), &self.snapshot.facts);
+        let (settings, lighting) = (&self.settings, &self.lighting);
+        let demands = Demands::new(settings, &self.output, self.host_shades, lighting);
+        let common = &self.snapshot.facts;
         for object in &self.snapshot.objects {
             let (drawn, images) = (object.drawn(), &object.images);
             let drawn_by = |solver| demands.technique(solver, drawn, images, common);

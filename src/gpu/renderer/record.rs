@@ -117,11 +117,16 @@ impl Renderer {
         let slot = self.slots.get(frame.slot).filter(|slot| {
             (frame.renderer, frame.serial) == (self.content.objects.renderer, slot.serial)
         });
-        let found = slot.and_then(|slot| Some((slot, slot.bound.as_ref()?)));
-        found.ok_or_else(|| {
-            let message = "the frame is another renderer's, or its slot was prepared again; record what prepare returned last";
-            Error::new(ErrorKind::Usage, message)
-        })
+        let message = match slot.map(|slot| (slot, &slot.bound)) {
+            Some((slot, Some(bound))) => return Ok((slot, bound)),
+            Some((_, None)) => {
+                "a later preparation of the frame's slot failed after it had begun to write; prepare the slot again"
+            }
+            None => {
+                "the frame is another renderer's, or its slot was prepared again; record what prepare returned last"
+            }
+        };
+        Err(Error::new(ErrorKind::Usage, message))
     }
 
     /// Records the command of a step.

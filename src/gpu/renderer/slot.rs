@@ -2,7 +2,7 @@
 //! that bind them. The slot also keeps alive all else that its commands read.
 
 use crate::error::Result;
-use crate::gpu::content::view_plan::{ViewPlan, Walked};
+use crate::gpu::content::view_plan::ViewPlan;
 use crate::gpu::device::Shared;
 use crate::gpu::memory::Buffer;
 use crate::gpu::memory::buffers::{Use, write, write_slice};
@@ -12,10 +12,11 @@ use crate::gpu::resources::textures::TextureSet;
 use crate::gpu::vk::descriptors::{self, FRAME_SET, Resource, TARGET_SET};
 use crate::gpu::vk::output::ComputeTarget;
 use crate::gpu::vk::usage::Usage;
+use crate::plan::walk::Walks;
 use crate::plan::{Call, DrawPath, FramePlan};
 use crate::shader::{
-    BinTile, CasterNode, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, QueueBlock,
-    Variant,
+    BinTile, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, QueueBlock, Variant,
+    WalkNode,
 };
 use ash::vk;
 use bytemuck::Zeroable;
@@ -27,7 +28,7 @@ pub(crate) enum SlotBuffer {
     Frame,
     Objects,
     Instances,
-    Casters,
+    Nodes,
     Tiles,
     Bins,
     Draws,
@@ -40,7 +41,7 @@ const BUFFERS: [(Use, &str, usize); 8] = [
     (Use::Uniform, "frame block", size_of::<FrameBlock>()),
     (Use::Storage, "objects", OBJECT_STRIDE as usize),
     (Use::Storage, "instances", size_of::<InstanceBlock>()),
-    (Use::Storage, "casters", size_of::<CasterNode>()),
+    (Use::Storage, "hierarchies", size_of::<WalkNode>()),
     (Use::Storage, "tiles", size_of::<QueueBlock>()),
     (Use::Bins, "bins of tiles", 0),
     (Use::Draws, "draws", 0),
@@ -64,9 +65,9 @@ pub(crate) struct FrameSlot {
     pub bound: Option<BoundPlan>,
     /// The number of the slot's frame. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The hierarchies in [`SlotBuffer::Casters`]. The copies of [`Walked::seen`], which have the same
-    /// blocks in each view, are in [`SlotBuffer::Instances`].
-    pub walked: Option<Arc<Walked>>,
+    /// The hierarchies in [`SlotBuffer::Nodes`]. The copies that rays from the eye walk to, which have
+    /// the same blocks in each view, are in [`SlotBuffer::Instances`].
+    pub walks: Option<Arc<Walks>>,
     uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
     pub named: Option<Arc<Buffer>>,
@@ -147,7 +148,7 @@ impl FrameSlot {
             buffers,
             bound: None,
             serial: 0,
-            walked: None,
+            walks: None,
             uploads: RecordedUploads::default(),
             named: None,
             pool,
@@ -282,23 +283,18 @@ impl FrameSlot {
     }
 
     /// Writes the hierarchies that rays walk, and makes room for the bytes of all instances. Returns
-    /// true if the copies of [`Walked::seen`] are written already.
-    pub fn write_hierarchies(&mut self, walked: &Arc<Walked>, instances: u64) -> Result<bool> {
-        let known = self.walked.take();
+    /// true if the copies that rays from the eye walk to are written already.
+    pub fn write_walks(&mut self, walks: &Arc<Walks>, instances: u64) -> Result<bool> {
+        let known = self.walks.take();
         let before = self.buffer(SlotBuffer::Instances).raw;
         self.fit(SlotBuffer::Instances, instances)?;
         let keeps = before == self.buffer(SlotBuffer::Instances).raw;
-        if known.is_some_and(|known| Arc::ptr_eq(&known, walked)) {
+        if known.is_some_and(|known| Arc::ptr_eq(&known, walks)) {
             return Ok(keeps);
         }
-        let casters = walked.casters.as_ref().map_or(&[][..], |all| &all.nodes);
-        let seen = walked.seen.nodes.as_slice();
-        let bytes = size_of_val(casters) + size_of_val(seen);
-        self.fit(SlotBuffer::Casters, bytes as u64)?;
-        let nodes = self.buffer_mut(SlotBuffer::Casters).mapped()?;
-        let (before, after) = nodes[..bytes].split_at_mut(size_of_val(casters));
-        before.copy_from_slice(bytemuck::cast_slice(casters));
-        after.copy_from_slice(bytemuck::cast_slice(seen));
+        let nodes = walks.nodes.as_slice();
+        self.fit(SlotBuffer::Nodes, size_of_val(nodes) as u64)?;
+        write_slice(self.buffer_mut(SlotBuffer::Nodes), nodes)?;
         Ok(false)
     }
 
@@ -331,7 +327,7 @@ impl FrameSlot {
             own(SlotBuffer::Frame),
             own(SlotBuffer::Objects),
             own(SlotBuffer::Instances),
-            own(SlotBuffer::Casters),
+            own(SlotBuffer::Nodes),
             whole(tables),
             Resource::Buffer(tables.raw, window),
             Resource::Buffer(self.buffer(SlotBuffer::Objects).raw, object),

@@ -9,6 +9,7 @@ use crate::solid::cache::SolidCache;
 use crate::solid::offset_surface::{OffsetSurface, Part, Slot};
 use crate::solid::proxy_hull;
 use range_alloc::RangeAllocator;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex, Weak};
 
 /// Solids and buffers.
@@ -66,13 +67,17 @@ impl Geometry {
         &mut self,
         surfaces: impl Iterator<Item = (&'a Arc<OffsetSurface>, [bool; 3])>,
     ) -> Result<TableBuffers> {
-        for (surface, parts) in surfaces {
-            for (_, part) in parts.into_iter().zip(Part::ALL).filter(|(is, _)| *is) {
-                self.store_part(surface, part)?;
-            }
-            if parts[Part::Frusta as usize] {
-                self.fit(surface.hull().hull.frusta.len() as u32)?;
-            }
+        let parts = surfaces.flat_map(|(surface, read)| {
+            let parts = Part::ALL.into_iter().zip(read).filter(|(_, is)| *is);
+            parts.map(move |(part, _)| (surface, part))
+        });
+        let is_new = |(surface, part): &(&Arc<OffsetSurface>, Part)| surface.slot(*part).is_none();
+        let new: Vec<_> = parts.filter(is_new).collect();
+        new.par_iter().for_each(|(surface, part)| {
+            surface.vectors(*part);
+        });
+        for (surface, part) in new {
+            self.store_part(surface, part)?;
         }
         Ok(self.buffers.clone())
     }
@@ -113,6 +118,9 @@ impl Geometry {
             ranges: self.ranges.clone(),
         };
         self.write(slot.begin(), vectors)?;
+        if let (Part::Frusta, Some(hull)) = (part, surface.hull()) {
+            self.fit(hull.hull.frusta.len() as u32)?;
+        }
         surface.keep_slot(part, slot);
         Ok(())
     }
