@@ -8,7 +8,7 @@ use crate::scene::Object;
 use crate::shader::generated::{
     GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
 };
-use crate::shader::{Kind, Lights, Search, Technique};
+use crate::shader::{Kind, Lights, SearchCode, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
 use glam::DVec2;
@@ -158,7 +158,7 @@ impl Conditions {
     /// True if fragments may search the queues of tiles by a technique: it has the library's patches
     /// and no replicas.
     pub fn searches_queues(technique: &Technique) -> bool {
-        technique.search == Search::Quadric && !technique.replicas
+        technique.search == SearchCode::Quadric && !technique.replicas
     }
 
     /// True if rays walk a hierarchy of an object's copies, in any view. Fragments draw few copies by
@@ -210,7 +210,7 @@ impl Conditions {
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
     /// the box, as published.
     pub fn uses_outline(&self, of: &PlanObject) -> bool {
-        self.occlusion_culling && of.technique.search != Search::External
+        self.occlusion_culling && of.technique.search != SearchCode::External
     }
 
     /// Least pixels of the box per frustum at which cells are cheaper.
@@ -238,7 +238,7 @@ impl Conditions {
     /// a pixel. Pixels of cells, which are shaded before their depth is tested, take 1.6 to 2.0 of
     /// the time of tiles then, and lists 1.0 to 1.2 of that of the tree.
     fn shows_patches(&self, of: &PlanObject) -> bool {
-        let patches = self.takes_patches && of.technique.search == Search::Quadric;
+        let patches = self.takes_patches && of.technique.search == SearchCode::Quadric;
         patches && of.surface().is_some() && !self.casts && of.object.repeat == [1; 3]
     }
 
@@ -263,7 +263,7 @@ impl Conditions {
     /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the
     /// other objects are.
     pub fn kinds(&self, technique: &Technique) -> Vec<Kind> {
-        let patches = technique.search == Search::Quadric && self.takes_patches;
+        let patches = technique.search == SearchCode::Quadric && self.takes_patches;
         let patches = patches && technique.is_single() && !self.casts;
         let of_pass = [
             (Kind::Boxes, true),

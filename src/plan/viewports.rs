@@ -9,7 +9,7 @@ use crate::error::{ErrorKind, Result};
 use crate::profile::Profile;
 use crate::scene::{Object, Placement};
 use crate::shader::generated::QUAD_BITS;
-use crate::shader::{Kind, Search, Technique};
+use crate::shader::{Kind, SearchCode, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use crate::surface::FitOptions;
@@ -69,7 +69,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
             number,
             first_instance: number,
             technique: Technique {
-                search: Search::Quadric,
+                search: SearchCode::Quadric,
                 ..Technique::LISTS
             },
             textures: 0,

@@ -16,9 +16,9 @@
 //! `shaders-glsl/include`, and `search/hook.glsl` is the file of the search.
 //!
 //! ```
-//! use revmap::search::{Output, Pass, SearchModule};
+//! use revmap::search::{Pass, SearchModule, StoredPlanes};
 //! let module = SearchModule {
-//!     pass: Pass::Fragment, output: Output::Color, table: false, bounded: true,
+//!     pass: Pass::Fragment, output: StoredPlanes::Color, table: false, bounded: true,
 //! };
 //! assert_eq!(module.entry(), "tree.frag");
 //! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL")]);
@@ -26,7 +26,7 @@
 
 mod module;
 
-pub use module::{Output, Pass, SearchModule};
+pub use module::{Pass, SearchModule, StoredPlanes};
 
 use crate::error::Result;
 use crate::surface::Contour;

@@ -13,7 +13,7 @@ pub enum Pass {
 
 /// The stored data of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Output {
+pub enum StoredPlanes {
     /// Colour.
     Color,
     /// Every plane of a frame.
@@ -26,7 +26,7 @@ pub struct SearchModule {
     /// The stage and geometry by which rays are traced.
     pub pass: Pass,
     /// The stored data.
-    pub output: Output,
+    pub output: StoredPlanes,
     /// True if it reads a table of its own instead of the shape map.
     pub table: bool,
     /// True if there is a bound on its steps.
@@ -54,7 +54,7 @@ impl SearchModule {
         let set = set.into_iter().filter(|(is_set, _)| *is_set);
         let mut all = vec![("SEARCH", "SEARCH_EXTERNAL")];
         all.extend(set.map(|(_, name)| (name, "1")));
-        if self.output == Output::Planes {
+        if self.output == StoredPlanes::Planes {
             all.push(("OUTPUT", "OUTPUT_PLANES"));
         }
         all

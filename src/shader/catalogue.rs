@@ -89,7 +89,7 @@ impl Entry {
 
 /// The code that finds where rays meet a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Search {
+pub enum SearchCode {
     /// No search: vertices, lists of patches.
     None,
     /// A search of another crate, which has its own modules.
@@ -103,7 +103,7 @@ pub enum Search {
 
 /// The stored values of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Output {
+pub enum Stored {
     /// Only colour, in compute and by searches of other crates.
     Color,
     /// Every plane of a frame.
@@ -120,9 +120,9 @@ pub struct Module {
     /// The entry file.
     pub entry: Entry,
     /// The search that it contains.
-    pub search: Search,
+    pub search: SearchCode,
     /// The values that it stores.
-    pub output: Output,
+    pub output: Stored,
 }
 
 impl Module {
@@ -131,8 +131,8 @@ impl Module {
     pub const fn plain(entry: Entry) -> Self {
         Self {
             entry,
-            search: Search::None,
-            output: Output::Color,
+            search: SearchCode::None,
+            output: Stored::Color,
         }
     }
 
@@ -141,15 +141,15 @@ impl Module {
     #[allow(dead_code)]
     pub fn macros(&self) -> Vec<(&'static str, &'static str)> {
         let mut all = match self.search {
-            Search::None | Search::External => vec![],
-            Search::Live => vec![("SEARCH", "SEARCH_LIVE")],
-            Search::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
+            SearchCode::None | SearchCode::External => vec![],
+            SearchCode::Live => vec![("SEARCH", "SEARCH_LIVE")],
+            SearchCode::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
         match self.output {
-            Output::Color => {}
-            Output::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
-            Output::List => all.push(("OUTPUT", "OUTPUT_LIST")),
-            Output::Depth => all.push(("OUTPUT", "OUTPUT_DEPTH")),
+            Stored::Color => {}
+            Stored::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
+            Stored::List => all.push(("OUTPUT", "OUTPUT_LIST")),
+            Stored::Depth => all.push(("OUTPUT", "OUTPUT_DEPTH")),
         }
         all
     }
@@ -163,7 +163,7 @@ impl Module {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
         };
-        if self.search != Search::None {
+        if self.search != SearchCode::None {
             add(&mut name, &self.search);
             add(&mut name, &self.output);
         }
@@ -181,7 +181,7 @@ pub fn shading_modules(compute: bool) -> Vec<Module> {
     all.retain(|m| {
         m.entry.shades()
             && in_pass(m.entry) != compute
-            && matches!(m.output, Output::Color | Output::List)
+            && matches!(m.output, Stored::Color | Stored::List)
     });
     all
 }
@@ -198,7 +198,7 @@ pub fn shading_macros(module: &Module) -> Vec<(&'static str, &'static str)> {
 /// Every module, in order.
 #[must_use]
 pub fn modules() -> Vec<Module> {
-    use Output::{Color, Depth, List, Planes};
+    use Stored::{Color, Depth, List, Planes};
     let plain = [
         Entry::TileLists,
         Entry::BoxVertex,
@@ -208,9 +208,9 @@ pub fn modules() -> Vec<Module> {
         Entry::WalkVertex,
     ];
     let mut all = plain.map(Module::plain).to_vec();
-    let both: &[Search] = &[Search::Live, Search::Quadric];
-    let patches: &[Search] = &[Search::Quadric];
-    let rows: [(Entry, &[Search], &[Output]); 8] = [
+    let both: &[SearchCode] = &[SearchCode::Live, SearchCode::Quadric];
+    let patches: &[SearchCode] = &[SearchCode::Quadric];
+    let rows: [(Entry, &[SearchCode], &[Stored]); 8] = [
         (Entry::Tree, both, &[Planes, List, Depth]),
         (Entry::TileTree, both, &[Color, Planes]),
         (Entry::TileCopies, both, &[Color, Planes]),

@@ -2,7 +2,7 @@
 
 use super::catalogue::{self, Module};
 use crate::error::{Error, ErrorKind, Result};
-use crate::search::{Output, Pass, Reads, Search, SearchModule};
+use crate::search::{Pass, Reads, Search, SearchModule, StoredPlanes};
 use crate::settings::SearchSettings;
 
 /// A search and its bound on steps.
@@ -37,8 +37,8 @@ impl External {
         matches!(self.search.reads, Reads::Table(_))
     }
 
-    /// The forms for objects with or without a bevel.
-    pub fn forms(self, beveled: bool) -> [Self; 2] {
+    /// The same search with and without the default steps of objects with or without a bevel.
+    pub fn by_bevel(self, beveled: bool) -> [Self; 2] {
         [0, default_steps(self.search, beveled)].map(|known_steps| Self {
             known_steps,
             ..self
@@ -59,9 +59,9 @@ impl External {
             _ => return None,
         };
         let output = match module.output {
-            catalogue::Output::Color => Output::Color,
-            catalogue::Output::Planes => Output::Planes,
-            catalogue::Output::List | catalogue::Output::Depth => return None,
+            catalogue::Stored::Color => StoredPlanes::Color,
+            catalogue::Stored::Planes => StoredPlanes::Planes,
+            catalogue::Stored::List | catalogue::Stored::Depth => return None,
         };
         Some(SearchModule {
             pass,

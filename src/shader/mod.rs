@@ -22,7 +22,7 @@ pub use blocks::{
 pub(crate) use catalogue::modules;
 #[cfg(feature = "shaderc")]
 pub use catalogue::shading_macros;
-pub use catalogue::{Module, Search, shading_modules};
+pub use catalogue::{Module, SearchCode, shading_modules};
 pub use frozen::frozen;
 pub use module::words;
 pub use outputs::{with_locations, with_outputs_for};

@@ -80,7 +80,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::settings::Plane;
-    use crate::shader::catalogue::{Entry, Module, Output, modules};
+    use crate::shader::catalogue::{Entry, Module, Stored, modules};
     use crate::shader::words;
     use std::collections::BTreeSet;
 
@@ -128,7 +128,7 @@ mod tests {
         let mut counts = BTreeSet::new();
         for module in modules() {
             let entries: &[Entry] = match module.entry {
-                Entry::Tree if module.output == Output::Depth => &[Entry::BoxVertex],
+                Entry::Tree if module.output == Stored::Depth => &[Entry::BoxVertex],
                 Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
                 Entry::Tiles => &[Entry::TileVertex],
                 Entry::Cells => &[Entry::CellVertex],

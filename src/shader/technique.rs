@@ -3,7 +3,7 @@
 //! Parameters are data: no value of an offset, a light, a camera or a bound on steps makes another
 //! technique. Textures, replicas, shadows and a bevel under a search on the map do.
 
-use super::catalogue::{Output, Search};
+use super::catalogue::{SearchCode, Stored};
 use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
@@ -38,11 +38,11 @@ pub struct HostLook {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Technique {
     /// The search that finds hits.
-    pub search: Search,
-    /// The search of another crate, for [`Search::External`].
+    pub search: SearchCode,
+    /// The search of another crate, for [`SearchCode::External`].
     pub external: Option<External>,
     /// The stored values of a hit.
-    pub output: Output,
+    pub output: Stored,
     /// True if the box holds several replicas.
     pub replicas: bool,
     /// One of `SHADOW_*`.
@@ -81,9 +81,9 @@ fn bump_of(texturing: &Texturing, host: HostLook) -> u32 {
 impl Technique {
     /// The technique that makes lists of patches.
     pub const LISTS: Self = Self {
-        search: Search::None,
+        search: SearchCode::None,
         external: None,
-        output: Output::Color,
+        output: Stored::Color,
         replicas: false,
         shadow: g::SHADOW_OFF,
         placed_casters: false,
@@ -120,10 +120,10 @@ impl Technique {
         let bump = bump_of(texturing, host);
         let textured = color_map || bump != g::BUMP_OFF;
         let (output, parallel) = match planes {
-            Planes::Color => (Output::Color, false),
-            Planes::All => (Output::Planes, false),
-            Planes::List(_) => (Output::List, false),
-            Planes::Depth { parallel } => (Output::Depth, parallel),
+            Planes::Color => (Stored::Color, false),
+            Planes::All => (Stored::Planes, false),
+            Planes::List(_) => (Stored::List, false),
+            Planes::Depth { parallel } => (Stored::Depth, parallel),
         };
         let is_beveled = is_beveled(object);
         // The replacement for another search has only the general form.
@@ -132,9 +132,9 @@ impl Technique {
         let of_map = |is: bool| solver.reads_map() && is;
         let technique = Self {
             search: match solver {
-                Solver::Live => Search::Live,
-                Solver::Quadric | Solver::Exact => Search::Quadric,
-                Solver::Other(_) => Search::External,
+                Solver::Live => SearchCode::Live,
+                Solver::Quadric | Solver::Exact => SearchCode::Quadric,
+                Solver::Other(_) => SearchCode::External,
             },
             output,
             replicas,
@@ -145,19 +145,19 @@ impl Technique {
             parallel,
             ..Self::LISTS
         };
-        if output == Output::Depth {
+        if output == Stored::Depth {
             return technique;
         }
         let places = settings.planning == Planning::Device;
         Self {
             shadow,
-            placed_casters: places && casts && technique.search == Search::Quadric,
+            placed_casters: places && casts && technique.search == SearchCode::Quadric,
             environment: lighting.environment.is_some() && !host.shading,
             color_map,
             bump,
             projection: match texturing.projection {
                 // No code reads coordinates.
-                _ if !textured && !host.shading && output != Output::Planes => {
+                _ if !textured && !host.shading && output != Stored::Planes => {
                     g::PROJECTION_CYLINDRICAL
                 }
                 Projection::Planar => g::PROJECTION_PLANAR,
@@ -171,7 +171,7 @@ impl Technique {
 
     /// This technique and those that replace it when a bevel is added or removed.
     #[must_use]
-    pub fn forms(self) -> Vec<Self> {
+    pub fn by_bevel(self) -> Vec<Self> {
         let beveled = !self.beveled;
         let twin = |external| Self {
             beveled,
@@ -182,7 +182,7 @@ impl Technique {
         match self.external {
             _ if self.reads_tables() => {}
             None => all.push(twin(None)),
-            Some(one) => all.extend(one.forms(beveled).map(|one| twin(Some(one)))),
+            Some(one) => all.extend(one.by_bevel(beveled).map(|one| twin(Some(one)))),
         }
         all
     }
@@ -194,7 +194,7 @@ impl Technique {
 
     /// True if its search walks tables.
     pub fn reads_tables(&self) -> bool {
-        self.search == Search::Quadric || self.external.is_some_and(External::reads_table)
+        self.search == SearchCode::Quadric || self.external.is_some_and(External::reads_table)
     }
 
     /// True if the number of lights makes another pipeline.
@@ -206,7 +206,7 @@ impl Technique {
     /// True if colours are stored, not only depths.
     #[must_use]
     pub const fn is_shaded(&self) -> bool {
-        !matches!(self.output, Output::Depth)
+        !matches!(self.output, Stored::Depth)
     }
 }
 

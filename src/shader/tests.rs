@@ -6,7 +6,7 @@ use crate::profile::Profile;
 use crate::scene::{Lighting, Object};
 use crate::search::unpacked;
 use crate::settings::{Planes, SearchSettings, Solver};
-use crate::shader::catalogue::{Search, modules};
+use crate::shader::catalogue::{SearchCode, modules};
 use crate::shader::textures::{varying_textures, with_constant_textures, with_varying_textures};
 use crate::shader::{
     HostLook, Kind, Module, ShadowCasters, Technique, Variant, depth_less, generated as g,
@@ -93,7 +93,7 @@ fn pipelines_index_textures_by_constants() {
         let words = words(&module).unwrap();
         let found = varying_textures(&words);
         assert!(
-            found == 0 || module.search == Search::Live,
+            found == 0 || module.search == SearchCode::Live,
             "{}",
             module.name()
         );

@@ -3,7 +3,7 @@
 //! variant of a technique is right for everything that the technique draws, so a frame may take it
 //! whenever a special one is not compiled.
 
-use super::catalogue::{Entry, Module, Output, Search};
+use super::catalogue::{Entry, Module, SearchCode, Stored};
 use super::external::External;
 use super::generated as g;
 use super::technique::Technique;
@@ -242,7 +242,7 @@ impl Variant {
         }
         // Other techniques test where every ray begins. Cells need no test, and cut cells always.
         let cells = matches!(kind, Kind::Cells | Kind::CutCells);
-        let patches = technique.search == Search::Quadric && !technique.replicas;
+        let patches = technique.search == SearchCode::Quadric && !technique.replicas;
         if !lists && (cells || !patches) {
             speciality.outside = Outside::None;
         }
@@ -292,12 +292,12 @@ impl Variant {
         }
         let (search, output) = (self.technique.search, self.technique.output);
         // Fragments write their colour as the only plane of a list.
-        let listed = matches!(output, Output::Color) && !matches!(search, Search::External);
+        let listed = matches!(output, Stored::Color) && !matches!(search, SearchCode::External);
         Module {
             entry,
             search,
             output: if listed && !kind.draws_in_compute() {
-                Output::List
+                Stored::List
             } else {
                 output
             },

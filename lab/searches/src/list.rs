@@ -1,7 +1,7 @@
 // The list of SPIR-V modules. `build.rs` compiles this list, and searches look modules up in it; so
 // it depends only on `SearchModule`.
 
-use super::module::{Output, Pass, SearchModule};
+use super::module::{Pass, SearchModule, StoredPlanes};
 
 /// A module of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub fn modules() -> Vec<Listed> {
             ("cone/search.glsl", true, false),
             ("relaxed/search.glsl", true, true),
         ] {
-            for output in [Output::Color, Output::Planes] {
+            for output in [StoredPlanes::Color, StoredPlanes::Planes] {
                 let module = SearchModule {
                     pass,
                     output,

@@ -8,7 +8,7 @@ use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{InstanceBlock, Search};
+use crate::shader::{InstanceBlock, SearchCode};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use std::ops::Range;
 use std::sync::Arc;
@@ -132,7 +132,7 @@ impl LevelRules {
         }
         if self.levels_copies(object) {
             let height = object.growth().height();
-            let any = self.walks && object.derived.technique.search == Search::Quadric;
+            let any = self.walks && object.derived.technique.search == SearchCode::Quadric;
             let levels = CopyLevels::new(object.drawn(), height, view, (self.tolerance, any));
             planned.level = COPY_LEVELS[levels.first];
             planned.levels = Some(levels);

@@ -58,7 +58,7 @@ impl Renderer {
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         self.content.refresh()?;
-        Ok(self.forms(self.content.prewarmed_forms()))
+        Ok(self.prewarm_of(self.content.prewarmed_forms()))
     }
 
     /// Returns the pipelines that would draw the frames of all slots faster: special forms for one
@@ -74,10 +74,10 @@ impl Renderer {
             matches!(pipelines.known(variant, kind, &self.owner), Ok(Some(_)))
         };
         all.retain(|key| known.insert(*key) && !is_compiled(key));
-        self.forms(all)
+        self.prewarm_of(all)
     }
 
-    fn forms(&self, wanted: Vec<(Variant, Kind)>) -> Prewarm {
+    fn prewarm_of(&self, wanted: Vec<(Variant, Kind)>) -> Prewarm {
         Prewarm {
             wanted,
             owner: self.owner.clone(),
@@ -152,7 +152,7 @@ impl Content {
         for object in &self.snapshot.objects {
             let (drawn, images) = (object.drawn(), &object.images);
             let drawn_by = |solver| demands.technique(solver, drawn, images, common);
-            let wanted = drawn_by(solver).forms().into_iter();
+            let wanted = drawn_by(solver).by_bevel().into_iter();
             let wanted = wanted.map(|technique| (technique, Lights::Two));
             let replaced = (solver.follows_tolerance()).then(|| (drawn_by(FALLBACK), Lights::Any));
             for (technique, lights) in wanted.chain(replaced) {

@@ -4,7 +4,7 @@
 use super::Folder;
 use crate::manifest::Data;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::search::{Output, Pass, SearchModule};
+use revmap::search::{Pass, SearchModule, StoredPlanes};
 use revmap::settings::Solver;
 use std::fmt::Write as _;
 
@@ -27,7 +27,7 @@ pub fn compile(solver: Solver) -> Result<()> {
             folder,
             &SearchModule {
                 pass,
-                output: Output::Color,
+                output: StoredPlanes::Color,
                 table: !folder.manifest.reads.is_map(),
                 bounded: folder.manifest.steps.is_some(),
             },
@@ -94,7 +94,7 @@ fn hook(folder: &Folder, module: &SearchModule) -> String {
     if own.reads == Data::Table && !own.inside {
         text += "bool starts_in_table(Meridian m) { return false; }\n";
     }
-    let checks = module.output == Output::Planes;
+    let checks = module.output == StoredPlanes::Planes;
     if own.inside && !checks {
         let _ = writeln!(text, "#include \"{}\"", own.glsl);
         return text;

@@ -8,7 +8,7 @@ use crate::gpu::vk::render_pass::CompatiblePass;
 use crate::plan::DepthOrder;
 use crate::settings::{Plane, Planes};
 use crate::shader::{
-    Kind, Module, Search, Variant, depth_less, frozen, with_constant_textures, with_locations,
+    Kind, Module, SearchCode, Variant, depth_less, frozen, with_constant_textures, with_locations,
     with_outputs_for, with_varying_textures, without_contraction, words,
 };
 use ash::vk;
@@ -49,7 +49,7 @@ impl Pipelines {
         if let Some(host) = host.filter(|_| module.entry.shades()) {
             return Ok(host.shading.words(module)?.to_vec());
         }
-        if let (Some(external), Search::External) = (variant.technique.external, module.search)
+        if let (Some(external), SearchCode::External) = (variant.technique.external, module.search)
             && module.entry.searches()
         {
             return external.words(module);
