@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Traces a fragment of a box or of a quad.
 #include "stage/tree_varyings.glsl"
-#include "core/replicas.glsl"
+#include "core/trace.glsl"
 #include "stage/outputs.glsl"
 
 layout(depth_greater) out float gl_FragDepth;

@@ -2,7 +2,7 @@
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
 #include "core/placed.glsl"
-#include "core/replicas.glsl"
+#include "core/trace.glsl"
 
 // Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle. Ray
 // `k` has the bit `k % LIGHT_RAYS`. The last ray leads to the middle, those before it to the rim.

@@ -2,7 +2,7 @@
 #ifndef QUEUE_GLSL
 #define QUEUE_GLSL
 #include "stage/tiles.glsl"
-#include "core/replicas.glsl"
+#include "core/trace.glsl"
 
 // Returns a depth in the unit of nearest_copy. Fragments read no depths of a buffer, so theirs are in clip space. They
 // exceed its limits before the near plane and beyond the far plane. Rays are never parallel.

@@ -4,7 +4,7 @@
 #include "stage/compute.glsl"
 #include "stage/pixel_words.glsl"
 #include "core/shade.glsl"
-#include "core/replicas.glsl"
+#include "core/trace.glsl"
 
 #if OUTPUT == OUTPUT_PLANES
 layout(set = 2, binding = 2, rgba32f) uniform writeonly image2D color;

@@ -3,7 +3,7 @@
 #ifndef WALK_GLSL
 #define WALK_GLSL
 #include "core/placed.glsl"
-#include "core/replicas.glsl"
+#include "core/trace.glsl"
 
 const float NEVER = 3e38; // in place of the depth at which a ray enters a box
 
