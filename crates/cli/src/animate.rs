@@ -74,12 +74,8 @@ pub struct Animate {
 /// Frames of a film by which the studio's camera is chosen.
 const FRAMED: u32 = 24;
 
-/// What makes a frame of the file's scene.
-#[derive(Clone, Copy)]
-struct Film<'a> {
-    varied: &'a [Vary],
-    studio: Option<&'a Studio>,
-}
+/// What makes a frame of the file's scene: the keys that vary, and the studio.
+type Film<'a> = (&'a [Vary], Option<&'a Studio>);
 
 /// Where pictures go: a moving picture in this format, or a folder.
 #[derive(Clone, Copy)]
@@ -128,10 +124,7 @@ impl Animate {
         let varied: Vec<_> = varied.collect::<Result<_>>()?;
         let mut file = SceneFile::open(scene_file)?;
         let studio = self.studio(&mut file, &varied)?;
-        let film = Film {
-            varied: &varied,
-            studio: studio.as_ref(),
-        };
+        let film: Film = (&varied, studio.as_ref());
         let first = self.scene_at(&mut file, film, 0)?;
         let outputs = outputs.and("--output", frames.iter().chain(&old), &[]);
         outputs.spare(file.files())?;
@@ -337,9 +330,9 @@ impl Animate {
         Ok((scene, angle))
     }
 
-    fn scene_at(&self, file: &mut SceneFile, film: Film, n: u32) -> Result<Scene> {
-        let (mut scene, angle) = self.scene_before_turn(file, film.varied, n)?;
-        if let Some(studio) = film.studio {
+    fn scene_at(&self, file: &mut SceneFile, (varied, studio): Film, n: u32) -> Result<Scene> {
+        let (mut scene, angle) = self.scene_before_turn(file, varied, n)?;
+        if let Some(studio) = studio {
             studio.place_camera(&mut scene);
         }
         if self.turn.is_some() {
@@ -349,7 +342,7 @@ impl Animate {
                 lights.for_each(|light| light.direction = about * light.direction);
             }
         }
-        if let Some(studio) = film.studio {
+        if let Some(studio) = studio {
             studio.furnish(&mut scene);
         }
         Ok(scene)
