@@ -1,11 +1,11 @@
 //! `revmap animate`: a turntable, or changing parameters, as numbered pictures or one that moves, with
 //! the time of every frame.
 
-use super::moving::{ENDINGS, Format, Motion, Playing, Stillness, claim, frames_in};
+use super::moving::{ENDINGS, Format, Playing, Stillness, claim, frames_in, remedy};
 use super::options::{Drawing, Surroundings, Tracing};
 use super::output::{self, usage};
 use super::progress::Progress;
-use super::reading::ShownOutline;
+use super::reading::Input;
 use super::samples::{Rays, Samples};
 use super::studio::Studio;
 use super::times::{self, Row};
@@ -31,11 +31,8 @@ use std::time::Instant;
     revmap animate assets/scenes/chess.toml --frames 36 --turn 360 --turntable -o out/chess\n  \
     revmap animate assets/scenes/pawn.toml --frames 240 --vary object.0.extend=0:0.1")]
 pub struct Animate {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_read = "auto" and profile_smooth = "auto"
-    scene: PathBuf,
     #[command(flatten)]
-    outline: ShownOutline,
+    input: Input,
     /// Number of frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
@@ -77,29 +74,22 @@ pub struct Animate {
 /// Frames of a film by which the studio's camera is chosen.
 const FRAMED: u32 = 24;
 
-/// The number of a frame that shows nothing, and why.
-type Blank = (u32, String);
+/// What makes a frame of the file's scene: the keys that vary, and the studio.
+type Film<'a> = (&'a [Vary], Option<&'a Studio>);
 
-/// What makes a frame of the file's scene.
+/// Where pictures go: a moving picture in this format, or a folder.
 #[derive(Clone, Copy)]
-struct Film<'a> {
-    varied: &'a [Vary],
-    studio: Option<&'a Studio>,
-}
-
-/// Where pictures go.
-#[derive(Clone, Copy)]
-enum Target<'a> {
-    Folder(&'a Path),
-    Moving(Format, &'a Path),
+struct Target<'a> {
+    path: &'a Path,
+    format: Option<Format>,
 }
 
 /// What was drawn.
 #[derive(Default)]
 struct Drawn {
     rows: Vec<Row>,
-    /// Frames that were read and show nothing.
-    blanks: Vec<Blank>,
+    /// Numbers of frames that were read and show nothing, each with the reason.
+    blanks: Vec<(u32, String)>,
     /// Frames of a moving picture.
     pictures: Vec<Picture>,
     /// Of the frames that are kept.
@@ -118,53 +108,51 @@ impl Animate {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
         let target = self.destination()?;
-        output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
-        self.outline.check(&self.scene)?;
-        let varied: Vec<_> = (self.vary.iter())
-            .map(|text| Vary::parse(text))
-            .collect::<Result<_>>()?;
-        let mut file = SceneFile::open(&self.scene)?;
-        let studio = self.studio(&mut file, &varied)?;
-        let film = Film {
-            varied: &varied,
-            studio: studio.as_ref(),
-        };
-        let first = self.scene_at(&mut file, film, 0)?;
-        let mut written: Vec<PathBuf> = self.times.iter().cloned().collect();
-        let mut old = Vec::new();
+        let scene_file = &self.input.scene;
+        let outputs = self.input.outline.output();
+        let mut outputs = outputs.and("--times", &self.times, &["csv"]);
+        let (mut frames, mut old) = (Vec::new(), Vec::new());
         match target {
-            Some(Target::Folder(folder)) => {
-                written.extend((0..self.frames).map(|n| self.picture(folder, n)));
-                old = frames_in(folder);
+            Some(Target { format: None, path }) => {
+                frames.extend((0..self.frames).map(|n| self.picture(path, n)));
+                old = frames_in(path);
             }
-            Some(Target::Moving(_, path)) => written.push(path.to_owned()),
-            None => {}
+            _ => outputs = outputs.and("--output", &self.output, &ENDINGS),
         }
-        output::spare(file.files(), written.iter().chain(&old), "--output")?;
-        self.outline.finish(&file, &first, self.drawing.quiet)?;
+        outputs.check(&[scene_file])?;
+        let varied = self.vary.iter().map(|text| Vary::parse(text));
+        let varied: Vec<_> = varied.collect::<Result<_>>()?;
+        let mut file = SceneFile::open(scene_file)?;
+        let studio = self.studio(&mut file, &varied)?;
+        let film: Film = (&varied, studio.as_ref());
+        let first = self.scene_at(&mut file, film, 0)?;
+        let outputs = outputs.and("--output", frames.iter().chain(&old), &[]);
+        outputs.spare(file.files())?;
+        self.input
+            .outline
+            .finish(&file, &first, self.drawing.quiet)?;
         let (device, kept) = self.drawing.open()?;
-        if let Some(Target::Folder(folder)) = target {
-            claim(folder, &old, self.overwrite)?;
+        if let Some(Target { format: None, path }) = target {
+            claim(path, &old, self.overwrite)?;
         }
         let what = format!("drawing on {}", device.report().name);
         let progress = Progress::start(&what, self.drawing.quiet);
         let drawn = self.draw(&device, &mut file, film, &first, target, &progress)?;
-        let rows = &drawn.rows;
         device.check()?;
         kept.save(&device);
-        if let Some(Target::Moving(format, path)) = target {
+        if let Some(path) = &self.times {
+            times::write(path, &drawn.rows)?;
+        }
+        if let Some((format, path)) = target.and_then(|t| Some((t.format?, t.path))) {
             progress.say(&format!("writing {}", path.display()));
             self.playing.write(format, path, &drawn.pictures)?;
         }
         drop(progress);
-        if let Some(path) = &self.times {
-            times::write(path, rows)?;
-        }
         if !self.drawing.quiet {
             let warnings = self.warnings(&first, &varied, &drawn, target);
             warnings.iter().for_each(|w| output::warn(w));
+            self.tell(&device, &drawn.rows, target);
         }
-        self.tell(&device, rows, target);
         Ok(())
     }
 
@@ -172,9 +160,6 @@ impl Animate {
     fn destination(&self) -> Result<Option<Target<'_>>> {
         let path = self.output.as_deref();
         let format = self.playing.check(path, self.frames, self.drawing.size)?;
-        if format.is_some() {
-            output::check(&self.output, "--output", &ENDINGS, &[&self.scene])?;
-        }
         let other = ["png", "mp4", "webm", "avi", "mov", "mkv"];
         let is = |ending: &&str| path.is_some_and(|path| output::has_ending(path, ending));
         if other.iter().any(is) {
@@ -184,10 +169,7 @@ impl Animate {
             );
             return Err(usage("--output", message));
         }
-        Ok(path.map(|path| match format {
-            Some(format) => Target::Moving(format, path),
-            None => Target::Folder(path),
-        }))
+        Ok(path.map(|path| Target { path, format }))
     }
 
     fn warnings(
@@ -207,13 +189,9 @@ impl Animate {
             warnings
                 .push("nothing moves, so all frames are equal; give --turn or --vary".to_owned());
         } else if self.frames > 1 && blanks.is_empty() && drawn.stillness.stands_still() {
-            let motion = Motion {
-                scene: first,
-                step: turn / f64::from(self.frames),
-                turntable: self.turntable && !self.surroundings.studio,
-                varied,
-            };
-            warnings.push(motion.remedy());
+            let step = turn / f64::from(self.frames);
+            let turntable = self.turntable && !self.surroundings.studio;
+            warnings.push(remedy(first, step, varied, turntable));
         }
         if let Some((n, why)) = blanks.first() {
             let (count, all) = (blanks.len(), self.frames);
@@ -221,7 +199,8 @@ impl Animate {
                 "{count} of {all} frames are empty, the first is frame {n}: {why}"
             ));
         }
-        if matches!(target, Some(Target::Moving(Format::Gif, _))) && first.background[3] < 1.0 {
+        let format = target.and_then(|target| target.format);
+        if format == Some(Format::Gif) && first.background[3] < 1.0 {
             warnings.push("background: a GIF has no soft edges, so white is behind what is transparent; give another with --set background=[r,g,b,1], or write .webp".to_owned());
         }
         warnings
@@ -252,54 +231,40 @@ impl Animate {
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
         for n in 0..self.frames {
             let scene = self.scene_at(file, film, n)?;
-            let mut row = Row {
-                gpu_ms: Some(0.0),
-                ..Row::default()
-            };
+            let mut row = Row::default();
             let mut draw = |renderer: &mut MethodRenderer, scene: &Scene| {
                 let start = Instant::now();
                 renderer.update(scene)?;
-                row.prepare_ms += start.elapsed().as_secs_f64() * 1e3;
-                let times = renderer.draw()?;
-                row.prepare_ms += times.prepare_ms;
-                row.gpu_ms = row.gpu_ms.zip(times.gpu_ms).map(|(a, b)| a + b);
-                row.frame_ms += times.frame_ms;
+                row.times.prepare_ms += start.elapsed().as_secs_f64() * 1e3;
+                row.times.add(renderer.draw()?);
                 Ok(())
             };
-            match target {
-                Some(target) => {
-                    let mut frame = self.samples.draw(&scene, |scene| {
-                        draw(&mut renderer, scene)?;
-                        renderer.read()
-                    })?;
-                    if let Some(adaptive) = &mut adaptive {
-                        let times = adaptive.refine(&scene, &mut frame)?.times;
-                        row.prepare_ms += times.prepare_ms;
-                        row.gpu_ms = row.gpu_ms.zip(times.gpu_ms).map(|(a, b)| a + b);
-                        row.frame_ms += times.frame_ms;
-                    }
-                    let picture = match target {
-                        Target::Folder(_) => Picture::of(&frame)?,
-                        Target::Moving(format, _) => format.picture(&frame)?,
-                    };
-                    drawn.stillness.add(&picture);
-                    match target {
-                        Target::Folder(folder) => {
-                            let path = self.picture(folder, n);
-                            picture.write_png(&path).map_err(|e| e.in_file(path))?;
-                        }
-                        Target::Moving(..) => drawn.pictures.push(picture),
-                    }
-                    drawn
-                        .blanks
-                        .extend(blank(&scene, &frame).map(|why| (n, why)));
+            if let Some(Target { path, format }) = target {
+                let mut frame = self.samples.draw(&scene, |scene| {
+                    draw(&mut renderer, scene)?;
+                    renderer.read()
+                })?;
+                if let Some(adaptive) = &mut adaptive {
+                    row.times.add(adaptive.refine(&scene, &mut frame)?.times);
                 }
-                None => {
-                    draw(&mut renderer, &scene)?;
-                    if n == 0 {
-                        let why = blank(&scene, &renderer.read()?);
-                        drawn.blanks.extend(why.map(|why| (n, why)));
-                    }
+                let picture = match format {
+                    Some(format) => format.picture(&frame)?,
+                    None => Picture::of(&frame)?,
+                };
+                drawn.stillness.add(&picture);
+                if format.is_some() {
+                    drawn.pictures.push(picture);
+                } else {
+                    let path = self.picture(path, n);
+                    picture.write_png(&path).map_err(|e| e.in_file(path))?;
+                }
+                let why = blank(&scene, &frame);
+                drawn.blanks.extend(why.map(|why| (n, why)));
+            } else {
+                draw(&mut renderer, &scene)?;
+                if n == 0 {
+                    let why = blank(&scene, &renderer.read()?);
+                    drawn.blanks.extend(why.map(|why| (n, why)));
                 }
             }
             let counts = (device.pipelines_compiled(), renderer.rebuild_count());
@@ -324,7 +289,7 @@ impl Animate {
             return Ok(None);
         };
         let keys = varied.iter().map(|v| v.at(0.0));
-        let sets: Vec<_> = self.drawing.set.iter().cloned().chain(keys).collect();
+        let sets: Vec<_> = self.input.set.iter().cloned().chain(keys).collect();
         if file.chooses_camera(&sets) {
             let step = self.frames.div_ceil(FRAMED);
             let frames = (0..self.frames).step_by(step as usize);
@@ -350,7 +315,7 @@ impl Animate {
             true => 1.0 - (1.0 - 2.0 * around).abs(),
             false => f64::from(n) / f64::from((self.frames - 1).max(1)),
         };
-        let mut sets = self.surroundings.sets(file, &self.drawing.set);
+        let mut sets = self.surroundings.sets(file, &self.input.set);
         sets.extend(varied.iter().map(|v| v.at(part)));
         let scene = file.scene(&sets).map_err(|mut e| {
             let key = e.key.as_deref().filter(|_| e.kind == ErrorKind::Usage);
@@ -365,9 +330,9 @@ impl Animate {
         Ok((scene, angle))
     }
 
-    fn scene_at(&self, file: &mut SceneFile, film: Film, n: u32) -> Result<Scene> {
-        let (mut scene, angle) = self.scene_before_turn(file, film.varied, n)?;
-        if let Some(studio) = film.studio {
+    fn scene_at(&self, file: &mut SceneFile, (varied, studio): Film, n: u32) -> Result<Scene> {
+        let (mut scene, angle) = self.scene_before_turn(file, varied, n)?;
+        if let Some(studio) = studio {
             studio.place_camera(&mut scene);
         }
         if self.turn.is_some() {
@@ -377,16 +342,13 @@ impl Animate {
                 lights.for_each(|light| light.direction = about * light.direction);
             }
         }
-        if let Some(studio) = film.studio {
+        if let Some(studio) = studio {
             studio.furnish(&mut scene);
         }
         Ok(scene)
     }
 
     fn tell(&self, device: &Device, rows: &[Row], target: Option<Target>) {
-        if self.drawing.quiet {
-            return;
-        }
         output::device(device.report());
         let [times, costs] = times::told(rows, device.pipelines_compiled());
         if self.drawing.verbose {
@@ -397,7 +359,7 @@ impl Animate {
             count => format!("{count} frames"),
         };
         output::result(&match target {
-            Some(Target::Moving(_, path)) => {
+            Some(Target { path, format }) if format.is_some() => {
                 let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
                 let (seconds, size) = (self.playing.seconds(self.frames), size(bytes));
                 format!(
@@ -406,7 +368,7 @@ impl Animate {
                     path.display()
                 )
             }
-            Some(Target::Folder(path)) => format!("{frames}: {}", path.display()),
+            Some(Target { path, .. }) => format!("{frames}: {}", path.display()),
             None => format!(
                 "{frames}, {times}; no pictures are kept (--output FILE.webp or DIR keeps them)"
             ),

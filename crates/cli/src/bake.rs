@@ -1,17 +1,16 @@
 //! `revmap bake`: the maps that a solid is drawn from, as images.
 
+use super::failure::with_options;
 use super::options::named;
-use super::output;
+use super::output::{self, Outputs};
 use super::progress::Progress;
 use super::reading::tell;
 use clap::Args;
-use revmap::error::{Error, ErrorKind, Result};
-use revmap::maps::{BakeOptions, MapSource, Projection, ShapeMap, SlopeFilter};
+use revmap::error::Result;
+use revmap::maps::{BakeOptions, MapSource, ShapeMap, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::Object;
-use revmap_files::{
-    ProfileAxis, ProfileOptions, ProfileRead, Smooth, mark_projection, projection_of,
-};
+use revmap_files::{ProfileAxis, ProfileOptions, ProfileRead, Smooth, projection_of};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -33,9 +32,6 @@ pub struct Bake {
     /// Source of distances [default: exact]
     #[arg(long, value_name = "SOURCE", value_parser = named(&revmap_files::MAP_SOURCES))]
     map_source: Option<MapSource>,
-    /// Puts the projection of textures into the map's file name, as in vase.spherical.png
-    #[arg(long, value_name = "NAME", value_parser = named(&Projection::NAMES))]
-    projection: Option<Projection>,
     /// A picture of heights, whose displacement map is written beside the shape map, as
     /// vase.displacement.png
     #[arg(long, value_name = "FILE")]
@@ -80,11 +76,7 @@ impl ProfileArguments {
         let default = ProfileOptions::default();
         let by_threshold =
             self.profile_axis.is_some() || self.profile_threshold.is_some() || self.profile_invert;
-        let read = if by_threshold {
-            ProfileRead::Threshold
-        } else {
-            read
-        };
+        let read = [read, ProfileRead::Threshold][usize::from(by_threshold)];
         ProfileOptions {
             axis: self.profile_axis.unwrap_or(default.axis),
             read: self.profile_read.unwrap_or(read),
@@ -95,10 +87,12 @@ impl ProfileArguments {
         }
     }
 
-    /// The file's name.
-    pub fn name(&self) -> String {
+    /// Prints warnings of the profile, and what a photograph was read as.
+    pub fn tell(&self, read: &Profile) {
+        let warnings = read.warnings.iter();
+        warnings.for_each(|w| output::warn(&with_options(w)));
         let name = self.profile.file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
+        tell(&name.to_string_lossy(), &read.notes);
     }
 
     /// Reads the profile.
@@ -112,15 +106,14 @@ impl ProfileArguments {
 
 impl Bake {
     pub fn run(self) -> Result<()> {
-        let map_file = match self.projection {
-            Some(projection) => marked(projection, &self.output)?,
-            None => self.output.clone(),
-        };
-        let slopes_file = self.height_map.as_ref().map(|_| beside(&map_file));
+        let map_file = &self.output;
+        let slopes_file = self.height_map.as_ref().map(|_| beside(map_file));
         let mut inputs = vec![self.profile.profile.as_path()];
         inputs.extend(self.height_map.as_deref());
-        output::check([&map_file], "--output", &["png", "exr"], &inputs)?;
-        output::check(&slopes_file, "--output", &["png"], &inputs)?;
+        Outputs::default()
+            .and("--output", [map_file], &["png", "exr"])
+            .and("--output", &slopes_file, &["png"])
+            .check(&inputs)?;
 
         let begin = Instant::now();
         let progress = Progress::start("baking", self.quiet);
@@ -138,12 +131,10 @@ impl Bake {
         let took = begin.elapsed().as_secs_f64() * 1e3;
         drop(progress);
 
-        revmap_files::write_shape_map(&map, &map_file)?;
+        revmap_files::write_shape_map(&map, map_file)?;
         if !self.quiet {
-            let warnings = profile.warnings.iter();
-            warnings.for_each(|w| output::warn(&with_options(w)));
-            tell(&self.profile.name(), &profile.notes);
-            let old = beside(&map_file);
+            self.profile.tell(&profile);
+            let old = beside(map_file);
             if slopes.is_none() && old.exists() {
                 output::warn(&format!(
                     "{}: is of an earlier run, and stays beside the new map; remove it, or give --height-map",
@@ -174,44 +165,12 @@ impl Bake {
     }
 }
 
-/// A message with options in place of the keys of a scene file.
-pub fn with_options(message: &str) -> String {
-    let mut text = message.replace("profile_invert = true", "profile_invert");
-    for key in [
-        "axis",
-        "invert",
-        "read",
-        "smooth",
-        "threshold",
-        "min_stroke",
-    ] {
-        let option = format!("--profile-{}", key.replace('_', "-"));
-        let key = format!("profile_{key}");
-        text = text.replace(&format!("{key} = "), &format!("{option} "));
-        text = text.replace(&key, &option);
-    }
-    text
-}
-
 /// A number of pixels, or `auto`.
 fn smooth(text: &str) -> std::result::Result<Smooth, String> {
     match (text, text.parse()) {
         ("auto", _) => Ok(Smooth::Auto),
         (_, Ok(pixels)) => Ok(Smooth::Pixels(pixels)),
         _ => Err("give a number of pixels, or auto".to_owned()),
-    }
-}
-
-/// `file` with the projection in its name; a name with another projection is refused.
-fn marked(projection: Projection, file: &Path) -> Result<PathBuf> {
-    match projection_of(file) {
-        Some(other) if other != projection => {
-            let name = other.name();
-            let message = format!("is named {name}; give it the name or the option of the other");
-            let error = Error::new(ErrorKind::Usage, message);
-            Err(error.at_key("--projection").in_file(file))
-        }
-        _ => Ok(mark_projection(file, projection)),
     }
 }
 
@@ -223,41 +182,4 @@ fn beside(map: &Path) -> PathBuf {
         None => map.to_path_buf(),
     };
     unmarked.with_extension("displacement.png")
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    #[test]
-    fn keys_of_scenes_become_options() {
-        let text = with_options(
-            "set profile_axis = 0.1 and profile_invert = true, or profile_smooth; profile_min_stroke = 0.003",
-        );
-        assert_eq!(
-            text,
-            "set --profile-axis 0.1 and --profile-invert, or --profile-smooth; --profile-min-stroke 0.003"
-        );
-    }
-
-    #[test]
-    fn names_of_files() {
-        let name = |file: &str| marked(Projection::Arc, Path::new(file));
-        for (file, wanted) in [
-            ("a/vase.png", "a/vase.arc.png"),
-            ("a/vase.arc.exr", "a/vase.arc.exr"),
-        ] {
-            assert_eq!(name(file).unwrap(), Path::new(wanted));
-        }
-        let error = name("vase.planar.png").unwrap_err();
-        assert_eq!(error.kind, ErrorKind::Usage);
-        for (file, wanted) in [
-            ("a/vase.png", "a/vase.displacement.png"),
-            ("vase.arc.exr", "vase.displacement.png"),
-            ("v.2.png", "v.2.displacement.png"),
-        ] {
-            assert_eq!(beside(Path::new(file)), Path::new(wanted));
-        }
-    }
 }

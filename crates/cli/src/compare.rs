@@ -2,7 +2,7 @@
 
 mod pictures;
 
-use super::output;
+use super::output::{self, Outputs};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_compare::{CompareOptions, Comparison, Reference, ViewErrors, heat_sheet};
@@ -28,9 +28,6 @@ pub struct Compare {
     /// A sheet of heat maps, one for each measure, of EXR files
     #[arg(long, value_name = "FILE.png")]
     heat: Option<PathBuf>,
-    /// Length of a texel of the shape map in world units, the unit of depth errors [default: 1/512]
-    #[arg(long, value_name = "LENGTH", value_parser = positive)]
-    texel: Option<f64>,
     /// The scene or profile that the frames show: adds distances of silhouettes from the true outline
     /// below a pixel, and depth errors in pixels of the view
     #[arg(long, value_name = "SCENE")]
@@ -42,7 +39,7 @@ pub struct Compare {
     #[arg(long)]
     exact: bool,
     /// Fail if PNG pictures differ visibly: more than 0.2 % of their channels by more than 3 of 255
-    #[arg(long, conflicts_with_all = ["exact", "heat", "texel", "scene"])]
+    #[arg(long, conflicts_with_all = ["exact", "heat", "scene"])]
     alike: bool,
     /// Print one JSON object on standard output in place of text
     #[arg(long)]
@@ -52,7 +49,7 @@ pub struct Compare {
 impl Compare {
     pub fn run(self) -> Result<()> {
         let png = |file: &&PathBuf| output::has_ending(file, "png");
-        let of_depth = self.heat.is_some() || self.texel.is_some() || self.scene.is_some();
+        let of_depth = self.heat.is_some() || self.scene.is_some();
         if [&self.a, &self.b].iter().all(png) && !of_depth {
             return pictures::run([&self.a, &self.b], (self.exact, self.alike), self.json);
         }
@@ -67,10 +64,10 @@ impl Compare {
                 return Err(Error::new(ErrorKind::Usage, message).in_file(file));
             }
         }
-        output::check(&self.heat, "--heat", &["png"], &[&self.a, &self.b])?;
+        let outputs = Outputs::default().and("--heat", &self.heat, &["png"]);
+        outputs.check(&[&self.a, &self.b])?;
         let (a, b) = (read_exr(&self.a)?, read_exr(&self.b)?);
-        let mut options = CompareOptions::default();
-        options.texel = self.texel.unwrap_or(options.texel);
+        let options = CompareOptions::default();
         let mut truth = Reference::new(&a, &options)?;
         if let Some(scene) = &self.scene {
             truth = truth.of_scene(&SceneFile::open(scene)?.scene(&self.set)?)?;
@@ -126,11 +123,4 @@ fn as_json(found: &Comparison, difference: Option<&str>) -> serde_json::Value {
         "flip": found.flip,
         "first_difference": difference,
     })
-}
-
-fn positive(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("give a number above 0".to_owned()),
-    }
 }

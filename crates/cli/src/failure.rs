@@ -7,20 +7,20 @@ use revmap::error::{Error, ErrorKind};
 use revmap::gpu::DEVICE_VARIABLE;
 use std::process::ExitCode;
 
-/// Keys of the library, each with the option that sets it.
-const OPTIONS: [(&str, &str); 12] = [
-    ("device", "--device"),
-    ("out", "--out"),
-    ("profile_axis", "--profile-axis"),
-    ("profile_invert", "--profile-invert"),
-    ("profile_min_stroke", "--profile-min-stroke"),
-    ("profile_read", "--profile-read"),
-    ("profile_smooth", "--profile-smooth"),
-    ("profile_threshold", "--profile-threshold"),
-    ("sets", "--set"),
-    ("size", "--size"),
-    ("solver", "--solver"),
-    ("tolerance", "--tolerance"),
+/// Keys of the library that options set. The option of `sets` is `--set`.
+const KEYS: [&str; 12] = [
+    "device",
+    "out",
+    "profile_axis",
+    "profile_invert",
+    "profile_min_stroke",
+    "profile_read",
+    "profile_smooth",
+    "profile_threshold",
+    "sets",
+    "size",
+    "solver",
+    "tolerance",
 ];
 
 /// Prints the failure in one line, and returns the exit code: that of a signal which ended the run,
@@ -45,11 +45,11 @@ fn text(mut error: Error) -> String {
     // A scene's key that has the name of an option.
     let of_file = kind == ErrorKind::Content && error.file.is_some();
     let meant = error.key.as_deref().and_then(option).filter(|_| of_file);
-    if let Some(option) = meant {
+    if let Some(option) = &meant {
         error.message += &format!("; it is the option {option} of the command line");
     }
     error.key = error.key.map(|key| match option(&key) {
-        Some(option) if meant.is_none() => option.to_owned(),
+        Some(option) if meant.is_none() => option,
         // A key of the scene that was set on the command line.
         None if kind == ErrorKind::Usage && !key.starts_with('-') && key != DEVICE_VARIABLE => {
             format!("--set {key}")
@@ -60,9 +60,22 @@ fn text(mut error: Error) -> String {
     format!("{error}{}", if named { "" } else { remedy(kind) })
 }
 
-fn option(key: &str) -> Option<&'static str> {
-    let found = OPTIONS.iter().find(|(known, _)| *known == key);
-    found.map(|(_, option)| *option)
+/// The option that sets a key.
+fn option(key: &str) -> Option<String> {
+    let name = if key == "sets" { "set" } else { key };
+    KEYS.contains(&key)
+        .then(|| format!("--{}", name.replace('_', "-")))
+}
+
+/// A message about a profile with options in place of the keys of a scene file.
+pub fn with_options(message: &str) -> String {
+    let mut text = message.replace("profile_invert = true", "profile_invert");
+    for key in KEYS.iter().filter(|key| key.starts_with("profile_")) {
+        let option = option(key).unwrap_or_default();
+        text = text.replace(&format!("{key} = "), &format!("{option} "));
+        text = text.replace(key, &option);
+    }
+    text
 }
 
 /// The options that help with a kind of failure, if any.
@@ -148,20 +161,13 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_of_clap_is_one_line() {
-        for (text, wanted) in [
-            (
-                "error: unexpected argument '--siez' found\n\n  tip: a similar argument exists: '--size'\n\n\
-                 Usage: revmap render <SCENE>\n\nFor more information, try '--help'.\n",
-                "unexpected argument '--siez' found; a similar argument exists: '--size'; see `revmap render --help`",
-            ),
-            (
-                "error: the following required arguments were not provided:\n  --output <FILE>\n\n\
-                 Usage: revmap bake [OPTIONS]\n",
-                "the following required arguments were not provided: --output <FILE>; see `revmap bake --help`",
-            ),
-        ] {
-            assert_eq!(one_line(text), wanted);
-        }
+    fn keys_of_scenes_become_options() {
+        let text = with_options(
+            "set profile_axis = 0.1 and profile_invert = true, or profile_smooth; profile_min_stroke = 0.003",
+        );
+        assert_eq!(
+            text,
+            "set --profile-axis 0.1 and --profile-invert, or --profile-smooth; --profile-min-stroke 0.003"
+        );
     }
 }

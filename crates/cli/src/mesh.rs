@@ -1,8 +1,9 @@
 //! `revmap mesh`: the solids of a scene as triangles.
 
+use super::options::positive;
 use super::output::{self, usage};
 use super::progress::Progress;
-use super::reading::ShownOutline;
+use super::reading::Input;
 use clap::Args;
 use revmap::error::{Error, Result};
 use revmap::scene::{Object, Scene};
@@ -22,11 +23,8 @@ same, with copies written out, and a .mtl and pictures beside it. An .stl holds 
     revmap mesh pawn.svg -o pawn.stl --set object.0.scale=[40,40,40]"
 )]
 pub struct Mesh {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_read = "auto" and profile_smooth = "auto"
-    scene: PathBuf,
     #[command(flatten)]
-    outline: ShownOutline,
+    input: Input,
     /// The file: .glb, .obj or .stl
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
@@ -36,11 +34,11 @@ pub struct Mesh {
     tolerance: f64,
     /// The largest distance in pixels, in place of --tolerance: those in the middle of a picture
     /// through the scene's camera
-    #[arg(long, value_name = "PIXELS", conflicts_with = "tolerance")]
+    #[arg(long, value_name = "PIXELS", conflicts_with = "tolerance", value_parser = positive)]
     pixels: Option<f64>,
     /// World units from the eye to the solids, for --pixels [default: to the nearest copy of each, as
     /// the scene has it]
-    #[arg(long, value_name = "LENGTH", requires = "pixels")]
+    #[arg(long, value_name = "LENGTH", requires = "pixels", value_parser = positive)]
     distance: Option<f64>,
     /// Rows of the picture, for --pixels [default: 1080]
     #[arg(long, value_name = "N", requires = "pixels", value_parser = clap::value_parser!(u32).range(1..=16384))]
@@ -49,9 +47,6 @@ pub struct Mesh {
     /// from it lose digits in an .stl, and in most programs that read the other formats
     #[arg(long)]
     at_origin: bool,
-    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
     /// Say nothing but failures
     #[arg(long, short)]
     quiet: bool,
@@ -59,16 +54,23 @@ pub struct Mesh {
 
 impl Mesh {
     pub fn run(self) -> Result<()> {
-        output::check([&self.output], "--output", &MESH_ENDINGS, &[&self.scene])?;
-        self.outline.check(&self.scene)?;
-        let mut file = SceneFile::open(&self.scene)?;
-        let mut scene = file.scene(&self.set)?;
+        let Input {
+            scene,
+            outline,
+            set,
+        } = &self.input;
+        let outputs = outline.output();
+        let outputs = outputs.and("--output", [&self.output], &MESH_ENDINGS);
+        outputs.check(&[scene])?;
+        let mut file = SceneFile::open(scene)?;
+        let mut scene = file.scene(set)?;
         if self.at_origin {
             move_to_origin(&mut scene);
         }
         let written = mesh_files(&scene, &self.output);
-        output::spare(file.files(), &written, "--output")?;
-        self.outline.finish(&file, &scene, self.quiet)?;
+        let outputs = outputs.and("--output", &written[1..], &[]);
+        outputs.spare(file.files())?;
+        outline.finish(&file, &scene, self.quiet)?;
         let progress = Progress::start("making triangles", self.quiet);
         let mut meshes = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
@@ -112,13 +114,6 @@ impl Mesh {
         let Some(pixels) = self.pixels else {
             return Ok(self.tolerance);
         };
-        let above_0 = |length: f64| length > 0.0 && length.is_finite();
-        if !above_0(pixels) {
-            return Err(usage("--pixels", "is no length; give a number above 0"));
-        }
-        if self.distance.is_some_and(|d| !above_0(d)) {
-            return Err(usage("--distance", "is no length; give a number above 0"));
-        }
         let rows = self.rows.unwrap_or(1080);
         pixel_tolerance(object, &scene.camera, rows, pixels, self.distance).ok_or_else(|| {
             let message = format!(
@@ -147,9 +142,9 @@ impl Mesh {
             }
             Some(key) => Error {
                 key: Some(format!("object.{number}.{key}")),
-                ..error.in_file(&self.scene)
+                ..error.in_file(&self.input.scene)
             },
-            None => error.in_file(&self.scene),
+            None => error.in_file(&self.input.scene),
         }
     }
 }

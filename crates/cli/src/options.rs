@@ -107,9 +107,6 @@ pub struct Drawing {
     /// it has]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
     pub memory_budget: Option<u64>,
-    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
     /// Say nothing but failures
     #[arg(long, short)]
     pub quiet: bool,
@@ -145,11 +142,22 @@ impl Drawing {
         }
     }
 
-    /// Opens the device with the pipelines of earlier runs and the memory limit.
+    /// Opens the device with the memory limit and the pipelines of earlier runs: one file per driver
+    /// in the user's cache folder. Errors with this file are no failures, since pipelines are
+    /// compiled again.
     pub fn open(&self) -> Result<(Device, Kept)> {
-        let (device, kept) = open(&self.device)?;
+        let device = self.device.open()?;
         device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
-        Ok((device, kept))
+        let report = device.report();
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let name = format!("{} {}", report.name, report.driver);
+        let name: String = name.chars().map(plain).collect();
+        let file = cache::folder().map(|folder| folder.join(format!("{name}.pipelines")));
+        if let Some(data) = file.as_deref().and_then(cache::read) {
+            // Data of another driver is ignored, and a damaged file refused.
+            let _ = device.add_pipeline_cache(&data);
+        }
+        Ok((device, Kept { file }))
     }
 
     /// Warnings about the scene, and about options that the method ignores.
@@ -219,6 +227,24 @@ impl Surroundings {
         let studio = || Studio::new(self.ground, self.background);
         self.studio.then(studio).transpose()
     }
+
+    /// The scene of a file without the studio, and the studio. Its camera is chosen for a profile in
+    /// place of a scene.
+    pub fn read(
+        &self,
+        file: &mut SceneFile,
+        sets: &[String],
+        aspect: f64,
+    ) -> Result<(Scene, Option<Studio>)> {
+        let mut studio = self.studio()?;
+        let sets = self.sets(file, sets);
+        let mut scene = file.scene(&sets)?;
+        if let Some(studio) = studio.as_mut().filter(|_| file.chooses_camera(&sets)) {
+            studio.frame(&[(scene.clone(), 0.0)], aspect);
+            studio.place_camera(&mut scene);
+        }
+        Ok((scene, studio))
+    }
 }
 
 /// A colour of CSS: linear RGB with alpha.
@@ -239,31 +265,10 @@ pub struct Kept {
     file: Option<PathBuf>,
 }
 
-/// Opens a device, with the pipelines of earlier runs: one file per driver in the user's cache folder.
-/// Errors with this file are no failures, since pipelines are compiled again.
-fn open(choice: &DeviceChoice) -> Result<(Device, Kept)> {
-    let device = choice.open()?;
-    let report = device.report();
-    let name: String = format!("{} {}", report.name, report.driver)
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
-        .collect();
-    let file = cache::folder().map(|folder| folder.join(format!("{name}.pipelines")));
-    if let Some(data) = file.as_deref().and_then(cache::read) {
-        // Data of another driver is ignored, and a damaged file refused.
-        let _ = device.add_pipeline_cache(&data);
-    }
-    Ok((device, Kept { file }))
-}
-
 impl Kept {
     /// Stores the compiled pipelines, if there are any.
     pub fn save(&self, device: &Device) {
-        let Some(file) = self
-            .file
-            .as_ref()
-            .filter(|_| device.pipelines_compiled() > 0)
-        else {
+        let (Some(file), true) = (&self.file, device.pipelines_compiled() > 0) else {
             return;
         };
         let Ok(data) = device.pipeline_cache_data() else {
@@ -359,6 +364,14 @@ pub fn searches(methods: &[Method]) -> Result<Vec<Solver>> {
     methods.iter().map(search).collect()
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("give a number above 0".to_owned()),
+    }
+}
+
 /// A tolerance in pixels.
 pub fn tolerance(text: &str) -> std::result::Result<Tolerance, String> {
     text.parse().map_err(|e: revmap::Error| e.message)
@@ -389,19 +402,6 @@ pub fn size(text: &str) -> std::result::Result<(u32, u32), String> {
 mod tests {
     use super::*;
     use revmap::settings::name_of;
-
-    #[test]
-    fn sizes_are_read_and_bounded() {
-        assert_eq!(size("800x600"), Ok((800, 600)));
-        assert_eq!(size("1X16384"), Ok((1, 16384)));
-        assert_eq!(size("64,48"), Err("write it as 64x48".to_owned()));
-        let negative = "the width is -5; give 1 to 16384";
-        assert_eq!(size("-5x5"), Err(negative.to_owned()));
-        let bad = "800 0x0 1x0 100000x100000 16385x1 -1x5 axb 1x2x3 99999999999999999999x1";
-        for bad in bad.split(' ').chain([""]) {
-            assert!(size(bad).is_err(), "{bad}");
-        }
-    }
 
     #[test]
     fn the_default_solver_is_told_by_its_own_name() {

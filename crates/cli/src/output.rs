@@ -99,47 +99,59 @@ pub fn usage(option: &str, message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Usage, message).at_key(option)
 }
 
-/// Checks the output files of `option` before any work. Their endings must be among `endings`, none
-/// may be named twice, none may be one of the `inputs`, and each must be writable.
-///
-/// # Errors
-/// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for files that cannot be written.
-pub fn check<'a>(
-    files: impl IntoIterator<Item = &'a PathBuf>,
-    option: &str,
-    endings: &[&str],
-    inputs: &[&Path],
-) -> Result<()> {
-    let files: Vec<_> = files.into_iter().collect();
-    for (i, file) in files.iter().enumerate() {
-        if !endings.iter().any(|ending| has_ending(file, ending)) {
-            let message = format!("ends in none of .{}; name it so", endings.join(", ."));
-            return Err(usage(option, message).in_file(file));
-        }
-        let real = destination(file);
-        if files[..i].iter().any(|other| destination(other) == real) {
-            let message = "is named twice; name each file once";
-            return Err(usage(option, message).in_file(file));
-        }
-        check_writable(file).map_err(|e| e.at_key(option).in_file(file))?;
-    }
-    spare(inputs.iter().copied(), files, option)
-}
+/// The output files of a command, each with the option that names it and the endings that it may
+/// have; without endings it may have any.
+#[derive(Default)]
+pub struct Outputs<'a>(Vec<(&'static str, &'a Path, &'a [&'a str])>);
 
-/// Refuses to write any of `files` over an input.
-///
-/// # Errors
-/// [`ErrorKind::Usage`], with the file's name.
-pub fn spare<'a>(
-    inputs: impl Iterator<Item = &'a Path>,
-    files: impl IntoIterator<Item = &'a PathBuf>,
-    option: &str,
-) -> Result<()> {
-    let inputs: Vec<_> = inputs.map(destination).collect();
-    let over = |file: &&PathBuf| inputs.contains(&destination(file));
-    match files.into_iter().find(over) {
-        None => Ok(()),
-        Some(file) => Err(usage(option, "is read as well; write to another file").in_file(file)),
+impl<'a> Outputs<'a> {
+    /// The files of another option, too.
+    pub fn and(
+        mut self,
+        option: &'static str,
+        files: impl IntoIterator<Item = &'a PathBuf>,
+        endings: &'a [&'a str],
+    ) -> Self {
+        let files = files.into_iter();
+        self.0
+            .extend(files.map(|file| (option, file.as_path(), endings)));
+        self
+    }
+
+    /// Checks the files before any work. None may be named twice or be one of the `inputs`, and each
+    /// must be writable.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for files that cannot be written.
+    pub fn check(&self, inputs: &[&Path]) -> Result<()> {
+        for (n, (option, file, endings)) in self.0.iter().enumerate() {
+            if !endings.is_empty() && !endings.iter().any(|ending| has_ending(file, ending)) {
+                let message = format!("ends in none of .{}; name it so", endings.join(", ."));
+                return Err(usage(option, message).in_file(file));
+            }
+            let real = destination(file);
+            if self.0[..n].iter().any(|(_, o, _)| destination(o) == real) {
+                let message = "is named twice; name each file once";
+                return Err(usage(option, message).in_file(file));
+            }
+            check_writable(file).map_err(|e| e.at_key(*option).in_file(file))?;
+        }
+        self.spare(inputs.iter().copied())
+    }
+
+    /// Refuses to write any of the files over an input.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Usage`], with the file's name.
+    pub fn spare<'b>(&self, inputs: impl Iterator<Item = &'b Path>) -> Result<()> {
+        let inputs: Vec<_> = inputs.map(destination).collect();
+        let over = |(_, file, _): &&(_, &Path, _)| inputs.contains(&destination(file));
+        self.0
+            .iter()
+            .find(over)
+            .map_or(Ok(()), |(option, file, _)| {
+                Err(usage(option, "is read as well; write to another file").in_file(file))
+            })
     }
 }
 

@@ -1,8 +1,8 @@
 //! `revmap profile`: the outline that is drawn, as a drawing of a few curves.
 
-use super::bake::{ProfileArguments, with_options};
+use super::bake::ProfileArguments;
 use super::output::{self, usage};
-use super::reading::{ShownOutline, tell};
+use super::reading::ShownOutline;
 use clap::Args;
 use revmap::error::Result;
 use revmap_files::{ProfileRead, Smooth, show_outline, write_outline};
@@ -35,13 +35,9 @@ pub struct Profile {
 
 impl Profile {
     pub fn run(self) -> Result<()> {
-        output::check(
-            [&self.output],
-            "--output",
-            &["svg"],
-            &[&self.profile.profile],
-        )?;
-        self.outline.check(&self.profile.profile)?;
+        let outputs = self.outline.output();
+        let outputs = outputs.and("--output", [&self.output], &["svg"]);
+        outputs.check(&[&self.profile.profile])?;
         // As `render` reads a profile in place of a scene.
         let options = self.profile.options(ProfileRead::Auto, Smooth::Auto);
         let profile = self.profile.read(options)?;
@@ -53,9 +49,7 @@ impl Profile {
                 None => e,
             })?;
         if !self.quiet {
-            let warnings = profile.warnings.iter();
-            warnings.for_each(|w| output::warn(&with_options(w)));
-            tell(&self.profile.name(), &profile.notes);
+            self.profile.tell(&profile);
             if written.changed > CHANGED {
                 output::warn(&format!(
                     "--tolerance: {:.0} % of the solid's area changed; parts thinner than the tolerance merge or vanish, give a smaller one",

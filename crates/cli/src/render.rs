@@ -2,14 +2,14 @@
 
 use super::options::{self, Drawing, Surroundings, Tracing};
 use super::progress::Progress;
-use super::reading::ShownOutline;
+use super::reading::Input;
 use super::samples::Samples;
 use super::{levels, output};
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
-use revmap::gpu::{Device, DeviceReport, INSTANCE_BYTES, ObjectCost};
-use revmap::scene::{Object, Scene};
+use revmap::gpu::{Device, DeviceReport, ObjectCost};
+use revmap::scene::Scene;
 use revmap::settings::{Planes, Tolerance, name_of};
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::plan::method::{Edges, Method, MethodSettings};
@@ -18,8 +18,8 @@ use revmap_offscreen::Times;
 use revmap_offscreen::antialias;
 use revmap_reference as reference;
 use revmap_searches::folder;
-use serde_json::json;
-use std::path::{Path, PathBuf};
+use serde_json::{Value, json};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Draws one frame of a scene, off screen
@@ -29,11 +29,8 @@ use std::time::Instant;
     revmap render assets/profiles/pawn.svg -o pawn.png --samples 16 --set object.0.extend=0.02\n  \
     revmap render assets/scenes/pawn.toml -o truth.exr --stage reference --size 400x300")]
 pub struct Render {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_read = "auto" and profile_smooth = "auto"
-    scene: PathBuf,
     #[command(flatten)]
-    outline: ShownOutline,
+    input: Input,
     /// Picture file: .png (8-bit sRGB) or .exr (float channels); may be given more than once
     #[arg(long, short, value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
@@ -61,46 +58,43 @@ struct Picture {
     /// `None` for the reference.
     device: Option<DeviceReport>,
     times: Times,
+    work: DeviceWork,
+}
+
+/// What the device did for a picture, and the memory that it took.
+#[derive(Default)]
+struct DeviceWork {
     /// Mean number of adaptive rays of a pixel beside the first.
     extra_rays: Option<f64>,
     map_bytes: [u64; 2],
     notes: Vec<String>,
     costs: Vec<ObjectCost>,
     device_bytes: u64,
-    warnings: Vec<String>,
 }
 
 impl Render {
     pub fn run(self) -> Result<()> {
-        output::check(&self.output, "--output", &["png", "exr"], &[&self.scene])?;
-        let pictures = self.output.iter().chain(&self.levels);
-        output::check(pictures, "--levels", &["png", "exr"], &[&self.scene])?;
-        output::check(&self.levels, "--levels", &["png"], &[])?;
-        output::check(&self.show_rays, "--show-rays", &["png"], &[&self.scene])?;
+        let outputs = self.input.outline.output();
+        let outputs = outputs
+            .and("--output", &self.output, &["png", "exr"])
+            .and("--levels", &self.levels, &["png"])
+            .and("--show-rays", &self.show_rays, &["png"]);
+        outputs.check(&[&self.input.scene])?;
         let reference = self.drawing.stage == Tracing::Reference;
         self.samples.check(reference, self.show_rays.is_some())?;
-        self.outline.check(&self.scene)?;
         let begin = Instant::now();
-        let progress = Progress::start(
-            &format!("reading {}", self.scene.display()),
-            self.drawing.quiet,
-        );
-        let mut file = SceneFile::open(&self.scene)?;
-        let studio = self.surroundings.studio()?;
-        let sets = self.surroundings.sets(&file, &self.drawing.set);
-        let mut scene = file.scene(&sets)?;
-        if let Some(mut studio) = studio {
-            if file.chooses_camera(&sets) {
-                studio.frame(&[(scene.clone(), 0.0)], self.drawing.aspect());
-                studio.place_camera(&mut scene);
-            }
+        let reading = format!("reading {}", self.input.scene.display());
+        let progress = Progress::start(&reading, self.drawing.quiet);
+        let mut file = SceneFile::open(&self.input.scene)?;
+        let (sets, aspect) = (&self.input.set, self.drawing.aspect());
+        let (mut scene, studio) = self.surroundings.read(&mut file, sets, aspect)?;
+        if let Some(studio) = studio {
             studio.furnish(&mut scene);
         }
         drop(progress);
-        output::spare(file.files(), &self.output, "--output")?;
-        output::spare(file.files(), &self.levels, "--levels")?;
+        outputs.spare(file.files())?;
         let silent = self.drawing.quiet || self.json;
-        self.outline.finish(&file, &scene, silent)?;
+        self.input.outline.finish(&file, &scene, silent)?;
         let loading = milliseconds(begin);
         let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         // Searches that run out of steps are counted beside the planes; such pixels cause a
@@ -120,26 +114,38 @@ impl Render {
         if self.samples.antialias(floats || reference) {
             settings.edges = Edges::Silhouettes;
         }
-        let mut picture = match self.drawing.stage {
+        let picture = match self.drawing.stage {
             Tracing::Reference => self.on_cpu(&scene, &settings)?,
             Tracing::Device(_) => self.on_gpu(&scene, &settings)?,
         };
-        picture.warnings = self.drawing.warnings(&scene);
-        picture
-            .warnings
-            .extend(revmap_files::scene::blank(&scene, &picture.frame));
-        picture.warnings.extend(exhausted(&picture.frame));
+        let mut warnings = self.drawing.warnings(&scene);
+        warnings.extend(revmap_files::scene::blank(&scene, &picture.frame));
+        warnings.extend(exhausted(&picture.frame));
         let faults = other.and_then(|s| folder::check_frame(s, &picture.frame).err());
-        picture.warnings.extend(faults.map(|e| e.to_string()));
+        warnings.extend(faults.map(|e| e.to_string()));
         let writing = Instant::now();
         for file in &self.output {
-            write(&picture.frame, file)?;
+            match output::has_ending(file, "exr") {
+                true => revmap_files::write_exr(&picture.frame, file)?,
+                false => revmap_files::write_png(&picture.frame, file)?,
+            }
         }
         let spent = [loading, milliseconds(writing), milliseconds(begin)];
+        let facts = || self.facts(&scene, &settings, &picture, spent);
         if self.json {
-            self.tell_json(&scene, &settings, &picture, spent);
+            let mut facts = facts();
+            facts["warnings"] = json!(warnings);
+            output::json(&facts);
         } else if !self.drawing.quiet {
-            self.tell(&scene, &settings, &picture, spent);
+            match &picture.device {
+                Some(device) => output::device(device),
+                None => output::note("device: none, the reference is drawn on the CPU"),
+            }
+            if self.drawing.verbose {
+                details(&facts());
+            }
+            warnings.iter().for_each(|w| output::warn(w));
+            self.tell(&settings, &picture);
         }
         Ok(())
     }
@@ -169,17 +175,18 @@ impl Render {
         let all = 1 + self.samples.count() as usize;
         renderer.draw()?;
         progress.report(1, all);
-        let mut times = Vec::new();
+        let (mut times, mut count) = (Times::default(), 1);
         let mut frame = self.samples.draw(scene, |scene| {
             renderer.update(scene)?;
-            times.push(renderer.draw()?);
-            progress.report(1 + times.len(), all);
+            times.add(renderer.draw()?);
+            count += 1;
+            progress.report(count, all);
             renderer.read()
         })?;
         let mut extra_rays = None;
         if let Some(mut adaptive) = self.samples.adaptive(device, scene, settings)? {
             let refined = adaptive.refine(scene, &mut frame)?;
-            times.push(refined.times);
+            times.add(refined.times);
             extra_rays = Some(refined.mean());
             if let Some(file) = &self.show_rays {
                 revmap_files::write_png(&refined.picture(&frame), file)?;
@@ -203,18 +210,14 @@ impl Render {
         Ok(Picture {
             frame,
             device: Some(device.report().clone()),
-            extra_rays,
-            times: Times {
-                prepare_ms: times.iter().map(|t| t.prepare_ms).sum(),
-                gpu_ms: times.iter().map(|t| t.gpu_ms).sum(),
-                frame_ms: times.iter().map(|t| t.frame_ms).sum(),
-                submissions: times.iter().map(|t| t.submissions).sum(),
+            times,
+            work: DeviceWork {
+                extra_rays,
+                map_bytes: renderer.map_bytes(),
+                notes: renderer.offscreen.renderer().notes().to_vec(),
+                costs,
+                device_bytes,
             },
-            map_bytes: renderer.map_bytes(),
-            notes: renderer.offscreen.renderer().notes().to_vec(),
-            costs,
-            device_bytes,
-            warnings: Vec::new(),
         })
     }
 
@@ -230,114 +233,61 @@ impl Render {
             }
             Ok(frame)
         })?;
+        let times = Times {
+            frame_ms: milliseconds(begin),
+            ..Times::default()
+        };
         Ok(Picture {
             frame,
             device: None,
-            extra_rays: None,
-            times: Times {
-                frame_ms: milliseconds(begin),
-                ..Times::default()
-            },
-            map_bytes: [0; 2],
-            notes: Vec::new(),
-            costs: Vec::new(),
-            device_bytes: 0,
-            warnings: Vec::new(),
+            times,
+            work: DeviceWork::default(),
         })
     }
 
-    /// Prints the picture's content, device and times. This output comes at the end, so that a
-    /// failure is one line.
-    fn tell(&self, scene: &Scene, settings: &MethodSettings, picture: &Picture, spent: [f64; 3]) {
-        match &picture.device {
-            Some(device) => output::device(device),
-            None => output::note("device: none, the reference is drawn on the CPU"),
-        }
-        if self.drawing.verbose {
-            self.details(scene, settings, picture, spent);
-        }
-        picture.warnings.iter().for_each(|w| output::warn(w));
+    /// Prints a line for each file: its size, how it was drawn, and the time of that.
+    fn tell(&self, settings: &MethodSettings, picture: &Picture) {
         let stage = name_of(&options::STAGES, &self.drawing.stage);
         let times = picture.times;
-        let (how, cost) = match &picture.device {
-            None => {
-                let cost = format!("{:.0} ms on the CPU", times.frame_ms);
-                (stage.to_owned(), cost)
-            }
-            Some(device) => {
-                let cost = match times.gpu_ms {
+        let (method, cost) = match (&picture.device, times.gpu_ms) {
+            (None, _) => (
+                String::new(),
+                format!("{:.0} ms on the CPU", times.frame_ms),
+            ),
+            (Some(device), gpu) => {
+                let cost = match gpu {
                     Some(gpu) => format!("{gpu:.2} ms on {}", device.name),
                     None => format!("{:.2} ms with {}", times.frame_ms, device.name),
                 };
-                (format!("{stage}, {}", settings.method), cost)
+                (format!(", {}", settings.method), cost)
             }
         };
-        let rays = self.samples.text(picture.extra_rays);
+        let rays = self.samples.text(picture.work.extra_rays);
+        let (width, height) = (settings.width, settings.height);
         for file in &self.output {
-            let (name, width, height) = (file.display(), settings.width, settings.height);
-            output::result(&format!("{name}: {width}x{height}, {how}, {rays}{cost}"));
+            let name = file.display();
+            output::result(&format!(
+                "{name}: {width}x{height}, {stage}{method}, {rays}{cost}"
+            ));
         }
     }
 
-    /// The additional output of `--verbose`.
-    fn details(
+    /// What `--json` and `--verbose` print.
+    fn facts(
         &self,
         scene: &Scene,
         settings: &MethodSettings,
         picture: &Picture,
         [loading, writing, all]: [f64; 3],
-    ) {
-        for object in &scene.objects {
-            let ([columns, rows], name) = (map_size(object, settings), &object.name);
-            output::note(&format!("{name}: shape box of {columns} x {rows} texels"));
-        }
-        if picture.device.is_some() {
-            let [shapes, textures] = picture.map_bytes.map(|bytes| bytes as f64 / 1e6);
-            let ms = picture.times.frame_ms;
-            output::note(&format!("{ms:.2} ms from submission to completion"));
-            output::note(&format!(
-                "on the device: shape maps (or meshes) {shapes:.2} MB, colour and displacement maps {textures:.2} MB"
-            ));
-            for (object, cost) in scene.objects.iter().zip(&picture.costs) {
-                output::note(&format!("{}: {}", object.name, cost_line(cost)));
-            }
-            output::note(&format!(
-                "on the device in all, without the target: {:.2} MB; {INSTANCE_BYTES} bytes a copy",
-                picture.device_bytes as f64 / 1e6
-            ));
-            picture.notes.iter().for_each(|line| output::note(line));
-            if settings.method.may_run_out() && picture.frame.exhausted == 0 {
-                output::note("no pixel ran out of steps");
-            }
-        }
-        if let Some(steps) = Steps::of(&picture.frame) {
-            output::note(&format!(
-                "{} pixels hit ({:.1} %), {:.2} steps each, {} at most",
-                steps.hits,
-                100.0 * steps.hits as f64 / picture.frame.pixels() as f64,
-                steps.mean,
-                steps.most
-            ));
-        }
-        output::note(&format!(
-            "scene read in {loading:.1} ms, files written in {writing:.1} ms, {all:.1} ms in all"
-        ));
-    }
-
-    /// The content of [`details`](Self::details), for programs.
-    fn tell_json(
-        &self,
-        scene: &Scene,
-        settings: &MethodSettings,
-        picture: &Picture,
-        [loading, writing, all]: [f64; 3],
-    ) {
-        let device = picture.device.as_ref();
+    ) -> Value {
+        let (device, work) = (picture.device.as_ref(), &picture.work);
         let steps = Steps::of(&picture.frame);
         let objects = scene.objects.iter().enumerate().map(|(number, object)| {
-            let [columns, rows] = map_size(object, settings);
+            let rows = settings.map_rows.unwrap_or(object.map_rows);
+            // Of the shape box.
+            let columns = (object.profile.radius * f64::from(rows)).ceil() as u32;
             let mut all = json!({ "name": object.name, "columns": columns, "rows": rows });
-            if let Some(cost) = picture.costs.get(number) {
+            if let Some(cost) = work.costs.get(number) {
                 all["path"] = json!(format!("{:?}", cost.path).to_lowercase());
                 all["level"] = json!(cost.level);
                 all["error_pixels"] = json!(cost.error_pixels);
@@ -348,13 +298,13 @@ impl Render {
             }
             all
         });
-        output::json(&json!({
+        json!({
             "files": self.output.iter().map(|f| f.to_string_lossy()).collect::<Vec<_>>(),
             "width": settings.width,
             "height": settings.height,
             "stage": name_of(&options::STAGES, &self.drawing.stage),
             "solver": device.map(|_| settings.method.to_string()),
-            "samples": picture.extra_rays.map_or(json!(self.samples.count()), |extra| json!(1.0 + extra)),
+            "samples": work.extra_rays.map_or(json!(self.samples.count()), |extra| json!(1.0 + extra)),
             "antialias": settings.edges == Edges::Silhouettes,
             "device": device.map(|d| json!({ "name": d.name, "kind": d.kind, "driver": d.driver })),
             "gpu_ms": picture.times.gpu_ms,
@@ -362,9 +312,9 @@ impl Render {
             "read_ms": loading,
             "write_ms": writing,
             "total_ms": all,
-            "map_bytes": picture.map_bytes[0],
-            "texture_bytes": picture.map_bytes[1],
-            "device_bytes": picture.device_bytes,
+            "map_bytes": work.map_bytes[0],
+            "texture_bytes": work.map_bytes[1],
+            "device_bytes": work.device_bytes,
             "tolerance": settings.tolerance.pixels(),
             "objects": objects.collect::<Vec<_>>(),
             "pixels": picture.frame.pixels(),
@@ -372,16 +322,19 @@ impl Render {
             "steps_mean": steps.as_ref().map(|s| s.mean),
             "steps_max": steps.as_ref().map(|s| s.most),
             "exhausted": picture.frame.exhausted,
-            "notes": picture.notes,
-            "warnings": picture.warnings,
-        }));
+            "notes": work.notes,
+        })
     }
 }
 
-fn write(frame: &Frame, file: &Path) -> Result<()> {
-    match output::has_ending(file, "exr") {
-        true => revmap_files::write_exr(frame, file),
-        false => revmap_files::write_png(frame, file),
+/// Prints facts in lines, and each member of a list in a line of its own.
+fn details(facts: &Value) {
+    for (key, value) in facts.as_object().into_iter().flatten() {
+        let alone = std::slice::from_ref(value);
+        let members = value.as_array().map_or(alone, Vec::as_slice);
+        for one in members {
+            output::note(&format!("{key}: {one}"));
+        }
     }
 }
 
@@ -394,38 +347,16 @@ fn on(device: &str, mut error: Error) -> Error {
     error
 }
 
-/// An object's draw path and its memory on the device.
-fn cost_line(cost: &ObjectCost) -> String {
-    let path = format!("{:?}", cost.path).to_lowercase();
-    let level = cost.level.map(|level| {
-        let error = cost.error_pixels.map(|e| format!("{e:.4}"));
-        let (error, patches) = (error.unwrap_or("any number of".into()), cost.patches);
-        format!(", level {level} of {patches} patches, silhouettes within {error} pixels")
-    });
-    let (level, tables) = (level.unwrap_or_default(), cost.table_bytes);
-    let (maps, copies) = (cost.map_bytes, cost.instance_bytes);
-    format!("{path}{level}; {tables} bytes of tables, {maps} of maps, {copies} of copies")
-}
-
-/// Columns and rows of an object's shape box.
-fn map_size(object: &Object, settings: &MethodSettings) -> [u32; 2] {
-    let rows = settings.map_rows.unwrap_or(object.map_rows);
-    [
-        (object.profile.radius * f64::from(rows)).ceil() as u32,
-        rows,
-    ]
-}
-
 /// The number of pixels with a hit, and the steps of the search in them.
-struct Steps {
+pub struct Steps {
     hits: usize,
-    mean: f64,
+    pub mean: f64,
     most: f32,
 }
 
 impl Steps {
     /// `None` if there is no hit.
-    fn of(frame: &Frame) -> Option<Self> {
+    pub fn of(frame: &Frame) -> Option<Self> {
         let hits: Vec<f32> = (frame.steps.iter().zip(&frame.distance))
             .filter(|(_, distance)| distance.is_finite())
             .map(|(steps, _)| *steps)

@@ -1,6 +1,7 @@
 //! `revmap searches`: all searches, and folders for new ones.
 
 use super::output;
+use super::render::Steps;
 use clap::{Args, Subcommand};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
@@ -85,23 +86,21 @@ impl Searches {
             let count = if is_known { 1 } else { lines.len() };
             lines[..count].iter().for_each(|line| output::result(line));
             for stage in [DrawStage::Fragment, DrawStage::Compute] {
-                let tried = try_out(&device, solver, stage)?;
-                output::result(&format!("  {:<11} {}", "drawn", tried.line));
-                tried.warnings.iter().for_each(|line| output::warn(line));
+                let (line, warnings) = try_out(&device, solver, stage)?;
+                output::result(&format!("  {:<11} {line}", "drawn"));
+                warnings.iter().for_each(|line| output::warn(line));
             }
         }
         Ok(())
     }
 }
 
-/// The outcome of a small picture.
-struct Tried {
-    line: String,
-    warnings: Vec<String>,
-}
-
-/// Draws a small picture in one stage.
-fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<Tried> {
+/// Draws a small picture in one stage. Returns a line about it, and warnings.
+fn try_out(
+    device: &MethodDevice,
+    solver: Solver,
+    stage: DrawStage,
+) -> Result<(String, Vec<String>)> {
     let text = include_str!("../../../assets/scenes/vase.toml");
     let scene = SceneFile::parse(text, ".")?.scene(&[])?;
     let settings = MethodSettings::default().by(solver).in_stage(stage);
@@ -110,9 +109,6 @@ fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<Tr
     folder::check_frame(solver, &frame)?;
     let truth = revmap_reference::draw(&scene, &(&settings).into(), &|_, _| {})?;
     let errors = compare(&truth, &frame, &CompareOptions::of(1.0 / 512.0))?;
-    let hits = frame.distance.iter().zip(&frame.steps);
-    let hits = hits.filter(|(distance, _)| distance.is_finite());
-    let steps: Vec<f32> = hits.map(|(_, steps)| *steps).collect();
     let mut found = format!(
         "{}, a vase: {} of {} pixels missed, {} beside it",
         stage.name(),
@@ -130,9 +126,8 @@ fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<Tr
         ));
         found += "; hits nothing";
     }
-    if !steps.is_empty() {
-        let mean = steps.iter().sum::<f32>() / steps.len() as f32;
-        found += &format!("; {mean:.1} steps each");
+    if let Some(steps) = Steps::of(&frame) {
+        found += &format!("; {:.1} steps each", steps.mean);
     }
     let most = solver.steps().map(|steps| steps.default);
     let taken = frame.steps.iter().fold(0.0f32, |most, n| most.max(*n));
@@ -142,10 +137,8 @@ fn try_out(device: &MethodDevice, solver: Solver, stage: DrawStage) -> Result<Tr
             stage.name()
         ));
     }
-    Ok(Tried {
-        line: format!("{found}, {} pixels out of steps", frame.exhausted),
-        warnings,
-    })
+    let line = format!("{found}, {} pixels out of steps", frame.exhausted);
+    Ok((line, warnings))
 }
 
 /// Look-ups beyond the limit on steps that a search may make, such as those of a last refinement.

@@ -114,10 +114,7 @@ impl Shaders {
         let shown = if known.is_empty() { said } else { known };
         output::result(&format!("{}, {}\n", device.name, device.driver));
         let table = table(&shown, &WORDS[..5], &[]);
-        let (mut text, width) = (markdown(&table), output::width());
-        if width.is_some_and(|width| text.lines().any(|line| line.chars().count() > width)) {
-            text = table.within(width, "`--csv`");
-        }
+        let text = table.within(output::width(), "`--csv`");
         text.lines().for_each(output::result);
         Ok(())
     }
@@ -206,27 +203,6 @@ fn values(shader: &CompiledShader, names: &[&str]) -> Vec<String> {
         found.map_or(String::new(), |(_, value)| value.to_string())
     };
     names.iter().map(text).collect()
-}
-
-/// A table in Markdown, each column as wide as its widest cell.
-fn markdown(table: &Table) -> String {
-    let mut out = String::new();
-    let lines = || std::iter::once(&table.header).chain(&table.records);
-    let widest = |column: usize| lines().map(|line| line[column].len()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..table.header.len()).map(widest).collect();
-    for (number, line) in lines().enumerate() {
-        let cell = |(cell, &width): (&String, &usize)| match cell.parse::<f64>() {
-            Ok(_) => format!("{cell:>width$}"),
-            Err(_) => format!("{cell:width$}"),
-        };
-        let cells: Vec<_> = line.iter().zip(&widths).map(cell).collect();
-        out += &format!("| {} |\n", cells.join(" | "));
-        if number == 0 {
-            let rules: Vec<_> = widths.iter().map(|&width| "-".repeat(width + 2)).collect();
-            out += &format!("|{}|\n", rules.join("|"));
-        }
-    }
-    out
 }
 
 fn as_json(device: &DeviceReport, shaders: &[CompiledShader]) -> Value {

@@ -38,7 +38,10 @@ impl Shading {
     pub fn run(self) -> Result<()> {
         use revmap::error::{Error, ErrorKind};
         let inputs: Vec<_> = self.files.iter().map(PathBuf::as_path).collect();
-        output::check(&self.output, "--output", &["shading"], &inputs)?;
+        let outputs = output::Outputs::default();
+        outputs
+            .and("--output", &self.output, &["shading"])
+            .check(&inputs)?;
         let mut texts = Vec::new();
         for (n, file) in self.files.iter().enumerate() {
             let text = std::fs::read_to_string(file).map_err(|e| {

@@ -1,8 +1,9 @@
 //! `revmap submit`: the figures of this device in a small file, for others to gather.
 
 use super::options::{DeviceChoice, size};
+use super::output::{self, Outputs};
 use super::progress::{Progress, interrupt};
-use super::{output, shaders};
+use super::shaders;
 use clap::Args;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::gpu::Device;
@@ -49,7 +50,8 @@ pub struct Submit {
 
 impl Submit {
     pub fn run(self) -> Result<()> {
-        output::check([&self.output], "--output", &["toml"], &[])?;
+        let file = Outputs::default().and("--output", [&self.output], &["toml"]);
+        file.check(&[])?;
         let device = self.device.open()?;
         let report = device.report().clone();
         if !self.quiet {

@@ -1,14 +1,13 @@
 //! What the frames of a film took.
 
 use revmap::error::Result;
+use revmap_offscreen::Times;
 use std::path::Path;
 
-/// A frame's times, milliseconds, and what was made for it.
+/// A frame's times, and what was made for it.
 #[derive(Default)]
 pub struct Row {
-    pub prepare_ms: f64,
-    pub gpu_ms: Option<f64>,
-    pub frame_ms: f64,
+    pub times: Times,
     pub compiled: u64,
     pub rebuilt: u64,
 }
@@ -25,7 +24,9 @@ pub fn told(rows: &[Row], compiled: u64) -> [String; 2] {
             (settled, " after the tenth", of_them)
         }
     };
-    let whole = measured.iter().map(|r| r.prepare_ms + r.frame_ms);
+    let whole = measured
+        .iter()
+        .map(|r| r.times.prepare_ms + r.times.frame_ms);
     let mut all: Vec<f64> = whole.collect();
     all.sort_by(f64::total_cmp);
     let (median, most) = (all[all.len() / 2], all[all.len() - 1]);
@@ -44,11 +45,15 @@ pub fn write(path: &Path, rows: &[Row]) -> Result<()> {
     let mut text =
         String::from("frame,prepare_ms,gpu_ms,frame_ms,pipelines_compiled,surfaces_rebuilt\n");
     for (n, row) in rows.iter().enumerate() {
-        let gpu = row.gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
-        text += &format!(
-            "{n},{:.4},{gpu},{:.4},{},{}\n",
-            row.prepare_ms, row.frame_ms, row.compiled, row.rebuilt
-        );
+        let Times {
+            prepare_ms,
+            gpu_ms,
+            frame_ms,
+            ..
+        } = row.times;
+        let gpu = gpu_ms.map_or_else(String::new, |ms| format!("{ms:.4}"));
+        let made = format!("{},{}", row.compiled, row.rebuilt);
+        text += &format!("{n},{prepare_ms:.4},{gpu},{frame_ms:.4},{made}\n");
     }
     revmap_files::write_bytes(path, text.as_bytes())
 }

@@ -12,7 +12,7 @@
 use crate::commands::Times;
 use crate::offscreen::Offscreen;
 use crate::read_back::Linear;
-use crate::samples::{point, weighted};
+use crate::samples::{add, point, weighted};
 use revmap::error::Result;
 use revmap::frame::{Frame, srgb_from_linear};
 use revmap::gpu::Device;
@@ -81,21 +81,15 @@ const NO_RAYS: Pixel = Pixel {
 
 impl Pixel {
     fn add(&mut self, rgba: [u8; 4], linear: &Linear) {
-        let [r, g, b, a] = linear.color(&rgba);
-        for (sum, part) in self.sum.iter_mut().zip([r * a, g * a, b * a, a]) {
-            *sum += part;
-        }
-        for (c, value) in rgba.into_iter().enumerate() {
-            self.least[c] = self.least[c].min(value);
-            self.most[c] = self.most[c].max(value);
-        }
+        add(&mut self.sum, linear.color(&rgba));
+        *self = self.joined([rgba; 2]);
     }
 
-    /// The range of both.
-    fn joined(mut self, other: &Self) -> Self {
+    /// This with the range of others: their least and largest channels.
+    fn joined(mut self, [least, most]: [[u8; 4]; 2]) -> Self {
         for c in 0..4 {
-            self.least[c] = self.least[c].min(other.least[c]);
-            self.most[c] = self.most[c].max(other.most[c]);
+            self.least[c] = self.least[c].min(least[c]);
+            self.most[c] = self.most[c].max(most[c]);
         }
         self
     }
@@ -167,7 +161,8 @@ impl Adaptive {
             let around = |at: usize| {
                 let all = beside(at, width, pixels.len())
                     .filter(|other| round == 0 && refined.rays[*other] > 0);
-                all.fold(pixels[at], |sum, other| sum.joined(&pixels[other]))
+                all.map(|other| &pixels[other])
+                    .fold(pixels[at], |sum, p| sum.joined([p.least, p.most]))
                     .range()
             };
             let is_open =

@@ -24,8 +24,9 @@ pub struct Times {
 impl Times {
     /// Adds those of another frame.
     pub fn add(&mut self, other: Self) {
-        self.gpu_ms = match self.submissions {
-            0 => other.gpu_ms,
+        self.gpu_ms = match (self.submissions, other.submissions) {
+            (0, _) => other.gpu_ms,
+            (_, 0) => self.gpu_ms,
             _ => self.gpu_ms.zip(other.gpu_ms).map(|(a, b)| a + b),
         };
         self.prepare_ms += other.prepare_ms;

@@ -22,16 +22,21 @@ pub fn averaged(
     for i in 0..count {
         let [x, y] = point(i, count);
         shifted.camera.shift = [scene.camera.shift[0] + x, scene.camera.shift[1] + y];
-        for (sum, [r, g, b, a]) in sums.iter_mut().zip(draw(&shifted)?.color) {
-            for (sum, part) in sum.iter_mut().zip([r * a, g * a, b * a, a]) {
-                *sum += part;
-            }
+        for (sum, color) in sums.iter_mut().zip(draw(&shifted)?.color) {
+            add(sum, color);
         }
     }
     for (color, sum) in frame.color.iter_mut().zip(sums) {
         *color = weighted(sum, count);
     }
     Ok(frame)
+}
+
+/// Adds a colour, weighted by alpha.
+pub(crate) fn add(sum: &mut [f32; 4], [r, g, b, a]: [f32; 4]) {
+    for (sum, part) in sum.iter_mut().zip([r * a, g * a, b * a, a]) {
+        *sum += part;
+    }
 }
 
 /// The mean of so many colours, from their sum weighted by alpha.

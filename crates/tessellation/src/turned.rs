@@ -3,6 +3,7 @@
 use super::meridian::{Line, Strand, lines};
 use super::parted::cleaned;
 use glam::DVec2;
+use revmap::profile::Segment;
 use revmap::surface::Contour;
 use std::f64::consts::PI;
 
@@ -114,11 +115,8 @@ fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> Vec<usize>
 
 /// The largest distance between a chord and the points of the line that it stands for.
 fn error(line: &Line, ends: &[usize], [a, b]: [DVec2; 2]) -> f64 {
-    let (way, points) = (b - a, &line.points[ends[0]..=ends[1]]);
-    let from_chord = |p: &DVec2| {
-        let along = (*p - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
-        p.distance(a + along.clamp(0.0, 1.0) * way)
-    };
+    let points = &line.points[ends[0]..=ends[1]];
+    let from_chord = |p: &DVec2| p.distance(Segment { a, b }.nearest(*p).0);
     let moved = a
         .distance(line.points[ends[0]])
         .max(b.distance(line.points[ends[1]]));

@@ -1,8 +1,7 @@
 //! The shadow maps that follow the view: parts of the picture's depths, as parallel-split shadow maps
 //! take them (Zhang et al. 2006), each with a map around what is seen of it.
 
-use super::fineness::Fineness;
-use super::sight::Ball;
+use super::sight::{Ball, corners};
 use glam::{DMat4, DVec3};
 use revmap::scene::CameraFrame;
 
@@ -80,12 +79,6 @@ pub(super) fn cascades(
     (0..count).filter_map(of_part).collect()
 }
 
-/// Rays through the picture's corners, forward component 1.
-fn corners(camera: &CameraFrame, (width, height): (u32, u32)) -> [DVec3; 4] {
-    let [w, h] = [f64::from(width), f64::from(height)];
-    [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(|[x, y]| camera.direction(x, y))
-}
-
 fn joined([a, b]: [DVec3; 2], [c, d]: [DVec3; 2]) -> [DVec3; 2] {
     [a.min(c), b.max(d)]
 }
@@ -134,13 +127,6 @@ impl LightSpace {
             range,
             casters,
         }
-    }
-}
-
-impl Cascade {
-    /// The level of a copy's mesh: its silhouettes from the light keep the tolerance in texels.
-    pub fn level(&self, fineness: Fineness, ball: &Ball) -> i32 {
-        fineness.level(ball.scale / self.texel)
     }
 }
 

@@ -22,4 +22,4 @@ mod tests;
 pub use fineness::Fineness;
 pub use layer::{MeshLayer, MeshPipelines};
 pub use placed::check_scene;
-pub use tessellation::{BAND, Mesh, Vertex};
+pub use tessellation::{Mesh, Vertex};

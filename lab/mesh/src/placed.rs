@@ -74,6 +74,17 @@ struct Solid {
     used: bool,
 }
 
+impl Solid {
+    /// The mesh of a level, made now and counted if it is new.
+    fn level(&mut self, level: i32, fineness: Fineness, made_count: &mut u64) -> Arc<Mesh> {
+        let new = || {
+            *made_count += 1;
+            Arc::new(fineness.mesh(&self.contour, level))
+        };
+        self.levels.entry(level).or_insert_with(new).clone()
+    }
+}
+
 impl SceneMeshes {
     /// Meshes of this fineness, for pictures of this size.
     pub fn new(fineness: Fineness, size: (u32, u32)) -> Self {
@@ -105,23 +116,19 @@ impl SceneMeshes {
             let grown = self.grown.grown(object);
             let growth = Growth::of(object);
             let object = grown.as_ref().map_or(object, |g| &g.object);
-            let solid = self.solid(object).map_err(|error| {
+            let number_of_solid = self.solid(object).map_err(|error| {
                 let error = error.at_key(under("profile"));
                 match &object.file {
                     Some(file) => error.in_file(file),
                     None => error,
                 }
             })?;
-            let number_of_solid = solid;
-            let (solid, fineness) = (&mut self.solids[solid], self.fineness);
+            let (solid, fineness) = (&mut self.solids[number_of_solid], self.fineness);
             check_box(object, solid.extent[0]).map_err(|(key, error)| error.at_key(under(key)))?;
             let shape = (&solid.contour, &solid.extent);
             for (level, copies) in fineness.by_level(object, shape, &sight) {
-                let mesh = solid.levels.entry(level).or_insert_with(|| {
-                    self.made_count += 1;
-                    Arc::new(fineness.mesh(&solid.contour, level))
-                });
-                placed.push(place(object, copies, &growth, mesh.clone(), camera));
+                let mesh = solid.level(level, fineness, &mut self.made_count);
+                placed.push(place(object, copies, &growth, mesh, camera));
             }
             if shaded {
                 let all = object.placements();
@@ -161,13 +168,11 @@ impl SceneMeshes {
                 for &n in &map.casters {
                     let (number, axis, placement) = &copies[n];
                     let (solid, fineness) = (&mut self.solids[*number], self.fineness);
-                    let level = map.level(fineness, &balls[n]);
-                    let mesh = solid.levels.entry(level).or_insert_with(|| {
-                        self.made_count += 1;
-                        Arc::new(fineness.mesh(&solid.contour, level))
-                    });
+                    // Silhouettes from the light keep the tolerance in texels.
+                    let level = fineness.level(balls[n].scale / map.texel);
+                    let mesh = solid.level(level, fineness, &mut self.made_count);
                     let new = || PlacedCaster {
-                        mesh: mesh.clone(),
+                        mesh,
                         axis: *axis,
                         instances: Vec::new(),
                     };
@@ -263,14 +268,10 @@ pub fn check_scene(scene: &Scene) -> Result<()> {
         let what = format!("has shadow maps for {SHADOW_LIGHTS} lights; give fewer lights");
         return Err(refused(&what).at_key("light"));
     }
-    scene
-        .objects
-        .iter()
-        .enumerate()
-        .try_for_each(|(number, object)| {
-            let fail = |(key, error): KeyError| error.at_key(format!("object.{number}.{key}"));
-            check_object(object).map_err(fail)
-        })
+    let mut objects = scene.objects.iter().enumerate();
+    objects.try_for_each(|(number, object)| {
+        check_object(object).map_err(|(key, e)| e.at_key(format!("object.{number}.{key}")))
+    })
 }
 
 /// Refuses what the baseline does not draw.

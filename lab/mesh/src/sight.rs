@@ -1,6 +1,7 @@
 //! How large a copy's silhouettes are seen.
 
 use glam::{DQuat, DVec2, DVec3};
+use revmap::profile::Segment;
 use revmap::scene::{CameraFrame, Object, Placement};
 use revmap::surface::{Chain, Contour};
 
@@ -45,10 +46,8 @@ struct Seen<'a> {
 
 impl Sight {
     pub fn new(camera: &CameraFrame, size: (u32, u32)) -> Self {
-        let (w, h) = (f64::from(size.0), f64::from(size.1));
-        let corners = [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]];
-        let corners = corners.map(|[x, y]| camera.direction(x, y));
-        let middle = camera.direction(0.5 * w, 0.5 * h);
+        let corners = corners(camera, size);
+        let middle = corners.iter().sum::<DVec3>();
         let side = |k: usize| {
             let normal = corners[k].cross(corners[(k + 1) % 4]).normalize();
             normal * normal.dot(middle).signum()
@@ -183,25 +182,22 @@ impl Seen<'_> {
 /// The distance of the eye from a contour, object units.
 fn distance(contour: &Contour, seen: &Seen) -> f64 {
     let point = DVec2::new(seen.eye.truncate().length(), seen.eye.z);
-    let to_segment = |ends: &[DVec2]| {
-        let (start, way) = (ends[0], ends[1] - ends[0]);
-        let along = (point - start).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
-        point.distance(start + along.clamp(0.0, 1.0) * way)
-    };
     let of_chain = |chain: &Chain| {
-        let ends = [chain.points.last(), chain.points.first()].map(|p| p.copied());
-        let last = if let ([Some(a), Some(b)], true) = (ends, chain.closed) {
-            to_segment(&[a, b])
-        } else {
-            f64::INFINITY
-        };
-        (chain.points.windows(2))
-            .map(to_segment)
-            .fold(last, f64::min)
+        let first = chain.points.first().filter(|_| chain.closed);
+        let ends = chain.points.iter().skip(1).chain(first);
+        let sides = chain.points.iter().zip(ends);
+        let to = |(&a, &b)| point.distance(Segment { a, b }.nearest(point).0);
+        sides.map(to).fold(f64::INFINITY, f64::min)
     };
     (contour.chains.iter())
         .map(of_chain)
         .fold(f64::INFINITY, f64::min)
+}
+
+/// Rays through the picture's corners, forward component 1.
+pub(super) fn corners(camera: &CameraFrame, (width, height): (u32, u32)) -> [DVec3; 4] {
+    let [w, h] = [f64::from(width), f64::from(height)];
+    [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(|[x, y]| camera.direction(x, y))
 }
 
 /// The eye in object space, about the axis.

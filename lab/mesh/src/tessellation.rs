@@ -8,7 +8,7 @@
 //! * Normals are the contour's. Each chord has two, between which they turn as evenly as possible.
 //!   Neighbours with nearly equal normals share vertices, others are creases. Only the part in the
 //!   half-plane is stored: each pixel has its exact azimuth.
-//! * Indices run in bands of [`BAND`] segments: a ring of a band is still in the vertex cache when
+//! * Indices run in bands of `BAND` segments: a ring of a band is still in the vertex cache when
 //!   the next one is drawn. Vertices are in the order of their first use.
 
 use bytemuck::{Pod, Zeroable};
@@ -18,7 +18,7 @@ use revmap_tessellation::{Strand, Turned, strands_of, turned_within};
 use std::f64::consts::{PI, TAU};
 
 /// Segments that are drawn side by side from one end of the meridian to the other.
-pub const BAND: u32 = 8;
+const BAND: u32 = 8;
 
 /// The largest tolerance, parts of the largest radius: with more a small copy would vanish.
 const LEAST_SHAPE: f64 = 0.25;

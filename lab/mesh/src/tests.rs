@@ -260,6 +260,13 @@ fn by_meshes(
     frame
 }
 
+/// The part of the pixels whose colours differ by more than this part of the light.
+fn wrong(truth: &Frame, frame: &Frame, most: f32) -> f64 {
+    let pixels = truth.color.iter().zip(&frame.color);
+    let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > most);
+    pixels.filter(far).count() as f64 / truth.color.len() as f64
+}
+
 /// A torus over a plate, lit from the side: shadow maps put shadows where the reference has them, but
 /// for some pixels at their edges.
 #[test]
@@ -283,12 +290,7 @@ fn shadow_maps_agree_with_rays() {
     for (shadow, most) in [(Shadow::Hard, 0.01), (Shadow::Soft, 0.02)] {
         scene.shadow = shadow;
         let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
-        // Pixels whose colours differ by more than a tenth of the light.
-        let wrong = |frame: &Frame| {
-            let pixels = truth.color.iter().zip(&frame.color);
-            let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.1);
-            pixels.filter(far).count() as f64 / truth.color.len() as f64
-        };
+        let wrong = |frame: &Frame| wrong(&truth, frame, 0.1);
         let [with, without] = [wrong(&drawn(&scene)), wrong(&unshaded)];
         assert!(with < most, "{shadow:?}: {with}");
         assert!(without > 0.04, "{shadow:?}: {without}");
@@ -321,13 +323,7 @@ fn meshes_reflect_the_environment() {
     let own = small();
     let pipelines = MeshPipelines::new(&device).unwrap();
     let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
-    // The part of the pixels whose colours differ by more than a thirtieth of the light.
-    let wrong = |scene: &Scene| {
-        let frame = by_meshes(&device, &pipelines, scene, &own);
-        let pixels = truth.color.iter().zip(&frame.color);
-        let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.03);
-        pixels.filter(far).count() as f64 / truth.color.len() as f64
-    };
+    let wrong = |scene: &Scene| wrong(&truth, &by_meshes(&device, &pipelines, scene, &own), 0.03);
     let with = wrong(&scene);
     scene.objects[0].material = None;
     let dull = wrong(&scene);

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 //! Rays whose result is computed by hand.
 
-pub(super) mod analytic;
+mod analytic;
 mod crowds;
 
 use super::samples;

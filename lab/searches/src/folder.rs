@@ -54,14 +54,11 @@ pub fn is_named(name: &str) -> bool {
 /// [`ErrorKind::File`] for a file that cannot be read, [`ErrorKind::Content`] for a fault of
 /// `search.toml`, [`ErrorKind::Usage`] for values of parameters.
 pub fn load(name: &str) -> Result<Solver> {
-    let known = |all: &[(&'static Search, &'static Folder)]| {
+    let known = LOADED.lock().ok().and_then(|all| {
         let found = all.iter().rev().find(|(_, folder)| folder.spec == name);
         found.map(|(search, _)| Solver::Other(search))
-    };
-    match LOADED.lock().ok().and_then(|all| known(&all)) {
-        Some(solver) => Ok(solver),
-        None => reload(name),
-    }
+    });
+    known.map_or_else(|| reload(name), Ok)
 }
 
 /// The search of a folder as its files are now.
@@ -200,13 +197,9 @@ impl Folder {
         if ALL.iter().any(|solver| solver.name() == name) {
             name += " (folder)"; // a copy of a known one
         }
+        let default = |key: &String| self.manifest.parameters.get(key).map(|p| p.default);
         for (key, value) in &self.values {
-            if self
-                .manifest
-                .parameters
-                .get(key)
-                .is_some_and(|p| p.default != *value)
-            {
+            if default(key) != Some(*value) {
                 name += &format!(":{key}={value}");
             }
         }
@@ -227,6 +220,11 @@ impl Folder {
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         let own = std::iter::once(self.path.join(manifest::FILE));
         own.chain(self.sources.iter().map(|(_, path, _)| path.clone()))
+    }
+
+    /// The GLSL file that has the function.
+    fn glsl(&self) -> &Path {
+        self.sources.first().map_or(&self.path, |(_, path, _)| path)
     }
 
     /// The search for the library. It lives as long as the program.

@@ -220,58 +220,40 @@ impl Manifest {
         let bound = self.steps.map_or([1, 1], |s| [s.default, s.most]);
         let [default, largest] = bound;
         let table = self.table.as_ref();
-        let faults = [
-            (
-                !is_named,
-                format!(
-                    "name: {:?} is no name; give at most 32 small letters, digits and hyphens",
-                    self.name
-                ),
-            ),
-            (
-                is_empty(&self.about),
-                "about: is empty; the report shows it".into(),
-            ),
-            (
-                is_empty(&self.source),
-                "source: is empty; the report shows it".into(),
-            ),
-            (
-                is_map && self.steps.is_none(),
-                "steps: is missing; a search on a map has a bound, as in [steps] default = 64".into(),
-            ),
-            (
-                default == 0 || default > largest || largest > most(),
-                format!(
-                    "steps: default is {default} and most {largest}; give 1 or more by default, most at least as many and at most {}",
-                    most()
-                ),
-            ),
-            (
-                table.is_none() && self.reads == Data::Table,
-                "table: is missing; name a program, as in [table] program = [\"python3\", \"table.py\"]".into(),
-            ),
-            (
-                table.is_some() && self.reads != Data::Table,
-                format!(
-                    "table: reads is {reads:?}, which needs no program; write reads = \"table\""
-                ),
-            ),
-            (
-                !own && table.is_some_and(|t| !t.rust.is_empty()),
-                "table.rust: is for searches of revmap's own crates; name a program".into(),
-            ),
-            (
-                table.is_some_and(|t| t.rust.is_empty() && t.program.is_empty()),
-                "table.program: is empty; name a program".into(),
-            ),
-            (
-                self.unsigned && !is_map,
-                "unsigned: is for searches on a map".into(),
-            ),
-        ];
-        let fault = faults.into_iter().find(|(is, _)| *is);
-        fault.map_or(Ok(()), |(_, message)| Err(message))?;
+        let refuse = |is: bool, message: &str| match is {
+            true => Err(message.to_owned()),
+            false => Ok(()),
+        };
+        let name = &self.name;
+        let message =
+            format!("name: {name:?} is no name; give at most 32 small letters, digits and hyphens");
+        refuse(!is_named, &message)?;
+        refuse(
+            is_empty(&self.about),
+            "about: is empty; the report shows it",
+        )?;
+        let message = "source: is empty; the report shows it";
+        refuse(is_empty(&self.source), message)?;
+        let message =
+            "steps: is missing; a search on a map has a bound, as in [steps] default = 64";
+        refuse(is_map && self.steps.is_none(), message)?;
+        let message = format!(
+            "steps: default is {default} and most {largest}; give 1 or more by default, most at least as many and at most {}",
+            most()
+        );
+        let wrong = default == 0 || default > largest || largest > most();
+        refuse(wrong, &message)?;
+        let message = "table: is missing; name a program, as in [table] program = [\"python3\", \"table.py\"]";
+        refuse(table.is_none() && self.reads == Data::Table, message)?;
+        let message =
+            format!("table: reads is {reads:?}, which needs no program; write reads = \"table\"");
+        refuse(table.is_some() && self.reads != Data::Table, &message)?;
+        let message = "table.rust: is for searches of revmap's own crates; name a program";
+        refuse(!own && table.is_some_and(|t| !t.rust.is_empty()), message)?;
+        let nothing = table.is_some_and(|t| t.rust.is_empty() && t.program.is_empty());
+        refuse(nothing, "table.program: is empty; name a program")?;
+        let message = "unsigned: is for searches on a map";
+        refuse(self.unsigned && !is_map, message)?;
         let mut parameters = self.parameters.iter();
         parameters.try_for_each(|(name, parameter)| parameter.check(name))
     }

@@ -1,7 +1,7 @@
 //! GIF: one palette for all frames, by k-means, and Floyd-Steinberg dithering: slow gradients have no
 //! bands, and what does not move keeps its colour.
 
-use super::{Moving, failed};
+use super::{Playing, failed};
 use gif::{Frame, Repeat};
 use quantette::color_map::NearestNeighborColorMap;
 use quantette::deps::palette::Srgb;
@@ -16,12 +16,12 @@ const SAMPLES: usize = 4_000_000;
 /// Colours; one code is left for pixels that are as in the frame before.
 const COLORS: u8 = 255;
 
-pub fn bytes(moving: &Moving) -> Result<Vec<u8>> {
-    let palette = palette(moving.frames)?;
-    let indices = moving.frames.par_iter().map(|f| dithered(f, &palette));
+pub fn bytes(playing: Playing, size: (u32, u32), frames: &[Picture]) -> Result<Vec<u8>> {
+    let palette = palette(frames)?;
+    let indices = frames.par_iter().map(|f| dithered(f, &palette));
     let indices: Vec<Vec<u8>> = indices.collect::<Result<_>>()?;
     let mut bytes = Vec::new();
-    encode(moving, &palette, &indices, &mut bytes).map_err(failed)?;
+    encode(playing, size, (&palette, &indices), &mut bytes).map_err(failed)?;
     Ok(bytes)
 }
 
@@ -52,12 +52,12 @@ fn dithered(frame: &Picture, palette: &PaletteBuf<Srgb<u8>>) -> Result<Vec<u8>> 
 }
 
 fn encode(
-    moving: &Moving,
-    palette: &[Srgb<u8>],
-    indices: &[Vec<u8>],
+    playing: Playing,
+    (width, height): (u32, u32),
+    (palette, indices): (&[Srgb<u8>], &[Vec<u8>]),
     bytes: &mut Vec<u8>,
 ) -> std::result::Result<(), gif::EncodingError> {
-    let [width, height] = [moving.width, moving.height].map(|n| n as u16); // at most 16384
+    let [width, height] = [width, height].map(|n| n as u16); // at most 16384
     let colors: Vec<u8> = palette
         .iter()
         .flat_map(|c| [c.red, c.green, c.blue])
@@ -66,7 +66,7 @@ fn encode(
     let same = palette.len() as u8;
     let colors = [colors, vec![0; 3]].concat();
     let mut encoder = gif::Encoder::new(bytes, width, height, &colors)?;
-    match moving.loops {
+    match playing.loops() {
         0 => encoder.set_repeat(Repeat::Infinite)?,
         1 => {}
         // The format counts how often it plays again.
@@ -74,7 +74,7 @@ fn encode(
     }
     for (n, codes) in indices.iter().enumerate() {
         let mut frame = Frame {
-            delay: (moving.start(n + 1, 100) - moving.start(n, 100)) as u16, // at most 100
+            delay: (playing.start(n + 1, 100) - playing.start(n, 100)) as u16, // at most 100
             width,
             height,
             ..Frame::default()
@@ -124,27 +124,22 @@ mod tests {
                     block.map(of).sum::<f64>() / 256.0
                 };
                 let wanted = sum(&|k| f64::from(frame.rgba[k][0]));
-                let found = |part: fn(&Srgb<u8>) -> u8| {
-                    sum(&|k| f64::from(part(&palette[usize::from(code(k))])))
-                };
-                let parts = [found(|c| c.red), found(|c| c.green), found(|c| c.blue)];
-                parts
-                    .into_iter()
-                    .fold(0.0, |most, v| f64::abs(v - wanted).max(most))
+                // The gradient is grey: one channel has its bands.
+                f64::abs(sum(&|k| f64::from(palette[usize::from(code(k))].red)) - wanted)
             });
             off.fold(0.0, f64::max)
         };
         let codes = dithered(&frame, &palette).unwrap();
         let even = worst(&|k| codes[k]);
         let nearest = |k: usize| {
-            let [r, g, b] = [0, 1, 2].map(|i| i32::from(frame.rgba[k][i]));
             let far = |c: &Srgb<u8>| {
-                let [x, y, z] = [c.red, c.green, c.blue].map(i32::from);
-                (r - x).pow(2) + (g - y).pow(2) + (b - z).pow(2)
+                let pairs = [c.red, c.green, c.blue].into_iter().zip(frame.rgba[k]);
+                pairs
+                    .map(|(a, b)| u32::from(a.abs_diff(b)).pow(2))
+                    .sum::<u32>()
             };
-            (0..palette.len())
-                .min_by_key(|i| far(&palette[*i]))
-                .unwrap() as u8
+            let all = (0..palette.len()).min_by_key(|i| far(&palette[*i]));
+            all.unwrap() as u8
         };
         let bands = worst(&nearest);
         assert!(even < 1.5 && bands > 3.0, "{even} {bands}");

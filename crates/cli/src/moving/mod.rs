@@ -16,7 +16,7 @@ mod stillness;
 mod webp;
 
 pub use folder::{claim, frames_in};
-pub use stillness::{Motion, Stillness};
+pub use stillness::{Stillness, remedy};
 
 use super::output::{self, usage};
 use clap::Args;
@@ -82,18 +82,6 @@ pub struct Playing {
     quality: Option<u8>,
 }
 
-/// All frames of a moving picture, and how it plays.
-struct Moving<'a> {
-    width: u32,
-    height: u32,
-    frames: &'a [Picture],
-    fps: u16,
-    /// 0 is for ever.
-    loops: u16,
-    /// Parts of a hundred; 100 is without loss.
-    quality: u8,
-}
-
 impl Playing {
     /// Checks the options against the output `path` (`None`: frames are not kept), before any
     /// work. Returns the format of a moving picture.
@@ -150,6 +138,17 @@ impl Playing {
         self.fps.unwrap_or(25)
     }
 
+    /// When frame `n` begins, in the given parts of a second, so that the error does not grow.
+    fn start(self, n: usize, parts: u64) -> u64 {
+        let fps = u64::from(self.fps());
+        (n as u64 * parts + fps / 2) / fps
+    }
+
+    /// How often it plays; 0 is for ever.
+    fn loops(self) -> u16 {
+        self.loops.unwrap_or(0)
+    }
+
     /// How long so many frames are shown, seconds.
     pub fn seconds(self, frames: u32) -> f64 {
         f64::from(frames) / f64::from(self.fps())
@@ -160,27 +159,13 @@ impl Playing {
         let Some(first) = frames.first() else {
             return Ok(()); // there is at least one frame
         };
-        let moving = Moving {
-            width: first.width,
-            height: first.height,
-            frames,
-            fps: self.fps(),
-            loops: self.loops.unwrap_or(0),
-            quality: self.quality.unwrap_or(90),
-        };
+        let size = (first.width, first.height);
         let bytes = match format {
-            Format::Gif => gif::bytes(&moving),
-            Format::Webp => webp::bytes(&moving),
-            Format::Apng => apng::bytes(&moving),
+            Format::Gif => gif::bytes(self, size, frames),
+            Format::Webp => webp::bytes(self, size, frames),
+            Format::Apng => apng::bytes(self, size, frames),
         };
         write_bytes(path, &bytes.map_err(|e| e.in_file(path))?)
-    }
-}
-
-impl Moving<'_> {
-    /// When frame `n` begins, in the given parts of a second, so that the error does not grow.
-    fn start(&self, n: usize, parts: u64) -> u64 {
-        (n as u64 * parts + u64::from(self.fps) / 2) / u64::from(self.fps)
     }
 }
 

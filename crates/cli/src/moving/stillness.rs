@@ -68,44 +68,33 @@ impl Stillness {
     }
 }
 
-/// How a film moves, for the remedy of one that stands still.
-pub struct Motion<'a> {
-    /// The first frame's scene.
-    pub scene: &'a Scene,
-    /// Degrees from one frame to the next.
-    pub step: f64,
-    /// True if the lights turn with the camera because of `--turntable` alone.
-    pub turntable: bool,
-    pub varied: &'a [Vary],
-}
-
-impl Motion<'_> {
-    /// The warning about a film that stands still.
-    pub fn remedy(&self) -> String {
-        if self.step != 0.0 && self.step % 360.0 == 0.0 {
-            return "--turn: every frame is whole turns after the one before, so all frames look alike; give less".to_owned();
-        }
-        let (mut why, mut remedies) = (String::new(), Vec::new());
-        if self.step != 0.0 {
-            why.push_str(": a solid of revolution looks the same from all sides");
-            let mut objects = self.scene.objects.iter().filter(|o| o.name != GROUND_NAME);
-            if objects.all(|o| o.texturing.color_map.is_none()) {
-                remedies.push("a colour map (--set object.0.color_map=FILE)");
-            }
-            if self.turntable && !self.scene.lights.is_empty() {
-                remedies.push("--turn without --turntable");
-            }
-        }
-        match self.varied.first() {
-            Some(vary) if self.step == 0.0 => {
-                why = format!(": --vary {} changes nothing that is seen", vary.key);
-                remedies.push("values farther apart, or another key");
-            }
-            _ => remedies.push("a shape that changes (--vary object.0.extend=0:0.05 --bounce)"),
-        }
-        format!(
-            "all frames look alike{why}; give {}",
-            remedies.join(", or ")
-        )
+/// The warning about a film that stands still: its first scene, the degrees from one frame to the
+/// next, the keys that vary, and whether the lights turn with the camera because of `--turntable`
+/// alone.
+pub fn remedy(scene: &Scene, step: f64, varied: &[Vary], turntable: bool) -> String {
+    if step != 0.0 && step % 360.0 == 0.0 {
+        return "--turn: every frame is whole turns after the one before, so all frames look alike; give less".to_owned();
     }
+    let (mut why, mut remedies) = (String::new(), Vec::new());
+    if step != 0.0 {
+        why.push_str(": a solid of revolution looks the same from all sides");
+        let mut objects = scene.objects.iter().filter(|o| o.name != GROUND_NAME);
+        if objects.all(|o| o.texturing.color_map.is_none()) {
+            remedies.push("a colour map (--set object.0.color_map=FILE)");
+        }
+        if turntable && !scene.lights.is_empty() {
+            remedies.push("--turn without --turntable");
+        }
+    }
+    match varied.first() {
+        Some(vary) if step == 0.0 => {
+            why = format!(": --vary {} changes nothing that is seen", vary.key);
+            remedies.push("values farther apart, or another key");
+        }
+        _ => remedies.push("a shape that changes (--vary object.0.extend=0:0.05 --bounce)"),
+    }
+    format!(
+        "all frames look alike{why}; give {}",
+        remedies.join(", or ")
+    )
 }

@@ -1,21 +1,25 @@
 //! Executes the requests of the controls and the pointer.
 
 use super::app::App;
-use super::change::Change;
 use super::controls::Asked;
 use super::keys::Action;
 use super::picture::colors;
-use super::shown::Shown;
+use super::shown::{Change, Shown};
 use super::{orbit, saved};
+use crate::animate::turn_about_target;
 use crate::output;
 use glam::DVec3;
 use revmap::error::{self, Error, Result};
 use revmap::settings::{Planes, Settings};
 use revmap_files::SceneFile;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The number of changes that can be undone.
 const UNDOS: usize = 100;
+
+/// The number of frames of a turntable.
+const TURNTABLE: u32 = 36;
 
 impl App {
     /// Executes the effect of a key.
@@ -125,8 +129,10 @@ impl App {
             planes: Planes::Color,
             ..self.shown.settings(self.framing.window)
         };
-        for n in 0..saved::TURNTABLE {
-            let turned = saved::turned(&self.shown, n);
+        for n in 0..TURNTABLE {
+            let mut turned = self.shown.clone();
+            let angle = std::f64::consts::TAU * f64::from(n) / f64::from(TURNTABLE);
+            turn_about_target(&mut turned.scene.camera, angle);
             let (drawn, _) = self.painter.draw(&turned.furnished(), settings)?;
             let file = folder.join(format!("frame-{n:04}.png"));
             colors(drawn, &settings)?.write_png(file)?;
@@ -137,8 +143,9 @@ impl App {
     /// Shows a file that was dropped on the window.
     pub fn load(&mut self, path: &Path) {
         let read = SceneFile::open(path).and_then(|mut file| {
-            let (scene, studio) = self.options.read(&mut file, &[], &self.framing)?;
-            Ok((scene, studio, file))
+            let (options, aspect) = (&self.options.surroundings, self.framing.aspect());
+            let (scene, studio) = options.read(&mut file, &[], aspect)?;
+            Ok((scene, studio.map(Arc::new), file))
         });
         match read {
             Ok((scene, studio, file)) => {

@@ -1,10 +1,9 @@
 //! The window: its events, its controls and its frames.
 
-use super::change::Change;
 use super::controls::{self, Asked, Told};
 use super::framing::Framing;
 use super::picture::Painter;
-use super::shown::{Inspected, Shown};
+use super::shown::{Change, Inspected, Shown};
 use super::times::Times;
 use super::{View, keys, overlay, saved, search_reload};
 use crate::output;
@@ -69,7 +68,7 @@ impl App {
         times.kept = options.times.is_some().then(Vec::new);
         Ok(Self {
             painter: Painter::open(options.device.name(), &shown, options.size)?,
-            source: options.scene.clone(),
+            source: options.input.scene.clone(),
             framing: Framing::new(options.size, 0),
             options,
             file,

@@ -18,17 +18,8 @@ pub enum Action {
     Close,
 }
 
-/// Keys with one effect.
-pub struct Binding {
-    keys: &'static [Key],
-    action: Action,
-    /// Names of the keys, and their effect, in the help.
-    pub help: [&'static str; 2],
-}
-
-const fn key(keys: &'static [Key], action: Action, help: [&'static str; 2]) -> Binding {
-    Binding { keys, action, help }
-}
+/// Keys with one effect, and in the help their names and their effect.
+type Binding = (&'static [Key], Action, [&'static str; 2]);
 
 /// All keys, in the order of the help.
 pub const KEYS: [Binding; 13] = {
@@ -40,19 +31,19 @@ pub const KEYS: [Binding; 13] = {
     let save = "save the picture as PNG beside the scene";
     let help = ["H or ?", "show or hide this help"];
     [
-        key(&[H, Questionmark, F1], Help, help),
-        key(&[Tab], Panel, ["Tab", "show or hide the panel"]),
-        key(&[Num1], Show(Color), ["1", "lit colours"]),
-        key(&[Num2], Show(Depth), ["2", "depth"]),
-        key(&[Num3], Show(Normals), ["3", "normals"]),
-        key(&[Num4], Show(Steps), ["4", "steps of each pixel's search"]),
-        key(&[Num5], Show(Error), ["5", error]),
-        key(&[F], fragment, ["F", "trace in the fragment stage"]),
-        key(&[C], compute, ["C", "trace in the compute stage"]),
-        key(&[R], ResetCamera, ["R", "reset the camera"]),
-        key(&[P], Screenshot, ["P", save]),
-        key(&[Z], Undo, ["Ctrl+Z", "undo"]),
-        key(&[Escape], Close, ["Esc", "close this help, or quit"]),
+        (&[H, Questionmark, F1], Help, help),
+        (&[Tab], Panel, ["Tab", "show or hide the panel"]),
+        (&[Num1], Show(Color), ["1", "lit colours"]),
+        (&[Num2], Show(Depth), ["2", "depth"]),
+        (&[Num3], Show(Normals), ["3", "normals"]),
+        (&[Num4], Show(Steps), ["4", "steps of each pixel's search"]),
+        (&[Num5], Show(Error), ["5", error]),
+        (&[F], fragment, ["F", "trace in the fragment stage"]),
+        (&[C], compute, ["C", "trace in the compute stage"]),
+        (&[R], ResetCamera, ["R", "reset the camera"]),
+        (&[P], Screenshot, ["P", save]),
+        (&[Z], Undo, ["Ctrl+Z", "undo"]),
+        (&[Escape], Close, ["Esc", "close this help, or quit"]),
     ]
 };
 
@@ -72,10 +63,11 @@ pub fn take(events: &mut Vec<Event>) -> Vec<Action> {
         };
         // Undo alone is held with Ctrl (or Cmd).
         let held = modifiers.command || modifiers.ctrl;
-        let fits = |one: &&Binding| one.keys.contains(key) && (one.action == Action::Undo) == held;
+        let fits =
+            |(keys, action, _): &&Binding| keys.contains(key) && (*action == Action::Undo) == held;
         let bound = KEYS.iter().find(fits).filter(|_| !modifiers.alt);
-        if let Some(bound) = bound.filter(|_| *pressed && !repeat) {
-            actions.push(bound.action);
+        if let Some((_, action, _)) = bound.filter(|_| *pressed && !repeat) {
+            actions.push(*action);
         }
         bound.is_none()
     });
@@ -99,15 +91,15 @@ mod tests {
 
     #[test]
     fn each_key_has_one_effect_and_a_line_of_help() {
-        let all: Vec<_> = KEYS.iter().flat_map(|one| one.keys).collect();
+        let all: Vec<_> = KEYS.iter().flat_map(|(keys, ..)| *keys).collect();
         for (n, key) in all.iter().enumerate() {
             assert!(!all[..n].contains(key), "{key:?}");
         }
         for (_, inspected) in Inspected::NAMES {
-            let shows = |one: &&Binding| one.action == Action::Show(inspected);
+            let shows = |(_, action, _): &&Binding| *action == Action::Show(inspected);
             assert_eq!(KEYS.iter().filter(shows).count(), 1, "{inspected:?}");
         }
-        let told = |one: &Binding| one.help.iter().all(|h| !h.is_empty());
+        let told = |(.., help): &Binding| help.iter().all(|h| !h.is_empty());
         assert!(KEYS.iter().all(told));
     }
 

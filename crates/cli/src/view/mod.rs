@@ -2,7 +2,6 @@
 
 mod actions;
 mod app;
-mod change;
 mod controls;
 mod framing;
 mod keys;
@@ -16,13 +15,9 @@ mod search_reload;
 mod shown;
 mod times;
 
-use super::output;
-use super::reading::ShownOutline;
-use super::studio::Studio;
 use clap::Args;
 use eframe::egui::{ViewportBuilder, vec2};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap::scene::Scene;
 use revmap::settings::{DrawStage, SearchSettings, Solver, Tolerance};
 use revmap_files::SceneFile;
 use std::path::PathBuf;
@@ -36,11 +31,8 @@ use std::sync::Arc;
     revmap view assets/profiles/king.svg --studio --color steelblue\n  \
     revmap view assets/scenes/pawn.toml --stage compute --show steps")]
 pub struct View {
-    /// The scene, a TOML file; or a profile, an SVG drawing or a picture, which is read with
-    /// profile_read = "auto" and profile_smooth = "auto"
-    scene: PathBuf,
     #[command(flatten)]
-    outline: ShownOutline,
+    input: super::reading::Input,
     /// Pixels of the window, across and down
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x800", value_parser = super::options::size)]
     size: (u32, u32),
@@ -58,9 +50,6 @@ pub struct View {
     device: super::options::DeviceChoice,
     #[command(flatten)]
     surroundings: super::options::Surroundings,
-    /// Any key of the scene, as in object.0.bevel=0.4; may be given more than once
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
     /// Quantity to show: color, depth, normals, steps, or error against the reference
     #[arg(long, value_name = "WHAT", default_value = "color", value_parser = super::options::named(&shown::Inspected::NAMES))]
     show: shown::Inspected,
@@ -76,34 +65,17 @@ pub struct View {
 }
 
 impl View {
-    /// The scene of a file, and the studio around it. The camera is chosen as `render --studio`
-    /// chooses it, for the free part of the window.
-    fn read(
-        &self,
-        file: &mut SceneFile,
-        sets: &[String],
-        framing: &framing::Framing,
-    ) -> Result<(Scene, Option<Arc<Studio>>)> {
-        let sets = self.surroundings.sets(file, sets);
-        let mut scene = file.scene(&sets)?;
-        let mut studio = self.surroundings.studio()?;
-        if let Some(studio) = studio.as_mut().filter(|_| file.chooses_camera(&sets)) {
-            studio.frame(&[(scene.clone(), 0.0)], framing.aspect());
-            studio.place_camera(&mut scene);
-        }
-        Ok((scene, studio.map(Arc::new)))
-    }
-
     pub fn run(self) -> Result<()> {
-        output::check(&self.screenshot, "--screenshot", &["png"], &[&self.scene])?;
-        let mut file = SceneFile::open(&self.scene)?;
-        let framing = framing::Framing::new(self.size, app::PANEL as u32);
-        let (scene, studio) = self.read(&mut file, &self.set, &framing)?;
-        output::spare(file.files(), &self.screenshot, "--screenshot")?;
-        output::check(&self.times, "--times", &["csv"], &[&self.scene])?;
-        output::spare(file.files(), &self.times, "--times")?;
-        self.outline.check(&self.scene)?;
-        self.outline.finish(&file, &scene, false)?;
+        let scene_file = self.input.scene.clone();
+        let outputs = self.input.outline.output();
+        let outputs = outputs.and("--screenshot", &self.screenshot, &["png"]);
+        let outputs = outputs.and("--times", &self.times, &["csv"]);
+        outputs.check(&[&scene_file])?;
+        let mut file = SceneFile::open(&scene_file)?;
+        let aspect = framing::Framing::new(self.size, app::PANEL as u32).aspect();
+        let (scene, studio) = self.surroundings.read(&mut file, &self.input.set, aspect)?;
+        outputs.spare(file.files())?;
+        self.input.outline.finish(&file, &scene, false)?;
         let search = SearchSettings {
             solver: self.solver,
             tolerance: self.tolerance,
@@ -111,12 +83,12 @@ impl View {
         };
         let shown = shown::Shown {
             scene,
-            studio,
+            studio: studio.map(Arc::new),
             search,
             stage: self.stage,
             inspected: self.show,
         };
-        let (title, (width, height)) = (app::title(&self.scene), self.size);
+        let (title, (width, height)) = (app::title(&scene_file), self.size);
         let mut app = app::App::new(self, file, shown)?;
         let window = eframe::NativeOptions {
             viewport: ViewportBuilder::default()

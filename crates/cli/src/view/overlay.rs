@@ -61,7 +61,7 @@ pub fn help(context: &Context, free: Rect) {
                 ui.label(effect);
                 ui.end_row();
             };
-            KEYS.iter().for_each(|one| row(ui, one.help));
+            KEYS.iter().for_each(|(.., help)| row(ui, *help));
             row(ui, ["", ""]);
             POINTER.into_iter().for_each(|one| row(ui, one));
         });

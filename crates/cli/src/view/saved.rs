@@ -1,8 +1,6 @@
 //! Files that the window writes: the scene as TOML, a turntable, times of its frames.
 
-use super::shown::Shown;
 use super::times::Cost;
-use crate::animate::turn_about_target;
 use revmap::error::Result;
 use revmap::scene::{BumpForm, Clip, Environment, Light, Object, Scene, Shadow};
 use revmap::settings::name_of;
@@ -10,9 +8,6 @@ use revmap_files::SceneFile;
 use revmap_files::write_bytes;
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
-
-/// Number of frames of a turntable.
-pub const TURNTABLE: u32 = 36;
 
 /// A free path beside `file`: its stem, `-`, a number from 1 on, `ending`.
 pub fn beside(file: &Path, ending: &str) -> PathBuf {
@@ -50,14 +45,6 @@ pub fn write_scene(
     let text = file.text(&changed)?;
     write_bytes(&path, text.as_bytes())?;
     Ok(path)
-}
-
-/// The camera of frame `n` of a turntable.
-pub fn turned(shown: &Shown, n: u32) -> Shown {
-    let mut turned = shown.clone();
-    let angle = std::f64::consts::TAU * f64::from(n) / f64::from(TURNTABLE);
-    turn_about_target(&mut turned.scene.camera, angle);
-    turned
 }
 
 /// Writes the cost of each frame.
@@ -153,23 +140,5 @@ mod tests {
         // The next file gets another name.
         let next = write_scene(&source, &file, &first, &shown).unwrap();
         assert_eq!(next, folder.path().join("cone-2.toml"));
-    }
-
-    #[test]
-    fn a_turntable_comes_round() {
-        let scene = SceneFile::parse(TEXT, ".")
-            .and_then(|mut file| file.scene(&[]))
-            .unwrap();
-        let shown = Shown {
-            scene,
-            studio: None,
-            search: revmap::settings::SearchSettings::default(),
-            stage: revmap::settings::DrawStage::Fragment,
-            inspected: super::super::shown::Inspected::Color,
-        };
-        let quarter = turned(&shown, TURNTABLE / 4).scene.camera.eye;
-        assert!((quarter - DVec3::new(0.0, 2.0, 1.0)).length() < 1e-12);
-        let round = turned(&shown, TURNTABLE).scene.camera.eye;
-        assert!((round - shown.scene.camera.eye).length() < 1e-12);
     }
 }

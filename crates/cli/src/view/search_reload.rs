@@ -15,41 +15,28 @@ const PAUSE: Duration = Duration::from_millis(500);
 pub fn watch(solver: Solver, context: Context) -> Option<Receiver<Result<Solver>>> {
     let mut folder = folder::of(solver)?;
     let mut before = stamps(folder);
-    Some(watched(PAUSE, context, move || {
-        let now = stamps(folder);
-        if now == before {
-            return None;
-        }
-        before = now;
-        let made = folder::reload(&folder.spec);
-        let made = made.and_then(|solver| folder::compile(solver).map(|()| solver));
-        if let Some(new) = made.as_ref().ok().and_then(|solver| folder::of(*solver)) {
-            folder = new;
-            before = stamps(folder); // it may include other files
-        }
-        Some(made)
-    }))
-}
-
-/// Sends what `look` finds, on a thread of its own, and wakes the window.
-pub fn watched<T: Send + 'static>(
-    pause: Duration,
-    context: Context,
-    mut look: impl FnMut() -> Option<T> + Send + 'static,
-) -> Receiver<T> {
     let (send, changed) = channel();
     std::thread::spawn(move || {
         loop {
-            if let Some(found) = look() {
-                if send.send(found).is_err() {
-                    return; // the window is closed
-                }
-                context.request_repaint();
+            std::thread::sleep(PAUSE);
+            let now = stamps(folder);
+            if now == before {
+                continue;
             }
-            std::thread::sleep(pause);
+            before = now;
+            let made = folder::reload(&folder.spec);
+            let made = made.and_then(|solver| folder::compile(solver).map(|()| solver));
+            if let Some(new) = made.as_ref().ok().and_then(|solver| folder::of(*solver)) {
+                folder = new;
+                before = stamps(folder); // it may include other files
+            }
+            if send.send(made).is_err() {
+                return; // the window is closed
+            }
+            context.request_repaint();
         }
     });
-    changed
+    Some(changed)
 }
 
 /// The times of the folder's files.

@@ -2,31 +2,16 @@
 
 use crate::run::{Bench, CAMERA, SVG};
 use std::fmt::Write;
-use std::process::Command;
-
-/// The program with at most so many MiB of addresses.
-fn limited(bench: &Bench, mib: u32, arguments: &str) -> Command {
-    let own = bench.command(arguments);
-    let mut command = Command::new("sh");
-    command.args(["-c", "ulimit -v \"$0\" && exec \"$@\""]);
-    command
-        .arg((mib << 10).to_string())
-        .arg(own.get_program())
-        .args(own.get_args());
-    command
-        .current_dir(bench.path(""))
-        .env_remove("RUST_BACKTRACE")
-        .env_remove("REVMAP_DEVICE");
-    command
-}
 
 /// Wants a command refused at each of these limits, MiB.
 #[track_caller]
 fn refused_at(bench: &Bench, limits: &[u32], arguments: &str) {
     for &mib in limits {
         println!("{mib} MiB: {arguments}");
+        let limit = format!("ulimit -v {} && exec \"$0\" \"$@\"", mib << 10);
+        let mut command = bench.launched(&["sh", "-c", &limit], arguments);
         // Threads fail in other words: "give more memory, or allow more threads".
-        bench.refused_by(&mut limited(bench, mib, arguments), 1, &["memory"]);
+        bench.refused_by(&mut command, 1, &["memory"]);
     }
 }
 

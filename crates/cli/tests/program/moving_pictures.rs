@@ -1,6 +1,6 @@
 //! `revmap animate`: moving pictures, read again, and how things move in them.
 
-use crate::run::{Bench, CAMERA, CONE, SVG, holds, lines};
+use crate::run::{Bench, CAMERA, CONE, SVG, holds, lines, table};
 use std::fs::File;
 use std::io::BufReader;
 
@@ -109,47 +109,39 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
         "aside.toml",
         format!("{CAMERA}{CONE}position = [0.2, 0, 0]\n"),
     );
-    let film = "animate --size 64x48 --overwrite --set background=[1,1,1,1]";
-    let (turn, vary) = ("--turn 360 --turntable", "--vary object.0.extend=0:0.02");
-    let rings = "--set object.0.color_map=rings.png";
-    let plain = ["color_map", "--bounce", "without --turntable"];
-    let outputs = ["a.gif", "a.webp", "a.apng", "frames"];
-    for (arguments, words) in [
-        (format!("scene.toml --frames 6 {turn}"), plain.as_slice()),
-        (format!("a.svg --frames 6 {turn}"), &plain),
-        (format!("a.svg --frames 6 {turn} --studio"), &plain[..2]),
-        (
-            "a.svg --frames 6 --turn 360 --studio".to_owned(),
-            &plain[..2],
-        ),
-        (format!("a.svg --frames 6 {turn} {rings}"), &plain[1..]),
-        ("a.svg --frames 2 --turn 720".to_owned(), &["whole turns"]),
-        (
-            "a.svg --frames 6 --vary object.0.chamfer=0.1:0.9".to_owned(),
-            &["object.0.chamfer"],
-        ),
-    ] {
-        for output in outputs {
+    let film = "animate --size 64x48 --frames 6 --overwrite --set background=[1,1,1,1]";
+    let remedies = ["color_map", "--bounce", "without --turntable"];
+    for row in table(
+        "scene.toml --turn 360 --turntable     | color_map | --bounce | without --turntable
+         a.svg --turn 360 --turntable          | color_map | --bounce | without --turntable
+         a.svg --turn 360 --turntable --studio | color_map | --bounce
+         a.svg --turn 360 --studio             | color_map | --bounce
+         a.svg --turn 360 --turntable --set object.0.color_map=rings.png | --bounce | without --turntable
+         a.svg --turn 2160                     | whole turns
+         a.svg --vary object.0.chamfer=0.1:0.9 | object.0.chamfer",
+    ) {
+        let (arguments, words) = (row[0], &row[1..]);
+        for output in ["a.gif", "a.webp", "a.apng", "frames"] {
             let found = bench.warned(&format!("{film} {arguments} -o {output}"));
             assert_eq!(found.len(), 1, "{arguments} {output}: {found:?}");
-            for word in plain.iter().chain(words) {
+            for word in remedies.iter().chain(words) {
                 let wanted = words.contains(word);
                 assert_eq!(found[0].contains(word), wanted, "{word}: {found:?}");
             }
         }
     }
-    for arguments in [
-        format!("scene.toml {turn} --set object.0.color_map=sides.png"),
-        "scene.toml --turn 360".to_owned(),
-        format!("scene.toml {turn} {vary}"),
-        format!("scene.toml {turn} {vary} --studio"),
-        format!("aside.toml {turn}"),
-        format!("aside.toml {turn} --studio"),
-        format!("scene.toml {vary}"),
-    ] {
+    for row in table(
+        "scene.toml --turn 360 --turntable --set object.0.color_map=sides.png
+         scene.toml --turn 360
+         scene.toml --turn 360 --turntable --vary object.0.extend=0:0.02
+         scene.toml --turn 360 --turntable --vary object.0.extend=0:0.02 --studio
+         aside.toml --turn 360 --turntable
+         aside.toml --turn 360 --turntable --studio
+         scene.toml --vary object.0.extend=0:0.02",
+    ) {
         for output in ["a.webp", "frames"] {
-            let found = bench.warned(&format!("{film} --frames 6 {arguments} -o {output}"));
-            assert!(found.is_empty(), "{arguments}: {found:?}");
+            let found = bench.warned(&format!("{film} {} -o {output}", row[0]));
+            assert!(found.is_empty(), "{row:?}: {found:?}");
         }
     }
 }

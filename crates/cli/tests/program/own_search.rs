@@ -11,7 +11,7 @@ use revmap_compare::{CompareOptions, Comparison, compare};
 use revmap_files::SceneFile;
 use revmap_searches::{CIRCLE, LINEAR, SECANT, folder};
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Command;
 
 mod faults;
 
@@ -42,70 +42,38 @@ fn changed(text: &str, change: &str) -> String {
     text.replacen(&from, &to, 1)
 }
 
-/// A folder `mine` in a folder of its own, with a cache of its own.
-struct Own {
-    bench: Bench,
-    cache: tempfile::TempDir,
-    /// Seconds of a frame.
-    limit: &'static str,
+/// A folder with the search `mine` and a cache of its own.
+fn own_search(toml: &str, glsl: &str) -> Bench {
+    let mut own = Bench::new();
+    for folder in ["mine", "cache"] {
+        std::fs::create_dir(own.path(folder)).unwrap();
+    }
+    own.file("mine/search.toml", toml);
+    own.file("mine/search.glsl", glsl);
+    own.set("XDG_CACHE_HOME", own.path("cache").to_str().unwrap());
+    limit(&mut own, "20");
+    own
 }
 
-impl Own {
-    fn new(toml: &str, glsl: &str) -> Self {
-        let bench = Bench::new();
-        std::fs::create_dir(bench.path("mine")).unwrap();
-        bench.file("mine/search.toml", toml);
-        bench.file("mine/search.glsl", glsl);
-        let cache = tempfile::tempdir().unwrap();
-        let limit = "20";
-        Self {
-            bench,
-            cache,
-            limit,
-        }
-    }
+/// Sets the seconds of a frame.
+fn limit(own: &mut Bench, seconds: &str) {
+    own.set("REVMAP_TIME_LIMIT", seconds);
+}
 
-    fn good() -> Self {
-        Self::new(TOML, &format!("{HEAD}{BODY}"))
-    }
+fn good() -> Bench {
+    own_search(TOML, &format!("{HEAD}{BODY}"))
+}
 
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = self.bench.command(arguments);
-        command.env("XDG_CACHE_HOME", self.cache.path());
-        command.env("REVMAP_TIME_LIMIT", self.limit);
-        command
-    }
+/// A good folder with another last line of its GLSL.
+fn ending(line: &str) -> Bench {
+    own_search(TOML, &format!("{HEAD}{}", BODY.replace(END, line)))
+}
 
-    /// A good folder with another last line of its GLSL.
-    fn ending(line: &str) -> Self {
-        Self::new(TOML, &format!("{HEAD}{}", BODY.replace(END, line)))
-    }
-
-    fn run(&self, arguments: &str) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
-    /// Standard error of a run that is done.
-    #[track_caller]
-    fn done(&self, arguments: &str) -> Vec<String> {
-        let output = self.run(arguments);
-        assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
-        lines(&output)
-    }
-
-    /// Wants one line on standard error, with all of `words`.
-    #[track_caller]
-    fn refused(&self, arguments: &str, code: i32, words: &[&str]) {
-        self.bench
-            .refused_by(&mut self.command(arguments), code, words);
-    }
-
-    #[track_caller]
-    fn renders(&self, solver: &str) -> Vec<String> {
-        self.done(&format!(
-            "render scene.toml --size 96x72 -o a.png --solver {solver}"
-        ))
-    }
+/// Standard error of a picture by this search.
+#[track_caller]
+fn renders(own: &Bench, solver: &str) -> Vec<String> {
+    let render = "render scene.toml --size 96x72 -o a.png --solver";
+    lines(&own.done(&format!("{render} {solver}")))
 }
 
 const RENDER: &str = "render scene.toml --size 96x72 -o b.png --solver";
@@ -192,7 +160,7 @@ fn the_page_leads_to_a_search_that_is_right() {
         ("uint search", "float search"),
     ] {
         bench.file("mine/search.glsl", template.replace(from, to));
-        let said = lines(&bench.command("searches ./mine").output().unwrap());
+        let said = lines(&bench.run("searches ./mine"));
         let said = said[0].trim_start_matches("revmap: ");
         assert!(page.contains(said), "{said}");
     }
@@ -233,11 +201,11 @@ fn the_page_leads_to_a_search_that_is_right() {
 /// Searches on the library's patches, and on a picture of solid texels.
 #[test]
 fn patches_and_binary_maps_are_read() {
-    let patches = Own::new(
+    let patches = own_search(
         &reading("'patches'").replace("'mine'", "'tree'"),
         &quadric_search("return search_quadric(m, side, vec2(-1e30, 1e30), s, steps, quadric);"),
     );
-    let binary = Own::new(
+    let binary = own_search(
         &TOML
             .replace("'map'", "'binary map'")
             .replace("'mine'", "'halved'"),
@@ -262,7 +230,7 @@ fn patches_and_binary_maps_are_read() {
         ),
     );
     let device = Device::open_validated(None).unwrap();
-    let load = |own: &Own| folder::load(own.bench.path("mine").to_str().unwrap()).unwrap();
+    let load = |own: &Bench| folder::load(own.path("mine").to_str().unwrap()).unwrap();
     let [patches_of, binary_of] = [load(&patches), load(&binary)];
     for (stage, sets) in STAGES.into_iter().zip([&[][..], &["object.0.bevel=0.2"]]) {
         let truth = drawn(&device, Solver::Quadric, stage, sets);
@@ -355,9 +323,9 @@ fn a_new_folder_draws_and_is_listed() {
 /// Words are kept by their content; a damaged file is made anew, a changed GLSL gets others.
 #[test]
 fn compiled_words_are_kept() {
-    let own = Own::good();
+    let own = good();
     let kept = || {
-        let folder = own.cache.path().join("revmap/searches");
+        let folder = own.path("cache/revmap/searches");
         let entries = std::fs::read_dir(folder).unwrap();
         let files = entries.map(|e| e.unwrap().path());
         let files = files.map(|f| (f.clone(), std::fs::read(f).unwrap()));
@@ -365,16 +333,16 @@ fn compiled_words_are_kept() {
         files.sort();
         files
     };
-    own.renders("mine");
+    renders(&own, "mine");
     let first = kept();
     assert!(!first.is_empty());
     std::fs::write(&first[0].0, b"damaged").unwrap();
-    let picture = own.bench.read("a.png");
-    own.renders("mine");
+    let picture = own.read("a.png");
+    renders(&own, "mine");
     assert_eq!(kept(), first);
-    assert_eq!(own.bench.read("a.png"), picture);
+    assert_eq!(own.read("a.png"), picture);
     let glsl = format!("{HEAD}{}", BODY.replace("1e-4", "2e-4"));
-    own.bench.file("mine/search.glsl", glsl);
-    own.renders("mine");
+    own.file("mine/search.glsl", glsl);
+    renders(&own, "mine");
     assert_eq!(kept().len(), 2 * first.len());
 }

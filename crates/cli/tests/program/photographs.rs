@@ -95,7 +95,7 @@ fn what_shows_no_turned_thing_is_refused_by_name() {
     bench.refused(a_drawing, 1, &["a.svg", "pictures alone"]);
     bench.refuses(
         2,
-        "mesh a.svg -o no.stl --show-outline no.png      | --show-outline
+        "mesh a.svg -o no.stl --show-outline no.png      | --show-outline | for pictures | leave it out
          mesh flag.png -o no.stl --show-outline flag.png | flag.png | is read as well",
     );
 }

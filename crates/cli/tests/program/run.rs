@@ -1,5 +1,6 @@
 //! Runs of the program in a folder of their own.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
@@ -12,15 +13,23 @@ pub const CONE: &str = "[[object]]\npolygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\n
 /// A folder with the files of one case, and runs of the program in it.
 pub struct Bench {
     folder: TempDir,
+    /// Variables of the environment.
+    variables: BTreeMap<&'static str, String>,
 }
 
 impl Bench {
     pub fn new() -> Self {
         let bench = Self {
             folder: tempfile::tempdir().unwrap(),
+            variables: BTreeMap::new(),
         };
         bench.file("scene.toml", format!("{CAMERA}{CONE}"));
         bench
+    }
+
+    /// Sets a variable of the environment.
+    pub fn set(&mut self, name: &'static str, value: impl Into<String>) {
+        self.variables.insert(name, value.into());
     }
 
     pub fn path(&self, name: &str) -> PathBuf {
@@ -57,7 +66,8 @@ impl Bench {
             .current_dir(self.folder.path())
             .stdin(Stdio::null())
             .env_remove("RUST_BACKTRACE")
-            .env_remove("REVMAP_DEVICE");
+            .env_remove("REVMAP_DEVICE")
+            .envs(&self.variables);
         command
     }
 
@@ -67,6 +77,12 @@ impl Bench {
         let mut command = Command::new(launcher[0]);
         command.args(&launcher[1..]).arg(program.get_program());
         command.args(program.get_args()).current_dir(self.path(""));
+        for (name, value) in program.get_envs() {
+            match value {
+                Some(value) => command.env(name, value),
+                None => command.env_remove(name),
+            };
+        }
         command
     }
 
@@ -113,9 +129,13 @@ impl Bench {
         assert_eq!(self.names(), before);
     }
 
+    pub fn run(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
     #[track_caller]
     pub fn done(&self, arguments: &str) -> Output {
-        let output = self.command(arguments).output().unwrap();
+        let output = self.run(arguments);
         assert_eq!(output.status.code(), Some(0), "{:?}", lines(&output));
         output
     }
@@ -163,7 +183,7 @@ impl Bench {
 
     /// Exit code and lines on standard error of a run.
     pub fn ended(&self, arguments: &str) -> (Option<i32>, Vec<String>) {
-        let output = self.command(arguments).output().unwrap();
+        let output = self.run(arguments);
         (output.status.code(), lines(&output))
     }
 }

@@ -2,6 +2,7 @@
 //! there, held to docs/shaders-navi21.csv.
 
 use crate::run::{Bench, lines};
+use revmap_bench::report::table::Table;
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -28,19 +29,9 @@ fn manifest() -> PathBuf {
 }
 
 fn rows(text: &str) -> Vec<Row> {
-    // Cells with commas are quoted.
-    let cells = |line: &str| -> Vec<String> {
-        let quoted = line.split('"').enumerate().map(|(i, part)| match i % 2 {
-            1 => part.replace(',', ";"),
-            _ => part.to_owned(),
-        });
-        let line: String = quoted.collect();
-        line.split(',').map(str::to_owned).collect()
-    };
-    let mut all = text.lines().map(cells);
-    let head = all.next().unwrap();
-    let row = |row| head.iter().cloned().zip(row).collect();
-    all.map(row).collect()
+    let Table { header, records } = Table::parse(text).unwrap();
+    let row = |record| header.iter().cloned().zip(record).collect();
+    records.into_iter().map(row).collect()
 }
 
 fn compiled() -> &'static [Row] {

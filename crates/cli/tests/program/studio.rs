@@ -147,11 +147,8 @@ fn colours_are_those_of_css() {
         let [r, g, b, _] = picture.get_pixel(20, 15).0;
         (r > g.saturating_add(30), b > g.saturating_add(30))
     };
-    let colors = ["red", "#f00", "#ff0000", "hsl(0,100%,50%)", "rgb(255,0,0)"];
-    let red = colors.map(|color| format!("a.svg --studio --color {color}"));
-    for arguments in &red {
-        assert_eq!(tint(arguments), (true, false), "{arguments}");
-    }
+    let red = "a.svg --studio --color hsl(0,100%,50%)";
+    assert_eq!(tint(red), (true, false));
     assert_eq!(tint("two.toml --color blue"), (false, true));
     // A key that is set says more.
     let set = tint("a.svg --color blue --set object.0.color=[1,0,0]");

@@ -3,7 +3,7 @@
 use crate::random::Random;
 use crate::{object, volume};
 use glam::DVec2;
-use revmap::profile::{Outline, Profile};
+use revmap::profile::{Profile, Segment};
 use revmap::scene::Object;
 use revmap_tessellation::Triangles;
 use std::collections::{HashMap, HashSet};
@@ -32,20 +32,16 @@ fn faults(mesh: &Triangles) -> usize {
     edges.values().filter(|count| **count != [1, 1]).count()
 }
 
-fn segments(outline: &Outline) -> impl Iterator<Item = [DVec2; 2]> {
-    outline.segments().map(|s| [s.a, s.b])
-}
-
 /// True if some point off the axis is that of two corners.
 fn touches(object: &Object) -> bool {
     let mut seen = HashSet::new();
-    let mut points = segments(&object.profile.outline).map(|[a, _]| a);
+    let mut points = object.profile.outline.segments().map(|s| s.a);
     points.any(|p| p.x > 0.0 && !seen.insert([p.x, p.y].map(f64::to_bits)))
 }
 
 /// Volume and surface of a solid of frusta.
 fn measures(object: &Object) -> [f64; 2] {
-    let parts = segments(&object.profile.outline).map(|[a, b]| {
+    let parts = object.profile.outline.segments().map(|Segment { a, b }| {
         let volume = PI / 3.0 * (b.y - a.y) * (a.x * a.x + a.x * b.x + b.x * b.x);
         [volume, PI * (a.x + b.x) * a.distance(b)]
     });

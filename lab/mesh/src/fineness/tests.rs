@@ -2,7 +2,7 @@
 use super::super::tests::{CUP, contour, is_closed, ring, triangles};
 use super::*;
 use glam::{DVec2, DVec3, Vec3};
-use revmap::profile::Profile;
+use revmap::profile::{Profile, Segment};
 use revmap::scene::{Camera, CameraFrame, GrownProfiles, Offset, Scene};
 use revmap::surface::ContourSource;
 use revmap_compare::TruePicture;
@@ -108,12 +108,6 @@ fn outline(
     (bare_edges, points)
 }
 
-fn apart(p: DVec2, [a, b]: &[DVec2; 2]) -> f64 {
-    let way = b - a;
-    let along = (p - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
-    p.distance(a + along.clamp(0.0, 1.0) * way)
-}
-
 /// The largest distance of a mesh's outline from the true one, and the reverse, in pixels.
 fn errors(drawn: (&Mesh, &Placement), scene: &Scene, camera: &CameraFrame) -> [f64; 2] {
     let picture = TruePicture::new(scene, SIZE.0, SIZE.1).unwrap();
@@ -138,7 +132,9 @@ fn errors(drawn: (&Mesh, &Placement), scene: &Scene, camera: &CameraFrame) -> [f
                     &mut high
                 }) = middle;
             }
-            let nearest = edges.iter().map(|edge| apart(DVec2::new(low, y), edge));
+            let p = DVec2::new(low, y);
+            let to = |&[a, b]: &[DVec2; 2]| p.distance(Segment { a, b }.nearest(p).0);
+            let nearest = edges.iter().map(to);
             back = back.max(nearest.fold(f64::INFINITY, f64::min));
         }
     }

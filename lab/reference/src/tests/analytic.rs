@@ -14,6 +14,7 @@ use super::*;
 use crate::random::Random;
 use glam::{DAffine3, DVec2};
 use proptest::prelude::*;
+use revmap::profile::Segment;
 use revmap::scene::Growth;
 
 /// Pieces of a ray shorter than this, in object units, mark it as grazing.
@@ -121,35 +122,6 @@ fn bisect(holds: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
     }
 }
 
-/// The segments of all loops.
-fn segments(outline: &Outline) -> impl Iterator<Item = [DVec2; 2]> {
-    let sides = |l: &'_ Vec<DVec2>| -> Vec<[DVec2; 2]> {
-        let ends = l.iter().cycle().skip(1);
-        l.iter().zip(ends).map(|(&a, &b)| [a, b]).collect()
-    };
-    outline.loops.iter().flat_map(sides)
-}
-
-/// The distance `d` by brute force: all segments for the size, the winding number for the sign.
-pub fn signed_distance(outline: &Outline, q: DVec2) -> f64 {
-    let mut nearest = f64::INFINITY;
-    let mut winding = 0;
-    for [a, b] in segments(outline) {
-        let (ab, aq) = (b - a, q - a);
-        // A point left of an upward segment counts up, right of a downward one down.
-        if a.y <= q.y {
-            winding += i32::from(b.y > q.y && ab.perp_dot(aq) > 0.0);
-        } else {
-            winding -= i32::from(b.y <= q.y && ab.perp_dot(aq) < 0.0);
-        }
-        if a.x.max(b.x) > crate::field::ON_AXIS {
-            let foot = a + ab * (aq.dot(ab) / ab.dot(ab)).clamp(0.0, 1.0);
-            nearest = nearest.min(q.distance(foot));
-        }
-    }
-    if winding != 0 { -nearest } else { nearest }
-}
-
 /// Every curve on which `F` may vanish.
 fn curves(object: &Object) -> Vec<Curve> {
     let Offset {
@@ -160,7 +132,7 @@ fn curves(object: &Object) -> Vec<Curve> {
     // `w = start + slope z` above and below the chamfer's depth.
     let pieces = [[extend + bevel, -bevel], [extend + bevel * chamfer, 0.0]];
     let mut all = Vec::new();
-    for [a, b] in segments(&object.profile.outline) {
+    for Segment { a, b } in object.profile.outline.segments() {
         let along = (b - a).normalize_or_zero();
         let normal = DVec2::new(along.y, -along.x);
         for &[start, slope] in &pieces[..1 + usize::from(bevel != 0.0)] {
@@ -233,7 +205,7 @@ fn trace_local(object: &Object, origin: DVec3, direction: DVec3) -> Found {
         let q = DVec2::new(p.truncate().length(), p.z);
         let offset = &object.offset;
         let w = offset.extend + offset.bevel * (1.0 - q.y).min(offset.chamfer);
-        signed_distance(&object.profile.outline, q) - w
+        object.profile.outline.signed_distance(q) - w
     };
     let is_solid = |x: f64| value(start + way * x) <= 0.0;
     // The outward normal points against a ray that enters, and along one that leaves.

@@ -157,7 +157,7 @@ mod compiler {
             cache.join("searches").join(format!("{key:016x}.spv"))
         });
         if let Some(bytes) = kept.as_deref().and_then(cache::read) {
-            let words = bytes.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
+            let words = bytes.as_chunks().0.iter().copied();
             return Ok(words.map(u32::from_le_bytes).collect());
         }
         let words = compiled(folder, module, &hook)?;
@@ -213,16 +213,15 @@ mod compiler {
         if let Ok(plain) = made_at(OptimizationLevel::Zero)
             && let Some(name) = returns::missing(plain.as_binary())
         {
-            let file = folder.sources.first().map(|(_, path, _)| path.clone());
+            let value = if name == "search" {
+                "EXHAUSTED"
+            } else {
+                "false"
+            };
             let message = format!(
-                "the function `{name}` can end without a return; end it with one, such as `return {};`",
-                if name == "search" {
-                    "EXHAUSTED"
-                } else {
-                    "false"
-                }
+                "the function `{name}` can end without a return; end it with one, such as `return {value};`"
             );
-            return Err(Error::new(ErrorKind::Content, message).in_file(file.unwrap_or_default()));
+            return Err(Error::new(ErrorKind::Content, message).in_file(folder.glsl()));
         }
         let made = made_at(OptimizationLevel::Performance);
         let made =
@@ -249,11 +248,7 @@ mod compiler {
         if let Some(line) = lines().find(own) {
             return format!("{}{more}", line.trim());
         }
-        let file = folder
-            .sources
-            .first()
-            .map(|(_, path, _)| path.display().to_string());
-        let file = file.unwrap_or_default();
+        let file = folder.glsl().display();
         let head = function(folder).0;
         if let Some((place, kind)) = returned(folder) {
             return format!(

@@ -28,8 +28,7 @@ pub fn check_frame(solver: Solver, frame: &Frame) -> Result<()> {
             "the search returned a wrong value in {values} pixels; return FOUND, LEFT, NEARLY or EXHAUSTED"
         ),
     };
-    let file = folder.sources.first().map(|(_, path, _)| path.clone());
-    Err(Error::new(ErrorKind::Content, message).in_file(file.unwrap_or_default()))
+    Err(Error::new(ErrorKind::Content, message).in_file(folder.glsl()))
 }
 
 /// Checks that a search draws the solids of a scene.

@@ -157,10 +157,7 @@ fn parsed(text: &str, rows: u32) -> std::result::Result<SearchTable, String> {
         let count = numbers.len();
         return Err(format!("wrote {count} numbers; write four for each vector"));
     }
-    let vectors: Vec<[u32; 4]> = numbers
-        .chunks_exact(4)
-        .map(|v| [v[0], v[1], v[2], v[3]])
-        .collect();
+    let vectors: Vec<[u32; 4]> = numbers.as_chunks().0.to_vec();
     let length = u32::try_from(vectors.len()).unwrap_or(u32::MAX);
     Ok(SearchTable {
         vectors,

@@ -24,12 +24,12 @@ fn faults_of_descriptions_name_the_file_and_the_remedy() {
          1.5 => 3.5                            | parameters.omega | outside
          1.5 => 1                              | parameters.omega | two kinds",
     ) {
-        let own = Own::new(&changed(&whole, row[0]), &format!("{HEAD}{BODY}"));
+        let own = own_search(&changed(&whole, row[0]), &format!("{HEAD}{BODY}"));
         let words = [&["mine/search.toml"], &row[1..]].concat();
         own.refused(&format!("{RENDER} mine"), 2, &words);
     }
-    let own = Own::new(&format!("{TOML}{parameters}"), &format!("{HEAD}{BODY}"));
-    own.renders("mine:omega=1.9");
+    let own = own_search(&format!("{TOML}{parameters}"), &format!("{HEAD}{BODY}"));
+    renders(&own, "mine:omega=1.9");
     let tries = "mine:omga=1.2  | omga   | give one of omega
                  mine:omega=2.5 | 1.0 to 2.0
                  mine:omega=x   | a number
@@ -38,7 +38,7 @@ fn faults_of_descriptions_name_the_file_and_the_remedy() {
     for row in table(tries) {
         own.refused(&format!("{RENDER} {}", row[0]), 2, &row[1..]);
     }
-    std::fs::remove_file(own.bench.path("mine/search.glsl")).unwrap();
+    std::fs::remove_file(own.path("mine/search.glsl")).unwrap();
     let words = ["glsl", "search.glsl", "not in the folder"];
     own.refused(&format!("{RENDER} mine"), 2, &words);
 }
@@ -62,8 +62,8 @@ fn errors_of_glsl_name_file_and_line() {
         let glsl = changed(&format!("{HEAD}{BODY}"), row[0]);
         // The text that is compiled differs.
         let inside = ["inside = true", "inside = false"][n % 2];
-        let own = Own::new(&TOML.replace("inside = true", inside), &glsl);
-        own.bench.file("mine/own.glsl", "\nvec5 x;\n");
+        let own = own_search(&TOML.replace("inside = true", inside), &glsl);
+        own.file("mine/own.glsl", "\nvec5 x;\n");
         own.refused(&format!("{RENDER} mine"), 1, &row[1..]);
     }
     // Every way through these functions returns.
@@ -73,11 +73,11 @@ fn errors_of_glsl_name_file_and_line() {
         format!("for (;;) {{ if (s > m.s_end) {{ return LEFT; }} {near} }}"),
         format!("switch (int(s > m.s_end)) {{ case 1: return LEFT; default: {near} }}"),
     ] {
-        Own::ending(&end).renders("mine");
+        renders(&ending(&end), "mine");
     }
     // A table of which the eye may be inside.
     let toml = reading("'table'") + "[table]\nprogram = ['true']\n";
-    let own = Own::new(&toml, &quadric_search("quadric = vec4(1.0); return LEFT;"));
+    let own = own_search(&toml, &quadric_search("quadric = vec4(1.0); return LEFT;"));
     let words = [
         "mine/search.glsl: search.toml says inside = true",
         "`bool starts_in_table(Meridian m)`",
@@ -89,7 +89,7 @@ fn errors_of_glsl_name_file_and_line() {
 /// What the picture of `searches` shows is a warning there, and in a run that tries the folder.
 #[test]
 fn a_search_that_hits_nothing_or_passes_its_limit_is_named() {
-    let none = Own::ending("return LEFT;");
+    let none = ending("return LEFT;");
     let said = lines(&none.run("searches ./mine"));
     let warned = "warning: mine hits nothing in the test picture of the fragment stage";
     assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");
@@ -105,20 +105,20 @@ fn a_search_that_hits_nothing_or_passes_its_limit_is_named() {
     assert!(said.iter().any(|l| l.starts_with(warned)), "{said:?}");
 
     let body = BODY.replace("i < most_steps() && f > 1e-4", "i < 400");
-    let long = Own::new(TOML, &format!("{HEAD}{body}"));
+    let long = own_search(TOML, &format!("{HEAD}{body}"));
     let said = lines(&long.run("searches ./mine"));
     let warned =
         "look-ups for a pixel in the compute stage, but most_steps() is 64: bound the loop";
     assert!(said.iter().any(|l| l.contains(warned)), "{said:?}");
-    assert!(lines(&Own::good().run("searches ./mine")).is_empty());
+    assert!(lines(&good().run("searches ./mine")).is_empty());
 }
 
 #[test]
 fn the_limit_of_a_frame_is_a_number_of_seconds() {
-    let mut own = Own::good();
-    own.limit = "7.5";
-    own.renders("mine");
-    own.limit = "abc";
+    let mut own = good();
+    limit(&mut own, "7.5");
+    renders(&own, "mine");
+    limit(&mut own, "abc");
     let words = ["REVMAP_TIME_LIMIT is \"abc\"", "seconds"];
     own.refused(&format!("{RENDER} mine"), 2, &words);
 }
@@ -132,14 +132,14 @@ fn wrong_values_are_counted() {
         ("s = 1.0 / (s - s); return FOUND;", no_number),
         ("return s > m.s_end ? LEFT : 7u;", "wrong value in"),
     ] {
-        let said = Own::ending(line).renders("mine");
+        let said = renders(&ending(line), "mine");
         let is = |l: &String| l.contains("warning: mine/search.glsl") && l.contains(word);
         assert!(said.iter().any(is), "{said:?}");
     }
     // A solid that the search does not draw.
     let toml = TOML.replace("bevels = true", "bevels = false");
-    let own = Own::new(&toml, &format!("{HEAD}{BODY}"));
-    own.renders("mine");
+    let own = own_search(&toml, &format!("{HEAD}{BODY}"));
+    renders(&own, "mine");
     let beveled = format!("{RENDER} mine --set object.0.bevel=0.2");
     own.refused(&beveled, 1, &["bevel", "mine", "bevels = false"]);
 }
@@ -153,8 +153,8 @@ fn an_endless_search_ends_no_run() {
         let turns = format!("while ({when}) {{ f = min(f, {turn}); }}");
         HEAD.to_owned() + &BODY.replacen('{', &format!("{{\n    {turns}"), 1)
     };
-    let mut own = Own::new(TOML, &endless("f > -9.0"));
-    own.limit = "2";
+    let mut own = own_search(TOML, &endless("f > -9.0"));
+    limit(&mut own, "2");
     let words = ["a frame by mine took more than 2 seconds", "most_steps()"];
     own.refused(
         "render scene.toml --size 640x480 -o b.png --solver mine",
@@ -164,28 +164,27 @@ fn an_endless_search_ends_no_run() {
     let scene = "scene.toml --size 640x480 --quick";
     left_out(&own, scene, "took more than 2 seconds");
     // Endless for one scene of the run alone: the test picture does not show it.
-    let mut own = Own::new(TOML, &endless("f > -9.0 && shape.extend > 0.0"));
-    own.limit = "2";
-    own.bench
-        .object("polygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\nextend = 0.01");
+    let mut own = own_search(TOML, &endless("f > -9.0 && shape.extend > 0.0"));
+    limit(&mut own, "2");
+    own.object("polygon = [[0, 0.1], [0.3, 0.1], [0, 0.9]]\nextend = 0.01");
     left_out(&own, scene, "begins again without mine");
 }
 
 /// A run by `mine` and `circle` has the rows of `circle`, and says why those of `mine` are missing.
 #[track_caller]
-fn left_out(own: &Own, what: &str, why: &str) {
+fn left_out(own: &Bench, what: &str, why: &str) {
     let bench = format!("bench {what} --solver mine,circle --passes 2 --rounds 1 -o out");
-    let said = own.done(&bench).join("\n");
+    let said = lines(&own.done(&bench)).join("\n");
     println!("{said}");
     holds(&said, &[why, "warning: mine was left out"]);
-    let results = own.bench.text("out/results.csv");
+    let results = own.text("out/results.csv");
     assert!(results.contains(",circle,") && !results.contains(",mine,"));
-    holds(&own.bench.text("out/excluded.csv"), &["mine"]);
+    holds(&own.text("out/excluded.csv"), &["mine"]);
 }
 
 #[test]
 fn a_run_measures_the_others_and_names_the_origin() {
-    let own = Own::new(
+    let own = own_search(
         TOML,
         &format!("{HEAD}{}", BODY.replace("f > 1e-4", "nothing")),
     );
@@ -200,22 +199,22 @@ fn a_run_measures_the_others_and_names_the_origin() {
         &["mine failed: ", "mine/search.glsl:3:"],
     );
     // One that works stands in both reports with its origin.
-    let own = Own::good();
+    let own = good();
     let two = "--passes 2 --rounds 1 -o";
     let scene = "scene.toml --size 64x48 --quick --solver ./mine,circle";
     own.done(&format!("bench {scene} {two} out"));
     own.run("stability cone-tip --quick --solver ./mine,exact -o s");
-    holds(&own.bench.text("out/results.csv"), &[",mine,"]);
+    holds(&own.text("out/results.csv"), &[",mine,"]);
     for file in ["out/report.html", "out/machine.txt", "s/report.html"] {
         let origin = "not revmap's own: folder ./mine, files ";
-        holds(&own.bench.text(file), &[origin]);
+        holds(&own.text(file), &[origin]);
     }
     // As a plan names it.
     let plan = "about = 'x'\ntitle = 'x'\nviews = [{ name = 'one', solids = ['vase'] }]\n\
         measure = [{ methods = ['./mine', 'circle'], sizes = ['64x48'] }]\nshow = []\n";
-    own.bench.file("plan.toml", plan);
+    own.file("plan.toml", plan);
     own.done(&format!("bench --plan plan.toml {two} p"));
-    holds(&own.bench.text("p/results.csv"), &[",mine,"]);
+    holds(&own.text("p/results.csv"), &[",mine,"]);
 }
 
 /// Tables of a program, good and bad.
@@ -234,16 +233,16 @@ fn programs_make_tables_within_limits() {
     s = (-m.b - sqrt(max(root, 0.0))) / m.a;
     return root > 0.0 && s > 0.0 && s < m.s_end ? FOUND : LEFT;",
     );
-    let mut own = Own::new(&toml, &glsl);
-    let file: PathBuf = own.bench.path("mine/table.sh");
+    let mut own = own_search(&toml, &glsl);
+    let file: PathBuf = own.path("mine/table.sh");
     let program = |text: &str| {
         std::fs::write(&file, format!("#!/bin/sh\n{text}\n")).unwrap();
         std::fs::set_permissions(&file, PermissionsExt::from_mode(0o755)).unwrap();
     };
     program("cat > input.json; test $1 = word && echo '0 0 0 0, 1e-1 2 3 0.2'");
-    own.renders("./mine");
-    own.limit = "2";
-    let input = own.bench.text("mine/input.json");
+    renders(&own, "./mine");
+    limit(&mut own, "2");
+    let input = own.text("mine/input.json");
     assert!(input.starts_with("{\"rows\": 512"), "{input}");
     holds(&input, &["\"chains\": [[["]);
     for (text, words) in [
@@ -268,7 +267,7 @@ fn programs_make_tables_within_limits() {
             assert!(is_said, "no {word:?} in {said:?}");
         }
     }
-    std::fs::remove_file(own.bench.path("mine/table.sh")).unwrap();
+    std::fs::remove_file(own.path("mine/table.sh")).unwrap();
     let words = ["`table.sh word` cannot be started"];
     own.refused(&format!("{RENDER} mine"), 1, &words);
 }
