@@ -113,7 +113,7 @@
 //! |---|---|
 //! | [`frame`] | the planes of a picture |
 //! | [`profile`] | a polygon or an outline: a region of the half-plane |
-//! | [`surface`] | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
+//! | `surface` | the boundary under its offset as a few quadrics of revolution, and the tables that are walked |
 //! | [`maps`] | signed distances on a grid, in the forms that shaders read; slopes of heights; colours; lengths along the profile |
 //! | [`search`] | searches that other crates bring, for comparison |
 //! | [`settings`] | *how* it is drawn: stage, search, budget, format of maps |
@@ -124,6 +124,9 @@
 //! | [`cast`] | rays on the CPU, for picking and physics |
 //! | `plan` | what a view draws, as plain data: paths, tiles, steps |
 //! | [`gpu`] | a device, opened or borrowed; [`gpu::Renderer`], which records into a host's commands |
+//!
+//! Modules without a link, and names that this documentation leaves out, are for the crates of the
+//! repository. They may change in any version.
 //!
 //! # Features
 //!
@@ -143,6 +146,7 @@ pub mod cast;
 pub mod error;
 pub mod frame;
 pub mod gpu;
+#[doc(hidden)]
 pub mod host_memory;
 pub mod maps;
 mod names;
@@ -154,6 +158,7 @@ pub mod settings;
 mod shader;
 pub mod shading;
 mod solid;
+#[doc(hidden)]
 pub mod surface;
 
 /// The document's example is tested with those of the library.

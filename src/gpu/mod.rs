@@ -23,6 +23,7 @@ pub use content::objects::ObjectId;
 pub use device::budget::MemoryUse;
 pub use device::instance::VALIDATION_VARIABLE;
 pub use device::report::{DEVICE_VARIABLE, DeviceReport, devices};
+#[doc(hidden)]
 pub use memory::{Buffer, Image, ImageKind};
 pub use open::{Device, HostDevice, Requirements};
 pub use renderer::Renderer;
@@ -31,7 +32,9 @@ pub use renderer::prepare::PreparedFrame;
 pub use renderer::prewarm::Prewarm;
 pub use renderer::slot::FrameStatistics;
 pub use resources::textures::HostImage;
-pub use vk::call::{allocation_error, vulkan_error};
+#[doc(hidden)]
+pub use vk::call::allocation_error;
+pub use vk::call::vulkan_error;
 pub use vk::output::{
     ComputeTarget, DepthTest, HostPass, HostShading, Output, PassFormats, PassKind, SlopeBias,
 };

@@ -11,6 +11,7 @@ mod textures;
 pub use crate::profile::Bounds;
 pub use arc::{ArcLength, ArcTable};
 pub use mips::Level;
+#[doc(hidden)]
 pub use rounding::round_down;
 pub use shape_map::{BakeOptions, MapSource, Measured, ShapeMap};
 pub use store::EncodedMap;

@@ -35,6 +35,7 @@ pub use crate::surface::Offset;
 pub use camera::CameraFrame;
 pub(crate) use clusters::Cluster;
 pub use copies::Copies;
+#[doc(hidden)]
 pub use growth::{GrownObject, GrownProfiles, Growth, MOST_GROWTH};
 pub use object::{BumpForm, Clip, Material, Object, Specular, Texturing};
 
