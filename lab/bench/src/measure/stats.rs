@@ -123,9 +123,14 @@ pub fn log_ratio(
 /// The geometric mean over pictures, with its interval over the passes that all have. `logs`: of
 /// each picture the logarithms of its passes.
 pub fn over_pictures(logs: &[Vec<f64>]) -> Option<Interval> {
-    let passes = logs.iter().map(Vec::len).min()?;
+    geometric(&pass_means(logs))
+}
+
+/// The same of each pass.
+pub fn pass_means(logs: &[Vec<f64>]) -> Vec<f64> {
+    let passes = logs.iter().map(Vec::len).min().unwrap_or(0);
     let in_pass = |pass: usize| logs.iter().map(|l| l[pass]).sum::<f64>() / logs.len() as f64;
-    geometric(&(0..passes).map(|p| in_pass(p).exp()).collect::<Vec<_>>())
+    (0..passes).map(|p| in_pass(p).exp()).collect()
 }
 
 /// The mean with Student's interval, which excludes nothing for one value; `None` of nothing.
@@ -160,25 +165,16 @@ pub fn ratio(a: &[f64], b: &[f64]) -> Option<Interval> {
 ///
 /// Between the tabled degrees it is interpolated in `1 / degrees`, within 0.5 %.
 pub fn student(degrees: f64) -> f64 {
-    const TABLE: [(f64, f64); 13] = [
-        (1.0, 12.706),
-        (2.0, 4.303),
-        (3.0, 3.182),
-        (4.0, 2.776),
-        (5.0, 2.571),
-        (6.0, 2.447),
-        (7.0, 2.365),
-        (8.0, 2.306),
-        (10.0, 2.228),
-        (15.0, 2.131),
-        (30.0, 2.042),
-        (120.0, 1.980),
-        (1e12, 1.960),
+    const DEGREES: [f64; 13] = [
+        1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 15.0, 30.0, 120.0, 1e12,
+    ];
+    const FACTORS: [f64; 13] = [
+        12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.228, 2.131, 2.042, 1.980, 1.960,
     ];
     let degrees = degrees.clamp(1.0, 1e12);
-    let above = TABLE.partition_point(|(d, _)| *d < degrees);
-    let above = above.clamp(1, TABLE.len() - 1);
-    let ((d0, t0), (d1, t1)) = (TABLE[above - 1], TABLE[above]);
+    let above = DEGREES.partition_point(|d| *d < degrees);
+    let above = above.clamp(1, DEGREES.len() - 1);
+    let [(d0, t0), (d1, t1)] = [above - 1, above].map(|k| (DEGREES[k], FACTORS[k]));
     let share = (1.0 / d0 - 1.0 / degrees) / (1.0 / d0 - 1.0 / d1);
     t0 + share * (t1 - t0)
 }

@@ -19,8 +19,6 @@ pub struct Page {
     figures: usize,
     /// The markup of the first figure.
     first: String,
-    /// Paragraphs at the end of `body`, beside which the next figure stands: where they begin.
-    beside: Option<usize>,
 }
 
 /// Text as wide as it reads well, charts side by side where there is room; tables that scroll by
@@ -37,12 +35,10 @@ impl Page {
             contents: Vec::new(),
             figures: 0,
             first: String::new(),
-            beside: None,
         }
     }
 
     fn add(&mut self, markup: Markup) {
-        self.beside = None;
         self.body += &markup.into_string();
         self.body.push('\n');
     }
@@ -61,16 +57,12 @@ impl Page {
 
     /// Begins a section of a chapter.
     pub fn heading(&mut self, title: &str) {
-        let begin = self.beside;
         self.add(html! { h3 { (title) } });
-        self.beside = begin;
     }
 
     /// A paragraph; what is between backticks is code.
     pub fn text(&mut self, text: &str) {
-        let begin = self.beside.unwrap_or(self.body.len());
         self.add(html! { p { (words(text)) } });
-        self.beside = Some(begin);
     }
 
     /// A paragraph that must not be overlooked.
@@ -85,8 +77,8 @@ impl Page {
         });
     }
 
-    /// A chart with the sentence that explains it, beside the paragraphs just before it. The first
-    /// one is at the top of the page, beside what was found.
+    /// A chart with the sentence that explains it. The first one is at the top of the page, beside
+    /// what was found.
     pub fn figure(&mut self, figure: &Figure, caption: &str) {
         self.figures += 1;
         let id = format!("f{}", self.figures);
@@ -101,13 +93,7 @@ impl Page {
                 self.first = figure.into_string();
                 self.add(html! { p { a href="#f1" { "Figure 1" } " is at the top of the page." } });
             }
-            _ => match self.beside {
-                Some(begin) => {
-                    let words = self.body.split_off(begin);
-                    self.add(html! { div.beside { div { (PreEscaped(words)) } (figure) } });
-                }
-                None => self.add(figure),
-            },
+            _ => self.add(figure),
         }
     }
 
@@ -192,32 +178,6 @@ fn words(text: &str) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Words before a chart stand beside it; a chart behind a table does not draw words along.
-    #[test]
-    fn charts_stand_beside_their_words() {
-        let mut page = Page::new("A");
-        let figure = Figure {
-            width: 4.0,
-            height: 3.0,
-            title: "chart".to_owned(),
-            marks: Vec::new(),
-        };
-        page.chapter("First");
-        page.figure(&figure, "one");
-        page.chapter("Second");
-        page.text("of the second");
-        page.heading("its part");
-        page.figure(&figure, "two");
-        page.text("of the table");
-        page.table(&Table::new(["a"], vec![vec!["1".into()]]));
-        page.figure(&figure, "three");
-        let html = page.html();
-        let beside: Vec<_> = html.split("<div class=\"beside\">").skip(1).collect();
-        assert_eq!(beside.len(), 1);
-        assert!(beside[0].starts_with("<div><p>of the second</p>\n<h3>its part</h3>"));
-        assert!(html.contains("href=\"#f1\"") && html.contains("<figure id=\"f1\">"));
-    }
 
     #[test]
     fn a_page_is_whole_and_escapes_its_text() {

@@ -111,8 +111,8 @@ impl Table {
 
     /// Its text for readers, whose terminal is so many characters wide if it is one.
     ///
-    /// A wider table has as many of its first columns as fit, then the names of the others, which
-    /// are in `whole`. If no column of figures fits, each record is a paragraph.
+    /// A wider table has its first column and as many of the next as fit, then the names of the
+    /// others, which are in `whole`.
     pub fn within(&self, width: Option<usize>, whole: &str) -> String {
         let table = self.filled();
         let width = width.unwrap_or(usize::MAX);
@@ -120,42 +120,16 @@ impl Table {
             *end += column + GAP;
             Some(*end - GAP)
         });
-        let fit = ends.take_while(|end| *end <= width).count();
-        if fit == table.header.len() || table.records.is_empty() {
+        let fit = ends.take_while(|end| *end <= width).count().max(1);
+        let Some(others) = table.header.get(fit..).filter(|others| !others.is_empty()) else {
             return table.aligned();
-        }
-        if fit <= table.words() {
-            return table.paragraphs(width);
-        }
-        let out = table.columns(|column| column < fit).aligned();
-        let mut others = table.header[fit..].to_vec();
-        others[0].insert_str(0, &format!("wider than the terminal; {whole} also has: "));
-        out + &lines("", &others, width)
-    }
-
-    /// The number of columns before the first one of figures.
-    fn words(&self) -> usize {
-        let is_word = |record: &Vec<String>, column: usize| {
-            let field = record.get(column);
-            field.is_some_and(|field| field.starts_with(char::is_alphabetic))
         };
-        let columns = 0..self.header.len();
-        let words = |&column: &usize| self.records.iter().all(|record| is_word(record, column));
-        columns.take_while(words).count()
-    }
-
-    /// A paragraph for each record: its words, then its figures with their names.
-    fn paragraphs(&self, width: usize) -> String {
-        let words = self.words();
-        let mut out = String::new();
-        for record in &self.records {
-            out += &lines("", &record[..words], width);
-            let named = self.header.iter().zip(record).skip(words);
-            let named = named.filter(|(_, field)| !["", NO_VALUE].contains(&field.as_str()));
-            let named: Vec<String> = named.map(|(name, f)| format!("{name}: {f}")).collect();
-            out += &lines("  ", &named, width);
-        }
-        out
+        let out = table.columns(|column| column < fit).aligned();
+        let others = others.join(", ");
+        let note = format!("wider than the terminal; {whole} also has: {others}");
+        let length = |line: &str| line.chars().count() as f64;
+        let lines = wrapped(note.split(' '), width as f64, length);
+        out + &lines.join("\n") + "\n"
     }
 
     /// Reads comma-separated values.
@@ -198,24 +172,6 @@ impl Table {
             Error::new(ErrorKind::File, message)
         })
     }
-}
-
-/// Parts with commas between them, in lines of at most `width` if their parts are shorter.
-fn lines(indent: &str, parts: &[String], width: usize) -> String {
-    let last = parts.len().saturating_sub(1);
-    let comma = |(place, part): (usize, &String)| match place == last {
-        true => part.clone(),
-        false => format!("{part},"),
-    };
-    let parts: Vec<String> = parts.iter().enumerate().map(comma).collect();
-    let room = width.saturating_sub(indent.len()) as f64;
-    let length = |line: &str| line.chars().count() as f64;
-    let mut lines = wrapped(parts.iter().map(String::as_str), room, length);
-    lines.resize(lines.len().max(1), String::new());
-    lines
-        .iter()
-        .map(|line| format!("{indent}{line}\n"))
-        .collect()
 }
 
 /// The text of a run's file.
@@ -279,11 +235,8 @@ mod tests {
             assert_eq!(own.within(width, ""), own.aligned());
         }
         let wanted = "method  ratio\nexact     0.5\nlive     0.81\n\
-            wider than the terminal; x.html also has: wrong\n";
+            wider than the\nterminal; x.html\nalso has: wrong\n";
         assert_eq!(own.within(Some(20), "x.html"), wanted);
-        // Not even one figure beside the words.
-        let wanted = "exact\n  ratio: 0.5,\n  wrong: 0 %\nlive\n  ratio: 0.81,\n  wrong: 0.01 %\n";
-        assert_eq!(own.within(Some(12), ""), wanted);
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub struct Axis {
     pub include: Vec<f64>,
     /// Places of ticks; empty: round values.
     pub ticks: Vec<f64>,
+    /// Names of lines at 0, -1, -2 and so on, in place of values.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -26,6 +28,15 @@ impl Axis {
             floor: None,
             include: Vec::new(),
             ticks: Vec::new(),
+            names: Vec::new(),
+        }
+    }
+
+    /// An axis of named lines, without a label.
+    pub fn names(names: Vec<String>) -> Self {
+        Self {
+            names,
+            ..Self::linear("")
         }
     }
 
@@ -72,6 +83,16 @@ pub struct Scale {
 impl Scale {
     /// Fits an axis to values; those that have no place on it are left out.
     pub fn new(axis: &Axis, values: impl IntoIterator<Item = f64>) -> Self {
+        if !axis.names.is_empty() {
+            let ticks = axis.names.iter().enumerate();
+            return Self {
+                log: false,
+                floor: None,
+                low: 0.5 - axis.names.len() as f64,
+                high: 0.5,
+                ticks: ticks.map(|(k, name)| (-(k as f64), name.clone())).collect(),
+            };
+        }
         let floor = axis.floor.filter(|_| axis.log);
         let values = values.into_iter().chain(axis.include.iter().copied());
         let shown = values.map(|v| floor.map_or(v, |floor| v.max(floor)));

@@ -252,20 +252,23 @@ mod tests {
         let (whole, few) = (SeriesStyles::new(&ways), SeriesStyles::new(&ways[4..8]));
         for way in &ways[4..8] {
             assert_eq!(whole.style(way), few.style(way));
-            let mut compute = *way;
-            compute.stage = DrawStage::Compute;
-            let mut hollow = style(way);
-            hollow.filled = false;
-            assert_eq!(whole.style(&compute), hollow);
+            let hollow = whole.style(&way.in_stage(DrawStage::Compute));
+            assert!(
+                style(way).filled
+                    && hollow
+                        == Style {
+                            filled: false,
+                            ..style(way)
+                        }
+            );
         }
     }
 
     #[test]
     fn one_search_in_several_ways_takes_several_markers() {
         let steps = |n| MethodSettings {
-            method: Method::Search(CIRCLE),
             max_steps: Some(n),
-            ..MethodSettings::default()
+            ..MethodSettings::default().by(CIRCLE)
         };
         let ways: Vec<MethodSettings> = (1..=10).map(|k| steps(8 * k)).collect();
         let styles = SeriesStyles::new(&ways);

@@ -117,6 +117,14 @@ impl Style {
         }
     }
 
+    /// The look of the series of a number, for series that have none of their own.
+    pub fn numbered(k: usize) -> Self {
+        Self::new(
+            color::ALL[k % color::ALL.len()],
+            Marker::ALL[k % Marker::ALL.len()],
+        )
+    }
+
     /// Width of its lines, pixels: thinner where markers are hollow.
     pub fn line(self) -> f64 {
         let full = if self.heavy { 2.6 } else { 1.6 };

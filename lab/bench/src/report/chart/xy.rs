@@ -9,6 +9,8 @@ use crate::plan::grouped;
 
 /// Size of words beside points.
 const SMALL: f64 = 12.0;
+/// From one named line to the next.
+const STEP: f64 = 22.0;
 
 /// A point of a series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -139,7 +141,11 @@ impl XyChart {
         let top = drawing.sheet.title(&self.title) + 8.0;
         let words = y.ticks.iter().map(|(_, w)| width(w, TEXT));
         let left = EDGE + TEXT + 10.0 + words.fold(0.0, f64::max) + 8.0;
-        let bounds = [left, top, WIDTH - EDGE, top + PLOT];
+        let height = match self.y.names.len() {
+            0 => PLOT,
+            lines => STEP * lines as f64,
+        };
+        let bounds = [left, top, WIDTH - EDGE, top + height];
         let plot = Plot { bounds, x, y };
         axes(&mut drawing.sheet, &plot, &self.x.label, &self.y.label);
         for guide in &self.guides {

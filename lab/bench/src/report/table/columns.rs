@@ -30,6 +30,9 @@ pub struct Context<'a> {
     pub resolved: f64,
 }
 
+/// Half the width of an interval, relative, above which a figure is not resolved where no plan says.
+pub(crate) const RESOLVED: f64 = 0.25;
+
 /// A column.
 pub struct Column {
     /// Its name in files and plans.

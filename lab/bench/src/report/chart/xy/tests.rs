@@ -2,23 +2,32 @@ use super::super::front::stairs;
 use super::super::style::{Marker, PAPER, color};
 use super::*;
 
+/// A series at one point.
+fn one(style: Style, point: Point) -> Series {
+    Series {
+        name: String::new(),
+        style,
+        points: vec![point],
+        joined: false,
+    }
+}
+
 fn crowded() -> XyChart {
+    let point = |index: usize, k: i32| Point {
+        x: 10.0 * 1.05f64.powi(k + index as i32),
+        y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
+        label: Some(format!("{k} steps")),
+        unresolved: k == 2,
+        ..Point::default()
+    };
     let series = |index: usize| Series {
         name: format!("a search of some length, number {index}"),
         style: Style {
             filled: index.is_multiple_of(2),
             heavy: index == 3,
-            ..Style::new(color::ALL[index % color::ALL.len()], Marker::ALL[index])
+            ..Style::numbered(index)
         },
-        points: (0..7)
-            .map(|k| Point {
-                x: 10.0 * 1.05f64.powi(k + index as i32),
-                y: if k == 6 { 0.0 } else { 0.3f64.powi(k) },
-                label: Some(format!("{k} steps")),
-                unresolved: k == 2,
-                ..Point::default()
-            })
-            .collect(),
+        points: (0..7).map(|k| point(index, k)).collect(),
         joined: true,
     };
     XyChart {
@@ -69,14 +78,9 @@ fn series_of_one_name_share_an_entry() {
 #[test]
 fn points_stand_where_their_values_are() {
     let mut chart = crowded();
-    chart.series = vec![Series {
-        name: String::new(),
-        style: Style::new(color::BLUE, Marker::DISK),
-        joined: false,
-        points: [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)]
-            .map(|(x, y)| Point::at(x, y))
-            .to_vec(),
-    }];
+    let points = [(1.0, 1.0), (10.0, 0.1), (100.0, 0.01)];
+    let series = points.map(|(x, y)| one(Style::numbered(1), Point::at(x, y)));
+    chart.series = series.to_vec();
     chart.guides.clear();
     let center = |b: Bounds| ((b[0] + b[2]) / 2.0, (b[1] + b[3]) / 2.0);
     let dots = chart.figure().shapes().into_iter();
@@ -97,18 +101,20 @@ fn lines_are_cut_at_the_plot() {
 
 /// Three series at one place: heavy and filled, hollow, filled.
 fn piled() -> XyChart {
-    let series = |(heavy, filled)| Series {
-        name: String::new(),
-        style: Style {
-            heavy,
-            filled,
-            ..Style::new(color::BLUE, Marker::DISK)
-        },
-        points: vec![Point {
+    let series = |(heavy, filled)| {
+        let style = Style::new(color::BLUE, Marker::DISK);
+        let point = Point {
             spread: Some((1.0, 4.0)),
             ..Point::at(2.0, 3.0)
-        }],
-        joined: false,
+        };
+        one(
+            Style {
+                heavy,
+                filled,
+                ..style
+            },
+            point,
+        )
     };
     let looks = [(true, true), (false, true), (false, false)];
     XyChart {
@@ -140,18 +146,6 @@ fn hollow_markers_hide_nothing_and_bars_lie_below() {
     assert!(marks.clone().rposition(bar) < marks.position(dot));
 }
 
-#[test]
-fn a_front_of_one_point_is_no_line_and_not_in_the_legend() {
-    let told = |chart: &XyChart| {
-        let figure = chart.figure();
-        figure.words().iter().any(|w| w.0 == "Pareto front")
-    };
-    let mut chart = piled();
-    assert!(!told(&chart));
-    chart.guides[0].points.push((2.5, 3.0));
-    assert!(told(&chart));
-}
-
 /// Every unresolved point is struck through, and the legend says what that means.
 #[test]
 fn unresolved_points_are_struck_through() {
@@ -168,6 +162,12 @@ fn unresolved_points_are_struck_through() {
     };
     let mut chart = piled();
     assert_eq!(strokes(&chart), (0, 0));
+    // A front of one point is no line and not in the legend.
+    let front = |chart: &XyChart| chart.figure().words().iter().any(|w| w.0 == "Pareto front");
+    assert!(!front(&chart));
+    chart.guides[0].points.push((2.5, 3.0));
+    assert!(front(&chart));
+    chart.guides.clear();
     chart.series[1].points[0].unresolved = true;
     chart.series[0].points[0].rise = Some((2.0, 5.0));
     // One in the plot and one in the legend.

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::measure::row::tests::timed;
+use crate::report::chart::style::{Marker, color};
 use crate::report::table::columns::tests::with_context;
 use revmap::settings::Solver;
 

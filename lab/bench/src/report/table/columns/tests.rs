@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::measure::row::tests::{row, timed};
-use crate::report::exhibit::ways_table;
+use crate::report::exhibit::{Records, Table as Exhibited};
 
 /// Calls with what the cells of these rows are made from.
 pub(crate) fn with_context<T>(rows: &[Row], then: impl FnOnce(&Context) -> T) -> T {
@@ -10,6 +10,17 @@ pub(crate) fn with_context<T>(rows: &[Row], then: impl FnOnce(&Context) -> T) ->
     let machine = Machine::here("dev", "", "drv", "", "");
     let rows: Vec<&Row> = rows.iter().collect();
     then(&Context::new(&rows, &plan, &machine, 0.25))
+}
+
+/// The table of ways over the exact picture.
+fn over_exact(context: &Context, names: &[&str]) -> Table {
+    let table = Exhibited {
+        of: Records::Ways,
+        over: Some(Over::Exact),
+        columns: names.iter().map(ToString::to_string).collect(),
+        ..Exhibited::default()
+    };
+    table.shown(context, context.rows).unwrap()
 }
 
 /// `results.csv` of these rows.
@@ -103,8 +114,7 @@ fn planted_times_and_errors_are_shown() {
     let means: Vec<&str> = means.split(',').collect();
     let (found, means) = with_context(&rows, |context| {
         let file = context.file(context.rows, &columns).unwrap();
-        let means = ways_table(context, context.rows, Over::Exact, &means);
-        (file, means.unwrap())
+        (file, over_exact(context, &means))
     });
     let wanted = [["1", "", "0"], ["0.5", "yes", "0.2"], ["0.25", "no", "2.5"]];
     assert_eq!(found.records, wanted);
@@ -119,9 +129,7 @@ fn a_ratio_that_is_not_resolved_is_in_brackets() {
         row.settings = crate::plan::method::MethodSettings::default();
         row.settings.tolerance = Tolerance::new(tolerance).unwrap();
     }
-    let table = with_context(&rows, |context| {
-        ways_table(context, context.rows, Over::Exact, &["ratio exact"]).unwrap()
-    });
+    let table = with_context(&rows, |context| over_exact(context, &["ratio exact"]));
     let shown: Vec<&str> = table.records.iter().map(|r| r[0].as_str()).collect();
     assert_eq!(shown, ["1", "0.502", "(1.07)"]);
 }
