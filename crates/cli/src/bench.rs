@@ -16,7 +16,7 @@ use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report;
-use revmap_bench::report::chart::series_style::SeriesStyles;
+use revmap_bench::report::series_style::SeriesStyles;
 use revmap_bench::report::flight::{self, FlightTimes};
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::{Album, Sheets};

@@ -3,7 +3,7 @@
 
 use crate::run::{Bench, CAMERA, CONE, holds, lines};
 use revmap_bench::report::table::Table;
-use revmap_bench::report::table::columns;
+use revmap_bench::report::columns;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 

@@ -3,8 +3,8 @@
 
 use super::run::Run;
 use super::scenes::Scenes;
-use crate::measure::stats;
 use crate::plan::RBM_BASELINE;
+use revmap_figures::stats;
 
 /// The words for a row among others; rows of equal words are one group. `None`: it does not count.
 pub(super) type By<'a> = &'a dyn Fn(&Run, &[String]) -> Option<Vec<String>>;

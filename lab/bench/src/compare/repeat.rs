@@ -3,12 +3,12 @@
 use super::groups::{self, Common, Group};
 use super::run::Run;
 use super::scenes::Scenes;
-use crate::measure::stats;
 use crate::plan::RBM_BASELINE;
 use crate::plan::method::Method;
-use crate::plan::names::{number, percent, range};
-use crate::report::table::columns::{Cell, RESOLVED};
+use crate::report::columns::{Cell, RESOLVED};
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::names::{number, percent, range};
+use revmap_figures::stats;
 use std::path::Path;
 
 /// The factor by which ratios may leave the kept interval to either side. Ratios of one method differ

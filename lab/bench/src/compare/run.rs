@@ -1,12 +1,12 @@
 //! A run read back from its folder.
 
 use crate::measure::drawn::Drawn;
-use crate::measure::stats;
 use crate::measure::surroundings;
-use crate::report::table::columns::{CONTRACT, results as columns};
-use crate::report::table::{Table, text_of};
+use crate::report::columns::{CONTRACT, results as columns};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
+use revmap_figures::stats;
+use revmap_figures::table::{Table, text_of};
 use std::collections::BTreeMap;
 use std::path::Path;
 

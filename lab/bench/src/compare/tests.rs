@@ -6,8 +6,8 @@ use crate::measure::row::tests::{self, papers, row};
 use crate::plan::Plan;
 use crate::plan::method::{Edges, Method};
 use crate::plan::view::tests::spindle;
+use crate::report::columns::tests::csv_of;
 use crate::report::folder::{raw, write_text};
-use crate::report::table::columns::tests::csv_of;
 use revmap::settings::{DrawStage, Solver};
 
 /// The folder of a run of these rows.

@@ -6,9 +6,9 @@
 mod scene;
 
 use crate::plan::Plan;
-use crate::plan::names::count;
 use crate::plan::view::View;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::names::count;
 use scene::scene;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,7 +5,6 @@ mod cases;
 mod entry;
 mod framing;
 pub mod method;
-pub mod names;
 mod overrides;
 pub mod suite;
 mod time_budget;
@@ -14,9 +13,9 @@ pub mod view;
 mod views;
 
 pub use arrange::{army, flight_camera};
-pub(crate) use cases::grouped;
 pub use cases::{Case, Plan, RBM_BASELINE, is_rbm_baseline, rbm_baseline, variant};
 pub use entry::{Measure, Pick};
 pub use overrides::{Lists, Overrides};
+pub use revmap_figures::names;
 pub use time_budget::TimeBudget;
 pub use views::{Form, Views};

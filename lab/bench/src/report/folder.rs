@@ -6,14 +6,11 @@ use crate::measure::row::{CLOCKS_APART, Clocks, Row, SUBMISSION_MS};
 use crate::measure::{Measured, TRIES};
 use crate::plan::Plan;
 use crate::plan::method::MethodSettings;
-use crate::plan::names;
-use crate::report::chart::Figure;
-use crate::report::chart::svg::svg;
-use crate::report::table::Table;
-use crate::report::table::columns::results_table;
+use crate::report::columns::results_table;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap_files::Picture;
-pub use revmap_files::write_bytes;
+pub use revmap_figures::files::{keep_figure, make, png, write_bytes, write_text};
+use revmap_figures::names;
+use revmap_figures::table::Table;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on.
@@ -123,33 +120,6 @@ pub fn discard(folder: &Path, made: bool) -> Result<()> {
         let message = format!("the files of the run cannot be removed ({e})");
         Error::new(ErrorKind::File, message).in_file(folder)
     })
-}
-
-/// Makes a folder and those above it.
-pub fn make(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|e| {
-        let message = format!("cannot be made ({e}); choose another folder");
-        Error::new(ErrorKind::File, message).in_file(folder)
-    })
-}
-
-/// Writes a text file, whole or not at all.
-pub fn write_text(file: &Path, text: &str) -> Result<()> {
-    write_bytes(file, text.as_bytes())
-}
-
-/// Writes a figure into `folder/charts`: as SVG.
-pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
-    let charts = folder.join("charts");
-    make(&charts)?;
-    write_text(&charts.join(format!("{name}.svg")), &svg(figure))
-}
-
-/// A picture as a PNG file.
-pub fn png(picture: &Picture) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    picture.encode_png(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// `raw.csv`: every sample. Rows of `results.csv`, passes and rounds count from 1.

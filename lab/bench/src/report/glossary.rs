@@ -4,8 +4,8 @@ use crate::measure::Measured;
 use crate::measure::row::Row;
 use crate::plan::method::Method;
 use crate::plan::{RBM_BASELINE, is_rbm_baseline};
-use crate::report::page::Page;
 use revmap::settings::Solver;
+use revmap_figures::page::Page;
 use revmap_searches::folder;
 
 /// The meaning of a method's name.

@@ -6,10 +6,10 @@ use revmap_bench::measure::{Observer, measure};
 use revmap_bench::plan::TimeBudget;
 use revmap_bench::plan::method::Method;
 use revmap_bench::report::Run;
-use revmap_bench::report::chart::series_style::SeriesStyles;
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::Album;
 use revmap_bench::report::plan_file::embedded;
+use revmap_bench::report::series_style::SeriesStyles;
 use revmap_bench::report::table::Table;
 use std::sync::atomic::AtomicBool;
 

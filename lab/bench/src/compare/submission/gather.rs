@@ -2,18 +2,19 @@
 
 use super::{Line, OnePicture, Submission};
 use crate::measure::machine;
-use crate::measure::stats::Interval;
+use crate::plan::RBM_BASELINE;
 use crate::plan::method::Method;
-use crate::plan::names::{number, percent};
-use crate::plan::{RBM_BASELINE, grouped};
-use crate::report::chart::Figure;
-use crate::report::chart::dots::{self, Placed};
-use crate::report::chart::style::Style;
+use crate::report::columns::{Cell, RESOLVED};
 use crate::report::folder::{keep_figure, write_text};
-use crate::report::page::Page;
-use crate::report::table::Table;
-use crate::report::table::columns::{Cell, RESOLVED};
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::chart::Figure;
+use revmap_figures::chart::dots::{self, Placed};
+use revmap_figures::chart::style::Style;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{number, percent};
+use revmap_figures::page::Page;
+use revmap_figures::stats::Interval;
+use revmap_figures::table::Table;
 use std::path::{Path, PathBuf};
 
 /// A submission and its name among the others.

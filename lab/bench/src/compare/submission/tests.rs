@@ -8,7 +8,7 @@ use crate::measure::row::tests::{papers, row};
 use crate::plan::Plan;
 use crate::plan::method::Method;
 use crate::plan::view::tests::spindle;
-use crate::report::table::columns::tests::with_context;
+use crate::report::columns::tests::with_context;
 use revmap::gpu::DeviceReport;
 use std::time::Duration;
 
@@ -161,7 +161,7 @@ fn devices_stand_side_by_side() {
     std::fs::create_dir(&out).unwrap();
     let said = gather::write(&all, &out, None).unwrap();
     assert!(said.contains("0.7 (0.6 to 0.8)"), "{said}");
-    let table = crate::report::table::Table::load(&out.join("results.csv")).unwrap();
+    let table = revmap_figures::table::Table::load(&out.join("results.csv")).unwrap();
     assert_eq!(table.records.len(), 6);
     assert_eq!(table.records[2][0], "card 1.2 (2)");
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();

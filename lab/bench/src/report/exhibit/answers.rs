@@ -3,12 +3,13 @@
 
 use crate::measure::ratios::{Over, Ratio, between, over};
 use crate::measure::row::Row;
-use crate::measure::stats::{Interval, Verdict};
+use crate::plan::is_rbm_baseline;
 use crate::plan::method::Method;
-use crate::plan::names::{count, number, range};
-use crate::plan::{grouped, is_rbm_baseline};
-use crate::report::table::columns::{Cell, Context};
+use crate::report::columns::{Cell, Context};
 use revmap::settings::DrawStage;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{count, number, range};
+use revmap_figures::stats::{Interval, Verdict};
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -155,7 +156,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::measure::row::tests::drawn;
-    use crate::report::table::columns::tests::with_context;
+    use crate::report::columns::tests::with_context;
     use revmap::settings::Solver;
 
     /// A row of a search in a stage of a picture; its passes take these times.

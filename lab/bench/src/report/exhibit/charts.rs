@@ -4,18 +4,19 @@ use super::tables::{Record, heading, records};
 use crate::measure::growth::growing;
 use crate::measure::ratios::{Over, over};
 use crate::measure::row::Row;
-use crate::measure::stats::Interval;
+use crate::plan::is_rbm_baseline;
 use crate::plan::method::{Method, MethodSettings};
-use crate::plan::{grouped, is_rbm_baseline};
-use crate::report::chart::Figure;
-use crate::report::chart::dots::{Line, Placed, pages};
-use crate::report::chart::front::{WORTH, front, stairs};
-use crate::report::chart::series_style::{self, floor_line, of_source};
-use crate::report::chart::style::{Dash, Style};
-use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::table::columns::{Cell, Context};
+use crate::report::columns::{Cell, Context};
+use crate::report::series_style::{self, floor_line, of_source};
 use revmap::error::Result;
 use revmap::settings::DrawStage;
+use revmap_figures::chart::Figure;
+use revmap_figures::chart::dots::{Line, Placed, pages};
+use revmap_figures::chart::front::{WORTH, front, stairs};
+use revmap_figures::chart::style::{Dash, Style};
+use revmap_figures::chart::xy::{Guide, Point, Series, XyChart};
+use revmap_figures::groups::grouped;
+use revmap_figures::stats::Interval;
 
 /// A chart.
 #[derive(Clone, Debug, serde::Deserialize)]

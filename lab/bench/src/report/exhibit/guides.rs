@@ -3,11 +3,11 @@
 use super::{Chart, tables};
 use crate::measure::growth::growth;
 use crate::measure::row::Row;
-use crate::report::chart::axis::Axis;
-use crate::report::chart::xy::{Guide, Series};
-use crate::report::table::columns::{self, Context};
-use crate::report::table::published;
+use crate::report::columns::{self, Context};
+use crate::report::published;
 use revmap::error::Result;
+use revmap_figures::chart::axis::Axis;
+use revmap_figures::chart::xy::{Guide, Series};
 
 impl Chart {
     pub(super) fn axes(

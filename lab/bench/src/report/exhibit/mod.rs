@@ -15,7 +15,7 @@ pub(crate) use tables::cell;
 pub use tables::{Records, Table};
 
 use crate::measure::row::Row;
-use crate::report::table::columns::Context;
+use crate::report::columns::Context;
 use revmap::error::{Error, ErrorKind, Result};
 
 /// Tables and charts on one question.

@@ -3,14 +3,14 @@
 use crate::measure::growth::growth;
 use crate::measure::ratios::{Over, Ratio, mean_ms, over};
 use crate::measure::row::Row;
-use crate::measure::stats::{self, Interval};
-use crate::plan::grouped;
 use crate::plan::method::{Method, MethodSettings};
-use crate::plan::names::{number, range};
-use crate::report::table::Table as Text;
-use crate::report::table::columns::{self, Cell, Context};
-use crate::report::table::published::published;
+use crate::report::columns::{self, Cell, Context};
+use crate::report::published::published;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{number, range};
+use revmap_figures::stats::{self, Interval};
+use revmap_figures::table::Table as Text;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 

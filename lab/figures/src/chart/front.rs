@@ -23,7 +23,7 @@ pub fn front(points: &[(f64, f64)], gain: f64) -> Vec<usize> {
 pub const WORTH: f64 = 0.95;
 
 /// The stairs that bound what no point of a front reaches, for points in order of `x`, `y` falling.
-pub(crate) fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+pub fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let steps = points.windows(2).flat_map(|w| [(w[1].0, w[0].1), w[1]]);
     points.iter().take(1).copied().chain(steps).collect()
 }

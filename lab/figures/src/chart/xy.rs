@@ -5,7 +5,7 @@ use super::legend::{EDGE, Key, PLOT, Sheet, TEXT, UNRESOLVED, WIDTH, dot, strike
 use super::letters::width;
 use super::style::{Dash, GRID, INK, PALE, Style};
 use super::{Anchor, Bounds, Figure, Mark, Place, Word, overlap};
-use crate::plan::grouped;
+use crate::groups::grouped;
 
 /// Size of words beside points.
 const SMALL: f64 = 12.0;
@@ -70,7 +70,7 @@ pub struct Guide {
 
 impl Guide {
     /// A pale, dashed line, to compare points with.
-    pub(crate) fn dashed(name: &str, points: Vec<(f64, f64)>) -> Self {
+    pub fn dashed(name: &str, points: Vec<(f64, f64)>) -> Self {
         Self {
             name: name.to_owned(),
             points,

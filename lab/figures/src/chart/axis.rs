@@ -1,6 +1,6 @@
 //! Axes: from values to places, and the values worth a tick.
 
-use crate::plan::names::number;
+use crate::names::number;
 
 /// An axis as a chart asks for it.
 #[derive(Clone, Debug, PartialEq)]

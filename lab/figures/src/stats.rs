@@ -7,7 +7,9 @@
 /// A value with the interval that covers it with 95 % confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
+    /// The value.
     pub value: f64,
+    /// Lower end.
     pub low: f64,
     /// Upper end; `+inf` above a single observation, which says nothing about spread.
     pub high: f64,
@@ -59,6 +61,7 @@ impl Interval {
         }
     }
 
+    /// Its ends, where they are known.
     pub fn ends(&self) -> Option<(f64, f64)> {
         self.high.is_finite().then_some((self.low, self.high))
     }
@@ -182,6 +185,7 @@ pub fn student(degrees: f64) -> f64 {
 /// `y = factor * x ^ exponent`, fitted to logarithms by least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
+    /// The power.
     pub exponent: f64,
     /// `y` at `x = 1`.
     pub factor: f64,

@@ -3,16 +3,17 @@
 use crate::measure::machine::Machine;
 use crate::measure::ratios::{Over, above_floor, baseline_stage, between};
 use crate::measure::row::{Clocks, Row};
-use crate::measure::stats::{self, Interval};
 use crate::plan::method::{Edges, Method};
-use crate::plan::names::{count, number, percent, range};
-use crate::plan::{Plan, RBM_BASELINE, grouped, is_rbm_baseline};
-use crate::report::chart::series_style::SeriesStyles;
-use crate::report::table::{NO_VALUE, Table};
+use crate::plan::{Plan, RBM_BASELINE, is_rbm_baseline};
+use crate::report::series_style::SeriesStyles;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::{Offset, Shadow};
 use revmap::settings::{Tolerance, name_of};
 use revmap_compare::{PixelErrors, ViewErrors};
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{count, number, percent, range};
+use revmap_figures::stats::{self, Interval};
+use revmap_figures::table::{NO_VALUE, Table};
 
 /// The sources of cells beside their row.
 pub struct Context<'a> {

@@ -2,12 +2,12 @@
 //! colour vision, and each series has a marker of its own: a print in grey still reads.
 
 pub mod axis;
-pub(crate) mod dots;
+pub mod dots;
 pub mod front;
 mod legend;
 mod letters;
-pub mod series_style;
-pub(crate) mod style;
+#[allow(missing_docs)] // names say it
+pub mod style;
 pub(crate) mod svg;
 pub mod xy;
 

@@ -22,18 +22,18 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// A name that may be part of a file's name.
-pub(crate) fn safe(name: &str) -> String {
+pub fn safe(name: &str) -> String {
     let safe = |c: char| c.is_alphanumeric() || "-_@.".contains(c);
     name.replace(|c| !safe(c), "-")
 }
 
 /// Names of the files of a folder. No two are the same, also where upper and lower case are.
 #[derive(Debug, Default)]
-pub(crate) struct FileNames(HashSet<String>);
+pub struct FileNames(HashSet<String>);
 
 impl FileNames {
     /// The name of one more file: `name` where that is free, else with a number behind it.
-    pub(crate) fn add(&mut self, name: &str) -> String {
+    pub fn add(&mut self, name: &str) -> String {
         let name = safe(name);
         let numbered = (2..).map(|n| format!("{name}-{n}"));
         let mut names = std::iter::once(name.clone()).chain(numbered);
@@ -43,12 +43,12 @@ impl FileNames {
 }
 
 /// `0.97 to 1.07`.
-pub(crate) fn range((low, high): (f64, f64)) -> String {
+pub fn range((low, high): (f64, f64)) -> String {
     format!("{} to {}", number(low, 3), number(high, 3))
 }
 
 /// `1 picture`, `4 pictures`.
-pub(crate) fn count(number: usize, what: &str) -> String {
+pub fn count(number: usize, what: &str) -> String {
     match number {
         1 => format!("1 {what}"),
         number => format!("{number} {what}s"),
@@ -56,7 +56,7 @@ pub(crate) fn count(number: usize, what: &str) -> String {
 }
 
 /// Words in lines no longer than `limit`, as `length` has it; a longer word has a line of its own.
-pub(crate) fn wrapped<'a>(
+pub fn wrapped<'a>(
     words: impl IntoIterator<Item = &'a str>,
     limit: f64,
     length: impl Fn(&str) -> f64,

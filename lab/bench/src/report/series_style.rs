@@ -3,11 +3,11 @@
 use crate::measure::row::Row;
 use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::{RBM_BASELINE, is_rbm_baseline};
-use crate::report::chart::style::{Dash, Marker, Style, color};
-use crate::report::chart::xy::Guide;
 use revmap::maps::MapSource;
 use revmap::search::Search;
 use revmap::settings::{DrawStage, Solver, Tolerance};
+use revmap_figures::chart::style::{Dash, Marker, Style, color};
+use revmap_figures::chart::xy::Guide;
 use revmap_files::{BINARY, COVERAGE};
 use revmap_searches::folder::{self, Folder};
 

@@ -1,9 +1,9 @@
 //! A page that needs nothing beside itself, without scripts, for any screen and for print.
 
-use crate::report::chart::Figure;
-use crate::report::chart::svg::svg;
-use crate::report::folder::png;
-use crate::report::table::Table;
+use crate::chart::Figure;
+use crate::chart::svg::svg;
+use crate::files::png;
+use crate::table::Table;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use revmap::error::Result;

@@ -2,11 +2,12 @@
 
 use crate::measure::ratios::between;
 use crate::measure::row::Row;
-use crate::measure::stats::{Interval, Verdict};
-use crate::plan::names::number;
-use crate::plan::{grouped, variant};
-use crate::report::table::Table;
-use crate::report::table::columns::Context;
+use crate::plan::variant;
+use crate::report::columns::Context;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::number;
+use revmap_figures::stats::{Interval, Verdict};
+use revmap_figures::table::Table;
 
 /// A published table, measured by its authors on a Core i7-3612QM with a GeForce GT 630M.
 pub struct Printed {
@@ -151,7 +152,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::measure::row::tests::timed;
-    use crate::report::table::columns::tests::with_context;
+    use crate::report::columns::tests::with_context;
 
     #[test]
     fn trends_are_told_only_when_they_are_sure() {

@@ -1,9 +1,6 @@
 //! The table of all outputs: of files, of standard output and of pages.
 
-pub mod columns;
-pub(crate) mod published;
-
-use crate::plan::names::wrapped;
+use crate::names::wrapped;
 use revmap::error::{Error, ErrorKind, Result};
 use std::path::Path;
 
@@ -175,7 +172,7 @@ impl Table {
 }
 
 /// The text of a run's file.
-pub(crate) fn text_of(file: &Path) -> Result<String> {
+pub fn text_of(file: &Path) -> Result<String> {
     std::fs::read_to_string(file).map_err(|e| {
         let message = format!("cannot be read ({e}); give a folder that `revmap bench` wrote");
         Error::new(ErrorKind::File, message).in_file(file)

@@ -4,9 +4,9 @@ use super::Figure;
 use super::axis::Axis;
 use super::style::Style;
 use super::xy::{Guide, Point, Series, XyChart};
-use crate::measure::stats::Interval;
-use crate::plan::grouped;
-use crate::plan::names::number;
+use crate::groups::grouped;
+use crate::names::number;
+use crate::stats::Interval;
 
 /// Lines on one page.
 const MOST: usize = 44;
@@ -14,8 +14,11 @@ const MOST: usize = 44;
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
+    /// Its name.
     pub name: String,
+    /// Its value.
     pub value: Interval,
+    /// How it looks.
     pub style: Style,
     /// True if its interval is too wide: it is struck through, and its number in brackets.
     pub unresolved: bool,

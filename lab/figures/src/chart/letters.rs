@@ -1,6 +1,6 @@
 //! How wide the words of charts are.
 
-use crate::plan::names::wrapped;
+use crate::names::wrapped;
 
 /// Advances of the letters from space to `~` in DejaVu Sans and Verdana, hundredths of the size.
 const ADVANCES: [u8; 95] = [

@@ -6,7 +6,7 @@ use super::{Anchor, Figure, Mark};
 use maud::{Markup, html};
 
 /// A figure as an `svg` element that scales with the width it is given.
-pub(crate) fn svg(figure: &Figure) -> String {
+pub fn svg(figure: &Figure) -> String {
     let (w, h) = (figure.width.ceil(), figure.height.ceil());
     let view = format!("0 0 {w} {h}");
     let figure = html! {
