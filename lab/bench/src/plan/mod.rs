@@ -4,7 +4,6 @@ mod arrange;
 mod cases;
 mod entry;
 mod framing;
-pub mod method;
 mod overrides;
 pub mod suite;
 mod time_budget;
@@ -17,5 +16,6 @@ pub use cases::{Case, Plan, RBM_BASELINE, is_rbm_baseline, rbm_baseline, variant
 pub use entry::{Measure, Pick};
 pub use overrides::{Lists, Overrides};
 pub use revmap_figures::names;
+pub use revmap_methods as method;
 pub use time_budget::TimeBudget;
 pub use views::{Form, Views};

@@ -9,9 +9,9 @@ use revmap::gpu::Device;
 use revmap::maps::{Projection, SlopeFilter};
 use revmap::scene::{Clip, Light, Object, Offset, Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
-use revmap_bench::plan::method::renderer::{MethodDevice, MethodRenderer};
-use revmap_bench::plan::method::{Method, MethodSettings};
 use revmap_compare::{CompareOptions, Comparison, Reference};
+use revmap_methods::renderer::{MethodDevice, MethodRenderer};
+use revmap_methods::{Method, MethodSettings};
 use std::sync::{Arc, OnceLock};
 
 /// Depths are said in texels of a map of so many.

@@ -1,7 +1,7 @@
 //! One renderer for every method: searches and meshes behind the same calls.
 
-use crate::plan::method::floor;
-use crate::plan::method::{Method, MethodSettings};
+use crate::floor;
+use crate::{Method, MethodSettings};
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::gpu::Device;

@@ -8,8 +8,8 @@ use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
-use revmap_bench::plan::method::renderer::MethodDevice;
-use revmap_bench::plan::method::{Method, MethodSettings};
+use revmap_methods::renderer::MethodDevice;
+use revmap_methods::{Method, MethodSettings};
 
 fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Frame {
     let device = Device::open_validated(None).unwrap();

@@ -1,4 +1,5 @@
-//! What is measured: a search of [`revmap`], the mesh baseline, or the floor.
+//! Ways of drawing behind one [`renderer`]: a search of [`revmap`], the mesh baseline, or the
+//! [`floor`].
 
 pub mod floor;
 pub mod renderer;
@@ -195,7 +196,7 @@ impl fmt::Display for Method {
 /// The inverse of [`Display`](fmt::Display).
 ///
 /// ```
-/// use revmap_bench::plan::method::Method;
+/// use revmap_methods::Method;
 /// assert_eq!("mesh:64x128".parse(), Method::mesh(64, 128));
 /// assert!("mesh:64".parse::<Method>().is_err());
 /// ```
