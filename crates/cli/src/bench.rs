@@ -16,11 +16,11 @@ use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report;
-use revmap_bench::report::series_style::SeriesStyles;
 use revmap_bench::report::flight::{self, FlightTimes};
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::{Album, Sheets};
 use revmap_bench::report::plan_file::{PlanFile, embedded};
+use revmap_bench::report::series_style::SeriesStyles;
 use revmap_searches::folder::of as of_folder;
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,8 @@
 
 use crate::run::{Bench, CAMERA, CONE, holds, lines};
 use revmap_bench::plan::suite::{self, Extent};
-use revmap_bench::report::table::Table;
 use revmap_bench::report::columns;
+use revmap_bench::report::table::Table;
 
 /// A folder with a run of one row.
 fn run(bench: &Bench, folder: &str, driver: &str, processor: &str) {

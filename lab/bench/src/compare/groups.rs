@@ -6,8 +6,8 @@ use super::scenes::Scenes;
 use crate::plan::RBM_BASELINE;
 use revmap_figures::stats;
 
-/// The words for a row among others; rows of equal words are one group. `None`: it does not count.
-pub(super) type By<'a> = &'a dyn Fn(&Run, &[String]) -> Option<Vec<String>>;
+/// The words for a row among others; rows of equal words are one group.
+pub(super) type By<'a> = &'a dyn Fn(&Run, &[String]) -> Vec<String>;
 
 /// Rows (counted from 0) of one kind.
 pub(super) struct Group {
@@ -26,13 +26,12 @@ pub(super) fn groups(runs: &[Run], scenes: &[Scenes], by: By) -> Vec<Group> {
         return all;
     };
     for (row, (record, key)) in first.results.records.iter().zip(own).enumerate() {
-        let Some(key) = key else { continue };
         let twin = |other: usize| {
             let differs = |s: &Scenes| s.differ(first.at(record, "scene"));
             let run = runs.get(other).filter(|_| !differs(&scenes[other]))?;
             let mut records = run.results.records.iter().zip(&keys[other]);
             let same = |r: &[String]| first.same_picture(record, (run, r));
-            records.position(|(r, other)| other.as_ref() == Some(key) && same(r))
+            records.position(|(r, other)| other == key && same(r))
         };
         let others = (1..runs.len()).map(twin);
         let picture = std::iter::once(Some(row)).chain(others).collect();

@@ -22,7 +22,8 @@ use scenes::Scenes;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Columns that name a way of drawing, beside its method. Earlier versions lack the last.
+/// Columns that name a way of drawing, beside its method. Earlier versions lack the last; those that
+/// all runs have count.
 const WAY: [&str; 7] = [
     "stage",
     "max_steps",
@@ -143,13 +144,15 @@ pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
         let words = columns.iter().map(|column| run.at(record, column));
         words.map(str::to_owned).collect::<Vec<_>>()
     };
+    let in_all = |column: &&str| runs.iter().all(|run| run.results.column(column).is_ok());
+    let way: Vec<&str> = WAY.into_iter().filter(in_all).collect();
     let by = |run: &Run, record: &[String]| {
         let mut key = vec![technique(run, record), groups::method(run, record)];
-        key.extend(named(&WAY, run, record));
-        Some(key)
+        key.extend(named(&way, run, record));
+        key
     };
     let ways = groups::groups(&runs, &scenes, &by);
-    let key = [&PICTURE[..], &WAY].concat();
+    let key = [&PICTURE[..], &way].concat();
     let mut pairs = Vec::new();
     if let [new] = others {
         let rows = ways.iter().flat_map(|group| {
@@ -166,11 +169,8 @@ pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
         judge(&mut pairs);
     }
     for place in 1..runs.len() {
-        if !ways
-            .iter()
-            .flat_map(|w| &w.pictures)
-            .any(|p| p[place].is_some())
-        {
+        let mut pictures = ways.iter().flat_map(|way| &way.pictures);
+        if !pictures.any(|picture| picture[place].is_some()) {
             let message = match &scenes[place].told {
                 Some(told) => format!("drew {told}; measure the same scenes"),
                 None => "has no measurement in common with the other folder; measure the same scenes, stages and searches".to_owned(),
@@ -188,9 +188,8 @@ pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
         let machines = machines.map(|c| format!("{c}; ratios of times are between machines"));
         let others = differences(&old.surroundings, &new.surroundings).into_iter();
         let others = others.map(|c| format!("{c}; times depend on it"));
-        let differ = machines
-            .chain(others)
-            .map(|c| format!("the runs differ in {c}"));
+        let differ = machines.chain(others);
+        let differ = differ.map(|c| format!("the runs differ in {c}"));
         let all = scenes.warnings.into_iter().chain(differ);
         all.chain(other_methods(old, new)).collect::<Vec<_>>()
     });
@@ -199,7 +198,7 @@ pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
         alone: (count(old), others.last().map_or(0, count)),
         warnings: warnings.collect(),
         devices: runs.iter().map(device).collect(),
-        table: table(&runs, &ways),
+        table: table(&runs, &ways, &way),
         pairs,
     })
 }
@@ -239,32 +238,30 @@ fn pair((old, before): (&Run, usize), (new, after): (&Run, usize), key: Vec<Stri
 /// Each way of drawing over the pictures that all runs have: of each run the time over the RBM
 /// baseline in the fragment stage, with its 95 % interval (milliseconds without such a baseline),
 /// the depth error (99th percentile in h/512) and the wrong pixels; of two runs new over old, too.
-fn table(runs: &[Run], ways: &[Group]) -> Table {
+fn table(runs: &[Run], ways: &[Group], columns: &[&str]) -> Table {
     let relative = ways.iter().any(|way| {
         let is_baseline = way.key[1] == RBM_BASELINE;
         !is_baseline && !way.times(runs, true).values[0].is_empty()
     });
-    let names: Vec<String> = match runs {
-        [_, _] => ["old", "new"].map(str::to_owned).to_vec(),
-        runs => runs
-            .iter()
-            .map(|run| run.first("driver").to_owned())
-            .collect(),
+    let names: Vec<&str> = match runs {
+        [_, _] => vec!["old", "new"],
+        runs => runs.iter().map(|run| run.first("driver")).collect(),
     };
     let unit = ["ms", "time / RBM baseline"][usize::from(relative)];
     let names = names
-        .into_iter()
+        .iter()
         .map(|name| format!("{name}: {unit}; depth; wrong"));
-    let header = [&["technique", "method"][..], &WAY].concat();
-    let header = header.into_iter().map(str::to_owned).chain(names);
+    let header = ["technique", "method"]
+        .into_iter()
+        .chain(columns.iter().copied());
+    let header = header.map(str::to_owned).chain(names);
     let ratio = (runs.len() == 2).then(|| "new / old".to_owned());
     let record = |way: &Group| {
         let times = way.times(runs, relative).values;
         let [depth, wrong] = [groups::DEPTH, groups::WRONG].map(|(_, columns, of_all)| {
             let errors = way.errors(runs, columns).values.into_iter();
-            errors
-                .map(|all| of_all(&all).filter(|_| !all.is_empty()))
-                .collect::<Vec<_>>()
+            let errors = errors.map(|all| of_all(&all).filter(|_| !all.is_empty()));
+            errors.collect::<Vec<_>>()
         });
         let cell = |k: usize| {
             let time = stats::over_pictures(&times[k])?;
@@ -282,15 +279,13 @@ fn table(runs: &[Run], ways: &[Group]) -> Table {
         record
     };
     let mut table = Table::new(header.chain(ratio), ways.iter().map(record).collect());
-    for column in WAY.iter().filter(|column| **column != "stage") {
+    for column in columns.iter().filter(|column| **column != "stage") {
         let place = table.header.iter().position(|name| name == column);
         let value = |record: &&Vec<String>| place.and_then(|place| record.get(place).cloned());
         // A method's own bound or map tells nothing apart.
         let methods = grouped(&table.records, |record| record[1].clone());
-        if methods
-            .iter()
-            .all(|(_, own)| one(own.iter().map(value)).is_some())
-        {
+        let mut alike = methods.iter().map(|(_, own)| one(own.iter().map(value)));
+        if alike.all(|value| value.is_some()) {
             table = table.without(column);
         }
     }

@@ -58,10 +58,8 @@ pub fn claims(kept: &Path, new: &Path, methods: &[String]) -> Result<(Vec<Claim>
     let runs = [Run::load(kept)?, Run::load(new)?];
     let scenes = runs.each_ref().map(|run| Scenes::of(&runs[0], run));
     let by = |run: &Run, record: &[String]| {
-        Some(vec![
-            groups::method(run, record),
-            run.at(record, "stage").to_owned(),
-        ])
+        let stage = run.at(record, "stage").to_owned();
+        vec![groups::method(run, record), stage]
     };
     let all = groups::groups(&runs, &scenes, &by);
     let mut found = Vec::new();

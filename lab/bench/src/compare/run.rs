@@ -118,13 +118,15 @@ impl Run {
         columns.all(|(column, values)| values.contains(&self.at(record, column)))
     }
 
-    /// True if a record shows a picture of another run's, as far as both have the columns.
+    /// True if a record shows a picture of another run's, to the same tolerance, as far as both have
+    /// the columns.
     pub(super) fn same_picture(
         &self,
         record: &[String],
         (other, twin): (&Self, &[String]),
     ) -> bool {
-        PICTURE.iter().all(|name| {
+        let mut names = PICTURE.iter().chain(&["tolerance_px", "way"]);
+        names.all(|name| {
             let places = (self.results.column(name), other.results.column(name));
             !matches!(places, (Ok(a), Ok(b)) if record[a] != twin[b])
         })

@@ -51,7 +51,7 @@ fn ending(rows: Vec<Row>, ending: &str) -> Vec<Row> {
 fn ratios_are_those_of_the_report() {
     let rows = rows(0.5, 0);
     let runs = [Run::load(folder_of(&rows, "dev", "drv").path()).unwrap()];
-    let by = |run: &Run, record: &[String]| Some(vec![groups::method(run, record)]);
+    let by = |run: &Run, record: &[String]| vec![groups::method(run, record)];
     let groups = groups::groups(&runs, &[Scenes::default()], &by);
     let wanted = over(&rows, Over::Baseline);
     let found = stats::over_pictures(&groups[0].times(&runs, true).values[0]);
