@@ -225,7 +225,7 @@ fn a_run_that_is_ended_keeps_what_was_measured() {
         let bench = Bench::new();
         // After the first of many passes there are results.
         let command =
-            format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100");
+            format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 1000");
         let (said, code) = ended(&bench, &command, signal, "results.csv");
         assert_eq!(code, Some(wanted), "{said}");
         holds(&said, &["interrupted", "--overwrite"]);

@@ -242,6 +242,6 @@ fn a_table_fits_the_terminal() {
     assert_eq!(shown(80), piped);
     let narrow = shown(50);
     let wanted = "old: ms; depth; wrong  new: ms; depth; wrong\n20                                        20\n\
-        wider than the terminal; a pipe, such as\n`| less -S`, also has: new / old\n";
+        wider than the terminal; a pipe, such as `| less\n-S`, also has: new / old\n";
     assert!(narrow.contains(wanted), "{narrow}");
 }

@@ -9,6 +9,7 @@ pub mod submission;
 use crate::measure::drawn::changes;
 use crate::measure::surroundings::differences;
 use crate::plan::RBM_BASELINE;
+use crate::plan::method::Method;
 use crate::report::columns::Cell;
 use groups::Group;
 use revmap::error::{Error, ErrorKind, Result};
@@ -260,7 +261,9 @@ fn table(runs: &[Run], ways: &[Group], columns: &[&str]) -> Table {
         let times = way.times(runs, relative).values;
         let [depth, wrong] = [groups::DEPTH, groups::WRONG].map(|(_, columns, of_all)| {
             let errors = way.errors(runs, columns).values.into_iter();
-            let errors = errors.map(|all| of_all(&all).filter(|_| !all.is_empty()));
+            // The floor has no surface to err from.
+            let err = |all: &[f64]| !all.is_empty() && way.key[1] != Method::Floor.name();
+            let errors = errors.map(|all| of_all(&all).filter(|_| err(&all)));
             errors.collect::<Vec<_>>()
         });
         let cell = |k: usize| {
