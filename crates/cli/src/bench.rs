@@ -130,9 +130,9 @@ struct What {
     /// of --out; measures nothing
     #[arg(long, num_args = 1.., value_name = "FILE")]
     gather: Vec<PathBuf>,
-    /// Compares the results in these folders; measures nothing. A table has a row for each technique
-    /// and way of drawing, a column for each run. Of two runs, OLD and NEW, it names what became slower
-    /// or faster, less or more exact
+    /// Compares the results in these folders; measures nothing. A table has a row for each
+    /// technique and way of drawing, a column for each run. Of two runs, OLD and NEW, it names what
+    /// became slower or faster, less or more exact
     #[arg(long, num_args = 2.., value_name = "DIR")]
     compare: Vec<PathBuf>,
 }
@@ -140,10 +140,10 @@ struct What {
 /// How runs are compared.
 #[derive(Args)]
 struct How {
-    /// With --compare OLD NEW: judge line by line whether NEW repeats what OLD says of these methods (exact,
-    /// mesh:64x128, baseline), by the pictures that both have. Exit codes: 1 if NEW contradicts a
-    /// claim; else 4 if a claim is not judged, because NEW lacks half of its pictures or its interval is
-    /// too wide
+    /// With --compare OLD NEW: judge line by line whether NEW repeats what OLD says of these
+    /// methods (exact, mesh:64x128, baseline), by the pictures that both have. Exit codes: 1 if NEW
+    /// contradicts a claim; else 4 if a claim is not judged, because NEW lacks half of its pictures
+    /// or its interval is too wide
     #[arg(
         long,
         requires = "compare",

@@ -217,15 +217,16 @@ fn ended(bench: &Bench, command: &str, signal: &str, file: &str) -> (String, Opt
     (lines(&out).join(" "), out.status.code())
 }
 
-/// Ctrl-C in the middle, and the signals by which systems end programs: what was measured is kept, and
-/// the exit code, that of shells, says that it is not all.
+/// Ctrl-C in the middle, and the signals by which systems end programs: what was measured is kept,
+/// and the exit code, that of shells, says that it is not all.
 #[test]
 fn a_run_that_is_ended_keeps_what_was_measured() {
     for (signal, wanted) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
         let bench = Bench::new();
         // After the first of many passes there are results.
-        let command =
-            format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 1000");
+        let command = format!(
+            "bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100 --rounds 50"
+        );
         let (said, code) = ended(&bench, &command, signal, "results.csv");
         assert_eq!(code, Some(wanted), "{said}");
         holds(&said, &["interrupted", "--overwrite"]);

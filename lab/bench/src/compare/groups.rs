@@ -94,8 +94,8 @@ impl Group {
     }
 }
 
-/// The errors that runs are compared by: what they are called, the columns whose sum is the error of
-/// a picture, and the figure of several pictures.
+/// The errors that runs are compared by: what they are called, the columns whose sum is the error
+/// of a picture, and the figure of several pictures.
 pub(super) type Error = (
     &'static str,
     &'static [&'static str],

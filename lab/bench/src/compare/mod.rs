@@ -23,8 +23,8 @@ use scenes::Scenes;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Columns that name a way of drawing, beside its method. Earlier versions lack the last; those that
-/// all runs have count.
+/// Columns that name a way of drawing, beside its method. Earlier versions lack the last; those
+/// that all runs have count.
 const WAY: [&str; 7] = [
     "stage",
     "max_steps",

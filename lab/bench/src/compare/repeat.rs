@@ -129,8 +129,8 @@ fn judge(runs: &[Run], group: &Group) -> Vec<Claim> {
         .collect()
 }
 
-/// A claim over the pictures of both runs, which `judged` judges if they are enough; none if the kept
-/// run has no value.
+/// A claim over the pictures of both runs, which `judged` judges if they are enough; none if the
+/// kept run has no value.
 fn claim<T>(
     what: &str,
     common: Common<T>,

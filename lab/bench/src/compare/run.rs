@@ -118,8 +118,8 @@ impl Run {
         columns.all(|(column, values)| values.contains(&self.at(record, column)))
     }
 
-    /// True if a record shows a picture of another run's, to the same tolerance, as far as both have
-    /// the columns.
+    /// True if a record shows a picture of another run's, to the same tolerance, as far as both
+    /// have the columns.
     pub(super) fn same_picture(
         &self,
         record: &[String],

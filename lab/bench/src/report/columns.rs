@@ -31,7 +31,8 @@ pub struct Context<'a> {
     pub resolved: f64,
 }
 
-/// Half the width of an interval, relative, above which a figure is not resolved where no plan says.
+/// Half the width of an interval, relative, above which a figure is not resolved where no plan
+/// says.
 pub(crate) const RESOLVED: f64 = 0.25;
 
 /// A column.

@@ -11,8 +11,8 @@ use revmap::scene::{
 use revmap::settings::name_of;
 use toml::{Table, Value};
 
-/// Puts every member of a value into a table: its key, and how it is written; `_` leaves it out. The
-/// value is taken apart by name, so that no member is forgotten.
+/// Puts every member of a value into a table: its key, and how it is written; `_` leaves it out.
+/// The value is taken apart by name, so that no member is forgotten.
 macro_rules! put {
     ($all:ident, $of:expr => $type:ident { $($member:ident: $key:tt $($how:expr)?),* $(,)? }) => {
         let $type { $($member),* } = $of;

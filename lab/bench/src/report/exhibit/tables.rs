@@ -23,10 +23,9 @@ pub struct Table {
     /// The heading above it.
     pub heading: String,
     /// Columns, by their names. In tables of ways also `ratio R` (in brackets if not resolved),
-    /// `interval R`, `range R`, `faster R` of the time over `R`, `known ms` and `other ms` for the mean
-    /// times, `mean C`,
-    /// `worst C`, `average C` of a column, `other C` of the mesh's, `pictures`, `total wrong`,
-    /// `no worse`.
+    /// `interval R`, `range R`, `faster R` of the time over `R`, `known ms` and `other ms` for the
+    /// mean times, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
+    /// `pictures`, `total wrong`, `no worse`.
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
     pub over: Option<Over>,
