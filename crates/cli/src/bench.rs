@@ -16,11 +16,11 @@ use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report;
-use revmap_bench::report::chart::series_style::SeriesStyles;
 use revmap_bench::report::flight::{self, FlightTimes};
 use revmap_bench::report::folder;
 use revmap_bench::report::pictures::{Album, Sheets};
 use revmap_bench::report::plan_file::{PlanFile, embedded};
+use revmap_bench::report::series_style::SeriesStyles;
 use revmap_searches::folder::of as of_folder;
 use std::path::{Path, PathBuf};
 
@@ -126,26 +126,24 @@ struct What {
     /// plain and by every value of the published tables, whole and cut by the box
     #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "usual", value_parser = named(&TECHNIQUES))]
     techniques: Option<&'static str>,
-    /// Prints a table of the default search in the runs of these folders: a row for each technique,
-    /// a column for each driver; measures nothing
-    #[arg(long, num_args = 1.., value_name = "DIR")]
-    drivers: Vec<PathBuf>,
     /// Puts files of `revmap submit` side by side: a table and a chart across devices in the folder
     /// of --out; measures nothing
     #[arg(long, num_args = 1.., value_name = "FILE")]
     gather: Vec<PathBuf>,
-    /// Compares the results in folder NEW with those in folder OLD; measures nothing
-    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
+    /// Compares the results in these folders; measures nothing. A table has a row for each
+    /// technique and way of drawing, a column for each run. Of two runs, OLD and NEW, it names what
+    /// became slower or faster, less or more exact
+    #[arg(long, num_args = 2.., value_name = "DIR")]
     compare: Vec<PathBuf>,
 }
 
 /// How runs are compared.
 #[derive(Args)]
 struct How {
-    /// With --compare: judge line by line whether NEW repeats what OLD says of these methods (exact,
-    /// mesh:64x128, baseline), by the pictures that both have. Exit codes: 1 if NEW contradicts a
-    /// claim; else 4 if a claim is not judged, because NEW lacks half of its pictures or its interval is
-    /// too wide
+    /// With --compare OLD NEW: judge line by line whether NEW repeats what OLD says of these
+    /// methods (exact, mesh:64x128, baseline), by the pictures that both have. Exit codes: 1 if NEW
+    /// contradicts a claim; else 4 if a claim is not judged, because NEW lacks half of its pictures
+    /// or its interval is too wide
     #[arg(
         long,
         requires = "compare",
@@ -158,20 +156,19 @@ struct How {
 impl Bench {
     pub fn run(self) -> Result<()> {
         let what = &self.what;
-        if let ([old, new], false) = (what.compare.as_slice(), self.how.repeats.is_empty()) {
-            return repeats(old, new, &self.how.repeats);
-        }
-        if let [old, new] = what.compare.as_slice() {
-            let found = compare::compare(old, new)?;
-            found.warnings.iter().for_each(|text| output::warn(text));
-            print(&compare::as_text(&found, output::width()));
-            return Ok(());
-        }
-        if !what.drivers.is_empty() {
-            let (table, warning) = compare::drivers::markdown(&what.drivers)?;
-            warning.iter().for_each(|text| output::warn(text));
-            print(&table);
-            return Ok(());
+        match (what.compare.as_slice(), self.how.repeats.is_empty()) {
+            ([], _) => {}
+            ([old, new], false) => return repeats(old, new, &self.how.repeats),
+            (_, false) => {
+                let message = "judges one run by another; give --compare OLD NEW";
+                return Err(Error::new(ErrorKind::Usage, message).at_key("--repeats"));
+            }
+            (folders, true) => {
+                let found = compare::compare(folders)?;
+                found.warnings.iter().for_each(|text| output::warn(text));
+                print(&compare::as_text(&found, output::width()));
+                return Ok(());
+            }
         }
         if !what.gather.is_empty() {
             return gather(&what.gather, &self.lists);
@@ -215,7 +212,7 @@ fn repeats(old: &Path, new: &Path, methods: &[String]) -> Result<()> {
     let (claims, warnings) = compare::repeat::claims(old, new, methods)?;
     warnings.iter().for_each(|text| output::warn(text));
     print(&compare::repeat::as_text(&claims));
-    let has = |verdict| claims.iter().any(|claim| claim.verdict == verdict);
+    let has = |verdict| claims.iter().any(|claim| claim.0 == verdict);
     if has(Verdict::NotRepeated) {
         let message = "contradicts what the kept run says; see the lines that begin with NOT";
         return Err(Error::new(ErrorKind::Content, message).in_file(new));

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | [`plan`] | what a benchmark measures: ways of drawing, views, plans and their files |
 //! | [`measure`] | measuring: rows, their statistics and ratios, the machine, what was drawn |
-//! | [`report`] | tables, charts, the page, the folder of a run |
+//! | [`report`] | what a report shows, and the folder of a run; see [`revmap_figures`] |
 //! | [`compare`] | runs and machines beside each other |
 
 pub mod compare;

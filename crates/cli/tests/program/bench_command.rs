@@ -2,8 +2,8 @@
 //! a real device, small and brief.
 
 use crate::run::{Bench, CAMERA, CONE, holds, lines};
+use revmap_bench::report::columns;
 use revmap_bench::report::table::Table;
-use revmap_bench::report::table::columns;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -87,13 +87,13 @@ fn meshes_that_are_left_out_are_named_first() {
         "bench scene.toml --quick --size 64x48 --solver circle,mesh:16x32 --stage fragment";
     let said = lines(&bench.done(&format!("{command} --out m"))).join("\n");
     let words = [
-        "mesh:16x32 will be left out of 1 measurements",
+        "will be left out of 1 measurements",
         "light",
         "--set 'shadow=\"off\"'",
     ];
     holds(&said, &words);
-    let set = "--set shadow=\"off\"";
-    let said = lines(&bench.done(&format!("{command} --out n {set}"))).join("\n");
+    let off = format!("{command} --out n --set shadow=\"off\"");
+    let said = lines(&bench.done(&off)).join("\n");
     assert!(!said.contains("left out of"), "{said}");
     let [more, fewer] = ["n", "m"].map(|run| load(&bench, &format!("{run}/results.csv")).records);
     assert!(more.len() > fewer.len());
@@ -217,18 +217,24 @@ fn ended(bench: &Bench, command: &str, signal: &str, file: &str) -> (String, Opt
     (lines(&out).join(" "), out.status.code())
 }
 
-/// Ctrl-C in the middle: what was measured is kept, and the exit code says that it is not all.
+/// Ctrl-C in the middle, and the signals by which systems end programs: what was measured is kept,
+/// and the exit code, that of shells, says that it is not all.
 #[test]
-fn an_interrupt_keeps_what_was_measured() {
-    let bench = Bench::new();
-    // After the first pass of five or more there are results.
-    let command = format!("bench {SPHERE} --size 800x600 --solver circle");
-    let (said, code) = ended(&bench, &command, "-INT", "results.csv");
-    assert_eq!(code, Some(130), "{said}");
-    holds(&said, &["interrupted", "--overwrite"]);
-    let floors = if cfg!(feature = "shaderc") { 2 } else { 0 };
-    assert_eq!(load(&bench, "kept/results.csv").records.len(), 4 + floors);
-    holds(&bench.text("kept/report.html"), &["was interrupted"]);
+fn a_run_that_is_ended_keeps_what_was_measured() {
+    for (signal, wanted) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let bench = Bench::new();
+        // After the first of many passes there are results.
+        let command = format!(
+            "bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100 --rounds 50"
+        );
+        let (said, code) = ended(&bench, &command, signal, "results.csv");
+        assert_eq!(code, Some(wanted), "{said}");
+        holds(&said, &["interrupted", "--overwrite"]);
+        let rows = 2 + usize::from(cfg!(feature = "shaderc"));
+        assert_eq!(load(&bench, "kept/results.csv").records.len(), rows);
+        holds(&bench.text("kept/report.html"), &["was interrupted"]);
+        bench.has(&["kept/machine.txt", "kept/excluded.csv"]);
+    }
 }
 
 /// A run that is ended before its first result leaves no folder, so that the same command works again.
@@ -251,19 +257,5 @@ fn a_run_without_a_result_leaves_no_folder() {
         });
         let said = interrupted.unwrap_or_else(|| panic!("{command} was too fast"));
         assert!(!bench.path("kept").exists(), "{command}: {said}");
-    }
-}
-
-/// The signals by which systems end programs do as Ctrl-C, with the exit codes of shells.
-#[test]
-fn a_run_that_is_ended_by_the_system_has_its_report() {
-    for (signal, wanted) in [("-TERM", 143), ("-HUP", 129)] {
-        let bench = Bench::new();
-        let command =
-            format!("bench {SPHERE} --size 320x240 --solver circle --stage fragment --passes 100");
-        let (said, code) = ended(&bench, &command, signal, "results.csv");
-        assert_eq!(code, Some(wanted), "{said}");
-        holds(&said, &["interrupted"]);
-        bench.has(&["kept/report.html", "kept/machine.txt", "kept/excluded.csv"]);
     }
 }

@@ -1,30 +1,39 @@
-//! Two folders of results held against each other: two versions of the program, or two devices.
+//! Folders of results held against each other: two versions of the program, or several devices.
 
-pub mod drivers;
+mod groups;
 pub mod repeat;
 mod run;
 mod scenes;
 pub mod submission;
 
-use crate::measure::stats::{self, Interval, Verdict};
+use crate::measure::drawn::changes;
 use crate::measure::surroundings::differences;
-use crate::plan::names::{number, range};
-use crate::report::table::{Table, columns};
+use crate::plan::RBM_BASELINE;
+use crate::plan::method::Method;
+use crate::report::columns::Cell;
+use groups::Group;
 use revmap::error::{Error, ErrorKind, Result};
-use run::Run;
+use revmap_figures::groups::grouped;
+use revmap_figures::groups::one;
+use revmap_figures::names::number;
+use revmap_figures::stats::{self, Interval, Verdict};
+use revmap_figures::table::{NO_VALUE, Table};
+use run::{PICTURE, Run};
 use scenes::Scenes;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// How many of the first columns of `results.csv` name a measurement in text.
-const NAMES: usize = 14;
-/// Columns that tell measurements of one such name apart. Earlier versions lack the last.
-const MORE: [&str; 2] = ["tolerance_px", "way"];
-
-/// The columns that name a measurement: rows that agree in them are the same one.
-fn key() -> Vec<&'static str> {
-    columns::results().take(NAMES).chain(MORE).collect()
-}
+/// Columns that name a way of drawing, beside its method. Earlier versions lack the last; those
+/// that all runs have count.
+const WAY: [&str; 7] = [
+    "stage",
+    "max_steps",
+    "map_rows",
+    "map_source",
+    "map_format",
+    "tolerance_px",
+    "way",
+];
 
 /// Errors may differ by this share before they count as changed.
 const ERROR_CHANGE: f64 = 0.05;
@@ -42,10 +51,8 @@ pub struct Pair {
     /// The change of its time: in proportion to the RBM baseline where both runs have it. The loop
     /// itself, with others over it, has none.
     pub verdict: Verdict,
-    /// The errors that have grown.
-    pub worse: Vec<Change>,
-    /// The errors that have shrunk.
-    pub better: Vec<Change>,
+    /// The errors that have grown or shrunk.
+    pub changed: Vec<Change>,
 }
 
 /// An error that differs: column, old, new.
@@ -106,91 +113,186 @@ fn other_methods(old: &Run, new: &Run) -> Option<String> {
     })
 }
 
-/// Two runs side by side.
+/// Runs side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
-    /// The measurements of both, in the order of the new run.
+    /// The measurements of two runs, in the order of the old one; none of more runs.
     pub pairs: Vec<Pair>,
     /// How many measurements only the old run has, and only the new one.
     pub alone: (usize, usize),
     /// Device and driver of each.
-    pub devices: [String; 2],
+    pub devices: Vec<String>,
+    /// Ways of drawing by technique and stage, over the pictures that all runs have.
+    pub table: Table,
     /// A warning for each of scenes, settings, device, driver, processor, surroundings and methods that
-    /// differs.
+    /// differs from the first run.
     pub warnings: Vec<String>,
 }
 
-/// Reads two folders that `revmap bench` or `revmap chart` wrote.
+/// Reads folders that `revmap bench` or `revmap chart` wrote, two or more.
 ///
 /// # Errors
 /// [`ErrorKind::File`], naming the file: missing, damaged or of other columns;
 /// [`ErrorKind::Content`] with nothing in common, naming the key of a scene that differs.
-pub fn compare(old: &Path, new: &Path) -> Result<Against> {
-    let (before, after) = (Run::load(old)?, Run::load(new)?);
-    let scenes = Scenes::of(&before, &after);
-    let key = key();
-    let pair = |(number, record): (usize, &Vec<String>)| {
-        let mut known = before.results.records.iter();
-        let twin = known.position(|r| before.agree(r, (&after, record), &key))?;
-        if scenes.differ(after.at(record, "scene")) {
-            return None;
-        }
-        let old = &before.results.records[twin];
-        let errors = |name| {
-            let value = |run: &Run, record| run.at(record, name).parse::<f64>().ok();
-            Some((name, value(&before, old)?, value(&after, record)?))
-        };
-        let changed = ERRORS.into_iter().filter_map(errors);
-        let (worse, better): (Vec<Change>, Vec<Change>) = changed
-            .filter(|&(name, a, b)| grown(name, a, b) || grown(name, b, a))
-            .partition(|&(_, a, b)| b > a);
-        let over = |run: &Run, row: usize| {
-            let record = &run.results.records[row];
-            let ratios = run.over_baseline(row, run.at(record, "stage"));
-            ratios.filter(|_| !run.is_baseline(record))
-        };
-        let relative = over(&after, number).zip(over(&before, twin));
-        Some(Pair {
-            key: (key.iter().map(|column| after.at(record, column).to_owned())).collect(),
-            time: stats::ratio(&after.medians(number), &before.medians(twin)),
-            relative: relative.and_then(|(a, b)| stats::ratio(&a, &b)),
-            verdict: Verdict::Unresolved,
-            worse,
-            better,
-        })
+pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
+    let runs = folders.iter().map(|folder| Run::load(folder.as_ref()));
+    let runs = runs.collect::<Result<Vec<Run>>>()?;
+    let [old, others @ ..] = runs.as_slice() else {
+        return Err(Error::new(ErrorKind::Usage, "give two or more folders"));
     };
-    let records = after.results.records.iter().enumerate();
-    let mut pairs: Vec<Pair> = records.filter_map(pair).collect();
-    judge(&mut pairs);
-    if pairs.is_empty() {
-        let message = match &scenes.told {
-            Some(told) => format!("drew {told}; measure the same scenes"),
-            None => "has no measurement in common with the other folder; measure the same scenes, stages and searches".to_owned(),
-        };
-        return Err(Error::new(ErrorKind::Content, message).in_file(new));
+    let scenes: Vec<Scenes> = runs.iter().map(|run| Scenes::of(old, run)).collect();
+    let named = |columns: &[&str], run: &Run, record: &[String]| {
+        let words = columns.iter().map(|column| run.at(record, column));
+        words.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let in_all = |column: &&str| runs.iter().all(|run| run.results.column(column).is_ok());
+    let way: Vec<&str> = WAY.into_iter().filter(in_all).collect();
+    let by = |run: &Run, record: &[String]| {
+        let mut key = vec![technique(run, record), groups::method(run, record)];
+        key.extend(named(&way, run, record));
+        key
+    };
+    let ways = groups::groups(&runs, &scenes, &by);
+    let key = [&PICTURE[..], &way].concat();
+    let mut pairs = Vec::new();
+    if let [new] = others {
+        let rows = ways.iter().flat_map(|group| {
+            let twins = group.pictures.iter().filter_map(|p| p[0].zip(p[1]));
+            twins.map(move |twins| (twins, &group.key[1]))
+        });
+        let mut rows: Vec<_> = rows.collect();
+        rows.sort_unstable();
+        pairs.extend(rows.into_iter().map(|((before, after), method)| {
+            let mut words = named(&key, old, &old.results.records[before]);
+            words.insert(1, method.clone());
+            pair((old, before), (new, after), words)
+        }));
+        judge(&mut pairs);
     }
-    let alone = |run: &Run| run.results.records.len().saturating_sub(pairs.len());
-    let (old, new) = (before.machine(), after.machine());
-    let differs = |((name, a), (_, b)): ((&str, &str), (&str, &str))| {
-        let warning = || {
-            format!(
-                "the runs differ in {name}: old {a:?}, new {b:?}; ratios of times are between machines"
-            )
-        };
-        (a != b && !a.is_empty() && !b.is_empty()).then(warning)
-    };
-    let machines = old.into_iter().zip(new).filter_map(differs);
-    let others = differences(&before.surroundings, &after.surroundings);
+    for place in 1..runs.len() {
+        let mut pictures = ways.iter().flat_map(|way| &way.pictures);
+        if !pictures.any(|picture| picture[place].is_some()) {
+            let message = match &scenes[place].told {
+                Some(told) => format!("drew {told}; measure the same scenes"),
+                None => "has no measurement in common with the other folder; measure the same scenes, stages and searches".to_owned(),
+            };
+            return Err(Error::new(ErrorKind::Content, message).in_file(folders[place].as_ref()));
+        }
+    }
+    let count = |run: &Run| run.results.records.len().saturating_sub(pairs.len());
+    let warnings = others.iter().zip(scenes.into_iter().skip(1));
+    let warnings = warnings.flat_map(|(new, scenes)| {
+        let (mut a, mut b) = (old.machine(), new.machine());
+        a.retain(|name, _| b.contains_key(name));
+        b.retain(|name, _| a.contains_key(name));
+        let machines = changes(&a, &b).into_iter();
+        let machines = machines.map(|c| format!("{c}; ratios of times are between machines"));
+        let others = differences(&old.surroundings, &new.surroundings).into_iter();
+        let others = others.map(|c| format!("{c}; times depend on it"));
+        let differ = machines.chain(others);
+        let differ = differ.map(|c| format!("the runs differ in {c}"));
+        let all = scenes.warnings.into_iter().chain(differ);
+        all.chain(other_methods(old, new)).collect::<Vec<_>>()
+    });
+    let device = |run: &Run| format!("{}, {}", run.first("device"), run.first("driver"));
     Ok(Against {
-        alone: (alone(&before), alone(&after)),
-        warnings: (scenes.warnings.into_iter())
-            .chain(machines)
-            .chain(others)
-            .chain(other_methods(&before, &after))
-            .collect(),
-        devices: [old, new].map(|[(_, device), (_, driver), _]| format!("{device}, {driver}")),
+        alone: (count(old), others.last().map_or(0, count)),
+        warnings: warnings.collect(),
+        devices: runs.iter().map(device).collect(),
+        table: table(&runs, &ways, &way),
         pairs,
     })
+}
+
+/// The technique of a record: its view's, else its offset's; whether the box cuts it.
+fn technique(run: &Run, record: &[String]) -> String {
+    let scene = run.at(record, "scene").trim_end_matches(":close");
+    match run.at(record, "technique") {
+        _ if scene.ends_with("textured") => "textured".to_owned(),
+        technique if scene.ends_with("-box") => format!("{technique}, cut by the box"),
+        technique => technique.to_owned(),
+    }
+}
+
+/// One measurement of two runs, its verdict still open.
+fn pair((old, before): (&Run, usize), (new, after): (&Run, usize), key: Vec<String>) -> Pair {
+    let changed = ERRORS.into_iter().filter_map(|name| {
+        let error = |run: &Run, row| run.sum(row, &[name]);
+        Some((name, error(old, before)?, error(new, after)?))
+    });
+    let changed = changed.filter(|&(name, a, b)| grown(name, a, b) || grown(name, b, a));
+    let over = |run: &Run, row: usize| {
+        let record = &run.results.records[row];
+        let ratios = run.over_baseline(row, run.at(record, "stage"));
+        ratios.filter(|_| !run.is_baseline(record))
+    };
+    let relative = over(new, after).zip(over(old, before));
+    Pair {
+        key,
+        time: stats::ratio(&new.medians(after), &old.medians(before)),
+        relative: relative.and_then(|(a, b)| stats::ratio(&a, &b)),
+        verdict: Verdict::Unresolved,
+        changed: changed.collect(),
+    }
+}
+
+/// Each way of drawing over the pictures that all runs have: of each run the time over the RBM
+/// baseline in the fragment stage, with its 95 % interval (milliseconds without such a baseline),
+/// the depth error (99th percentile in h/512) and the wrong pixels; of two runs new over old, too.
+fn table(runs: &[Run], ways: &[Group], columns: &[&str]) -> Table {
+    let relative = ways.iter().any(|way| {
+        let is_baseline = way.key[1] == RBM_BASELINE;
+        !is_baseline && !way.times(runs, true).values[0].is_empty()
+    });
+    let names: Vec<&str> = match runs {
+        [_, _] => vec!["old", "new"],
+        runs => runs.iter().map(|run| run.first("driver")).collect(),
+    };
+    let unit = ["ms", "time / RBM baseline"][usize::from(relative)];
+    let names = names
+        .iter()
+        .map(|name| format!("{name}: {unit}; depth; wrong"));
+    let header = ["technique", "method"]
+        .into_iter()
+        .chain(columns.iter().copied());
+    let header = header.map(str::to_owned).chain(names);
+    let ratio = (runs.len() == 2).then(|| "new / old".to_owned());
+    let record = |way: &Group| {
+        let times = way.times(runs, relative).values;
+        let [depth, wrong] = [groups::DEPTH, groups::WRONG].map(|(_, columns, of_all)| {
+            let errors = way.errors(runs, columns).values.into_iter();
+            // The floor has no surface to err from.
+            let err = |all: &[f64]| !all.is_empty() && way.key[1] != Method::Floor.name();
+            let errors = errors.map(|all| of_all(&all).filter(|_| err(&all)));
+            errors.collect::<Vec<_>>()
+        });
+        let cell = |k: usize| {
+            let time = stats::over_pictures(&times[k])?;
+            let errors = [&depth, &wrong].map(|of| of[k].map(|v| number(v, 3)));
+            let errors = errors.into_iter().flatten().map(|v| format!("; {v}"));
+            Some(Cell::Known(time).shown() + &errors.collect::<String>())
+        };
+        let mut record = way.key.clone();
+        record.extend((0..runs.len()).map(|k| cell(k).unwrap_or(NO_VALUE.to_owned())));
+        if let [old, new] = times.as_slice() {
+            let [old, new] = [old, new].map(|logs| stats::pass_means(logs));
+            let ratio = stats::ratio(&new, &old).map_or(Cell::Empty, Cell::Known);
+            record.push(ratio.shown());
+        }
+        record
+    };
+    let mut table = Table::new(header.chain(ratio), ways.iter().map(record).collect());
+    for column in columns.iter().filter(|column| **column != "stage") {
+        let place = table.header.iter().position(|name| name == column);
+        let value = |record: &&Vec<String>| place.and_then(|place| record.get(place).cloned());
+        // A method's own bound or map tells nothing apart.
+        let methods = grouped(&table.records, |record| record[1].clone());
+        let mut alike = methods.iter().map(|(_, own)| one(own.iter().map(value)));
+        if alike.all(|value| value.is_some()) {
+            table = table.without(column);
+        }
+    }
+    table
 }
 
 /// The columns of errors.
@@ -210,64 +312,48 @@ fn grown(name: &str, a: f64, b: f64) -> bool {
     b > a * (1.0 + ERROR_CHANGE) + slack
 }
 
-/// The comparison as text, for a terminal of this width if it is for one: all ratios, then what
-/// became slower, then what became less exact.
+/// The comparison as text, for a terminal of this width if it is for one: the table, then what
+/// became slower or faster, less or more exact.
 pub fn as_text(against: &Against, width: Option<usize>) -> String {
     let pairs = &against.pairs;
-    let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
-    let mut columns: Vec<usize> = (0..NAMES).filter(differs).collect();
-    if columns.is_empty() {
-        columns = vec![0, 5, 6];
+    let table = against.table.within(width, "a pipe, such as `| less -S`,");
+    if pairs.is_empty() {
+        return table;
     }
-    let named = pairs
-        .iter()
-        .map(|p| &p.key[..NAMES])
-        .collect::<BTreeSet<_>>();
-    if named.len() < pairs.len() {
-        columns.extend((NAMES..NAMES + MORE.len()).filter(differs));
+    let differs = |c: &usize| pairs.windows(2).any(|w| w[0].key[*c] != w[1].key[*c]);
+    let mut columns: Vec<usize> = (0..pairs[0].key.len()).filter(differs).collect();
+    if columns.is_empty() {
+        columns = vec![0, 1];
     }
     let name = |pair: &Pair| {
         let words = columns.iter().map(|&c| pair.key[c].as_str());
         let words: Vec<&str> = words.filter(|v| !v.is_empty()).collect();
         words.join(" ")
     };
-    let value = |i: Option<Interval>| i.map_or(String::new(), |t| number(t.value, 3));
-    let ends = |i: Option<Interval>| {
-        let ends = i.map(|t| t.ends().map_or("unknown".to_owned(), range));
-        ends.unwrap_or_default()
+    let of = |verdict: Verdict, word: &str| -> String {
+        let own = pairs.iter().filter(|pair| pair.verdict == verdict);
+        let line = |pair: &Pair| {
+            let ratio = pair.relative.or(pair.time).map_or(Cell::Empty, Cell::Known);
+            format!("{word}: {}: {}\n", name(pair), ratio.shown())
+        };
+        own.map(line).collect()
     };
-    let verdict = |pair: &Pair| match pair.verdict {
-        Verdict::Slower => "slower",
-        Verdict::Faster => "faster",
-        Verdict::Even => "",
-        Verdict::Unresolved => "clocks disagree",
-    };
-    let table = Table::of(
-        pairs,
-        &[
-            ("measurement", &name),
-            ("verdict", &|p| verdict(p).to_owned()),
-            ("new / old", &|p| value(p.time)),
-            ("95 % interval", &|p| ends(p.time)),
-            ("over the RBM baseline", &|p| value(p.relative)),
-            ("95 % interval", &|p| ends(p.relative)),
-        ],
-    );
-    let changes = |what: &str, of: fn(&Pair) -> &[Change]| -> String {
-        let changed = pairs.iter().filter(|p| !of(p).is_empty());
+    let changes = |what: &str, own: fn(&Change) -> bool| -> String {
         let line = |pair: &Pair| {
             let change = |(c, a, b): &Change| format!("{c} {} to {}", number(*a, 4), number(*b, 4));
-            let all: Vec<String> = of(pair).iter().map(change).collect();
-            format!("{what}: {}: {}\n", name(pair), all.join(", "))
+            let all: Vec<String> = pair.changed.iter().filter(|c| own(c)).map(change).collect();
+            let line = format!("{what}: {}: {}\n", name(pair), all.join(", "));
+            (!all.is_empty()).then_some(line)
         };
-        changed.map(line).collect()
+        pairs.iter().filter_map(line).collect()
     };
-    let [old, new] = &against.devices;
-    let table = table.within(width, "a pipe, such as `| less -S`,");
+    let slower = of(Verdict::Slower, "slower") + &of(Verdict::Faster, "faster");
+    let open = of(Verdict::Unresolved, "clocks disagree");
+    let worse = changes("less exact", |(_, a, b)| b > a);
+    let better = changes("more exact", |(_, a, b)| b < a);
+    let [old, new] = [0, 1].map(|k: usize| &against.devices[k]);
     let counts = counts(against);
-    let worse = changes("less exact", |p| &p.worse);
-    let better = changes("more exact", |p| &p.better);
-    format!("old: {old}\nnew: {new}\n\n{table}{counts}{worse}{better}")
+    format!("old: {old}\nnew: {new}\n\n{table}{counts}{slower}{open}{worse}{better}")
 }
 
 /// How many became slower and faster, and whether the machine did.
@@ -286,8 +372,10 @@ fn counts(against: &Against) -> String {
         against.alone.0,
         against.alone.1
     );
-    let loops = pairs.iter().filter(|p| p.relative.is_none());
-    let mut loops = loops.filter_map(|p| p.time);
+    let mut loops = pairs
+        .iter()
+        .filter(|p| p.relative.is_none())
+        .filter_map(|p| p.time);
     let compared = pairs.iter().any(|p| p.relative.is_some());
     if compared && loops.any(|t| t.low > 1.0 || t.high < 1.0) {
         out += "the RBM baseline itself differs between the runs: one had the slower or busier machine, unless that loop was changed; verdicts are by the times over it\n";

@@ -1,13 +1,12 @@
 //! A run read back from its folder.
 
-use super::MORE;
 use crate::measure::drawn::Drawn;
-use crate::measure::stats;
 use crate::measure::surroundings;
-use crate::report::table::columns::{CONTRACT, results as columns};
-use crate::report::table::{Table, text_of};
+use crate::report::columns::{CONTRACT, results as columns};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
+use revmap_figures::stats;
+use revmap_figures::table::{Table, text_of};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -43,7 +42,7 @@ const BASELINE: [(&str, &[&str]); 4] = [
 ];
 
 /// Columns that name a picture.
-const PICTURE: [&str; 8] = [
+pub(super) const PICTURE: [&str; 8] = [
     "scene",
     "technique",
     "extend",
@@ -119,23 +118,18 @@ impl Run {
         columns.all(|(column, values)| values.contains(&self.at(record, column)))
     }
 
-    /// True if a record has the values of one of another run in these columns, as far as both runs
-    /// have them.
-    pub(super) fn agree(
+    /// True if a record shows a picture of another run's, to the same tolerance, as far as both
+    /// have the columns.
+    pub(super) fn same_picture(
         &self,
         record: &[String],
         (other, twin): (&Self, &[String]),
-        columns: &[&str],
     ) -> bool {
-        columns.iter().all(|name| {
+        let mut names = PICTURE.iter().chain(&["tolerance_px", "way"]);
+        names.all(|name| {
             let places = (self.results.column(name), other.results.column(name));
             !matches!(places, (Ok(a), Ok(b)) if record[a] != twin[b])
         })
-    }
-
-    /// True if a record shows a picture of another run's, to the same tolerance.
-    pub(super) fn same_picture(&self, record: &[String], other: (&Self, &[String])) -> bool {
-        self.agree(record, other, &PICTURE) && self.agree(record, other, &MORE)
     }
 
     /// The row (counted from 0) of the RBM baseline in a record's picture and in this stage.
@@ -145,12 +139,31 @@ impl Run {
         records.position(|r| self.is_baseline(r) && self.at(r, "stage") == stage && same(r))
     }
 
-    /// Device, driver and processor, each with its name; empty where unknown.
-    pub(super) fn machine(&self) -> [(&'static str, &str); 3] {
+    /// The sum of some columns of a row; none where one is empty.
+    pub(super) fn sum(&self, row: usize, columns: &[&str]) -> Option<f64> {
+        let record = self.results.records.get(row)?;
+        columns
+            .iter()
+            .map(|c| self.at(record, c).parse::<f64>().ok())
+            .sum()
+    }
+
+    /// A field of the first record; empty where unknown.
+    pub(super) fn first(&self, name: &str) -> &str {
         let first = self.results.records.first();
-        let named = |name| (name, first.map_or("", |record| self.at(record, name)));
-        let processor = ("processor", self.processor.as_str());
-        [named("device"), named("driver"), processor]
+        first.map_or("", |record| self.at(record, name))
+    }
+
+    /// Device, driver and processor by name, without those that are unknown.
+    pub(super) fn machine(&self) -> BTreeMap<String, String> {
+        let named = ["device", "driver"].map(|name| (name, self.first(name)));
+        let all = named
+            .into_iter()
+            .chain([("processor", self.processor.as_str())]);
+        let known = all.filter(|(_, value)| !value.is_empty());
+        known
+            .map(|(name, value)| (name.to_owned(), format!("{value:?}")))
+            .collect()
     }
 }
 

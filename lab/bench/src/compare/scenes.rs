@@ -22,21 +22,24 @@ impl Scenes {
                 (None, _) => "the old run",
                 (_, _) => "the new run",
             };
+            let file = drawn::FILE;
             return Self {
-                warnings: vec![unknown(who)],
+                warnings: vec![format!(
+                    "no {file} in {who}, of an earlier version: views of one name are taken for one scene"
+                )],
                 ..Self::default()
             };
         };
         let others = before.other_scenes(after);
         let told = drawn::told(&others);
-        let scenes = told
-            .as_ref()
-            .map(|told| format!("the runs drew {told}; rows of such views are not compared"));
+        let scenes = told.iter();
+        let scenes =
+            scenes.map(|told| format!("the runs drew {told}; rows of such views are not compared"));
         let settings = before.other_settings(after).into_iter();
         let settings =
             settings.map(|s| format!("the runs differ in {s}; times or errors depend on it"));
         Self {
-            warnings: scenes.into_iter().chain(settings).collect(),
+            warnings: scenes.chain(settings).collect(),
             others: others.into_keys().map(str::to_owned).collect(),
             told,
         }
@@ -46,10 +49,4 @@ impl Scenes {
     pub(super) fn differ(&self, view: &str) -> bool {
         self.others.iter().any(|other| other == view)
     }
-}
-
-/// What is said of runs of earlier versions.
-pub(super) fn unknown(who: &str) -> String {
-    let file = drawn::FILE;
-    format!("no {file} in {who}, of an earlier version: views of one name are taken for one scene")
 }

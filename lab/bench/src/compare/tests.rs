@@ -1,10 +1,13 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::measure::drawn::{self, Drawn};
 use crate::measure::row::Row;
-use crate::measure::row::tests::{papers, row};
+use crate::measure::row::tests::{self, papers, row};
+use crate::plan::Plan;
 use crate::plan::method::{Edges, Method};
+use crate::plan::view::tests::spindle;
+use crate::report::columns::tests::csv_of;
 use crate::report::folder::{raw, write_text};
-use crate::report::table::columns::tests::csv_of;
 use revmap::settings::{DrawStage, Solver};
 
 /// The folder of a run of these rows.
@@ -41,17 +44,21 @@ fn planted_changes_are_found() {
     let mut slow = timed([12.0, 12.2, 11.9, 12.1], DrawStage::Fragment);
     slow.errors.missed = 40;
     let new = run(&[slow, timed([20.4, 20.0, 21.0, 19.5], DrawStage::Compute)]);
-    let found = compare(old.path(), new.path()).unwrap();
+    let found = compare(&[old.path(), new.path()]).unwrap();
     assert_eq!(verdicts(&found), [Verdict::Slower, Verdict::Even]);
     assert!((found.pairs[0].time.unwrap().value - 1.2).abs() < 0.01);
-    assert_eq!(found.pairs[0].worse, [("missed", 0.0, 40.0)]);
+    assert_eq!(found.pairs[0].changed, [("missed", 0.0, 40.0)]);
     let text = as_text(&found, None);
     assert!(text.contains("1 slower, 0 faster, 1 within"), "{text}");
-    let worse = "less exact: fragment: missed 0 to 40";
-    assert!(text.contains(worse), "{text}");
-    let back = compare(new.path(), old.path()).unwrap();
+    for line in [
+        "slower: fragment: 1.2 (",
+        "less exact: fragment: missed 0 to 40",
+    ] {
+        assert!(text.contains(&format!("\n{line}")), "{text}");
+    }
+    let back = compare(&[new.path(), old.path()]).unwrap();
     assert_eq!(back.pairs[0].verdict, Verdict::Faster);
-    assert_eq!(back.pairs[0].better.len(), 1);
+    assert_eq!(back.pairs[0].changed, [("missed", 40.0, 0.0)]);
 }
 
 /// One run had a machine of half the speed: the RBM baseline tells so.
@@ -73,7 +80,7 @@ fn a_slower_machine_is_told_from_a_slower_search() {
         search([10.0, 10.2, 9.8, 10.0], 30),
         search([15.0, 15.2, 14.8, 15.0], 40),
     ]);
-    let found = compare(old.path(), new.path()).unwrap();
+    let found = compare(&[old.path(), new.path()]).unwrap();
     let wanted = [Verdict::Even, Verdict::Even, Verdict::Slower];
     assert_eq!(verdicts(&found), wanted);
     assert!((found.pairs[2].relative.unwrap().value - 1.5).abs() < 0.02);
@@ -101,14 +108,9 @@ fn a_run_against_itself_names_nothing() {
         let old = run(&rows(1.0));
         let [same, slow] = [run(&rows(1.0)), run(&rows(1.35))];
         let changed = |new: &tempfile::TempDir| {
-            let verdicts = verdicts(&compare(old.path(), new.path()).unwrap());
-            let is_named = |(_, v): &(usize, Verdict)| !matches!(v, Verdict::Even);
-            verdicts
-                .into_iter()
-                .enumerate()
-                .filter(is_named)
-                .map(|(k, _)| k)
-                .collect::<Vec<_>>()
+            let verdicts = verdicts(&compare(&[old.path(), new.path()]).unwrap());
+            let named = (0..verdicts.len()).filter(|k| verdicts[*k] != Verdict::Even);
+            named.collect::<Vec<_>>()
         };
         silent += usize::from(changed(&same).is_empty());
         found += usize::from(changed(&slow).contains(&7));
@@ -128,7 +130,7 @@ fn runs_of_other_methods_are_said() {
     let one = run(&[with(3, Solver::Exact)]);
     // Without what is said of runs that say nothing about their scenes.
     let told = |old: &Path, new: &Path| -> Vec<String> {
-        let warnings = compare(old, new).unwrap().warnings;
+        let warnings = compare(&[old, new]).unwrap().warnings;
         assert!(
             warnings[0].starts_with("no drawn.toml in both runs"),
             "{warnings:?}"
@@ -150,7 +152,7 @@ fn a_rejected_clock_gives_no_verdict() {
     let samples = lies.passes.iter_mut().flatten();
     samples.for_each(|s| s.gpu_ms = Some(0.036));
     let lies = run(&[lies]);
-    let found = compare(fine.path(), lies.path()).unwrap();
+    let found = compare(&[fine.path(), lies.path()]).unwrap();
     assert_eq!(verdicts(&found), [Verdict::Unresolved]);
 }
 
@@ -158,15 +160,13 @@ fn a_rejected_clock_gives_no_verdict() {
 fn what_cannot_be_compared_is_refused() {
     let a = run(&[timed([10.0; 4], DrawStage::Fragment)]);
     let b = run(&[timed([10.0; 4], DrawStage::Compute)]);
-    let refused = || compare(a.path(), b.path()).unwrap_err().to_string();
+    let refused = || compare(&[a.path(), b.path()]).unwrap_err().to_string();
     assert!(refused().contains("in common"));
     let empty = tempfile::tempdir().unwrap();
-    let error = compare(a.path(), empty.path()).unwrap_err();
+    let error = compare(&[a.path(), empty.path()]).unwrap_err();
     assert!(error.file.unwrap().ends_with("results.csv"));
     std::fs::write(b.path().join("results.csv"), "scene,solver\nx,y\n").unwrap();
     assert!(refused().contains("other columns"));
-    let named = "scene,technique,extend,bevel,chamfer,stage,solver,max_steps,width,height,map_rows,map_source,map_format,objects,tolerance_px,way";
-    assert_eq!(key().join(","), named);
 }
 
 /// Rows that only a tolerance or the treatment of edges tells apart are compared with their own.
@@ -185,12 +185,75 @@ fn tolerances_and_edges_are_told_apart() {
         with(0.25, one, 5.0),
         with(0.0, four, 40.0),
     ]);
-    let found = compare(run.path(), run.path()).unwrap();
+    let found = compare(&[run.path(), run.path()]).unwrap();
     assert_eq!(verdicts(&found), [Verdict::Even; 3]);
     let ratios: Vec<f64> = found.pairs.iter().map(|p| p.time.unwrap().value).collect();
     assert_eq!(ratios, [1.0; 3]);
-    let text = as_text(&found, None);
-    for name in ["exact 0 1 ray ", "exact 0.25 1 ray ", "exact 0 4 rays "] {
-        assert!(text.contains(name), "{text}");
+    let ways: Vec<&[String]> = found.table.records.iter().map(|r| &r[3..5]).collect();
+    assert_eq!(ways, [["0", "1 ray"], ["0.25", "1 ray"], ["0", "4 rays"]]);
+}
+
+/// The default takes `ms` of the RBM baseline's 20 in some pictures of a driver.
+fn of_driver(driver: &str, pictures: &[(&str, DrawStage, f64)]) -> tempfile::TempDir {
+    let rows = pictures.iter().flat_map(|&(scene, stage, ms)| {
+        let mut ours = tests::drawn(Method::DEFAULT, stage, &[ms, ms], 0.01);
+        ours.scene = scene.to_owned();
+        ours.errors.missed = 48;
+        let mut papers = papers(ours.clone());
+        papers.passes = tests::timed(&[20.0, 20.0]).passes;
+        [ours, papers]
+    });
+    folder_of(&rows.collect::<Vec<_>>(), "device", driver)
+}
+
+/// Three runs: a column for each driver, a row for each technique and way, over common pictures.
+#[test]
+fn each_driver_has_a_column_and_each_technique_a_row() {
+    let (fragment, compute) = (DrawStage::Fragment, DrawStage::Compute);
+    let pictures = |factor: f64| {
+        [
+            ("vase-revolution", fragment, factor * 5.0),
+            ("pawn-revolution:close", fragment, factor * 20.0),
+            ("vase-textured", fragment, factor * 8.0),
+            ("vase-e0.25-box", fragment, factor * 30.0),
+            ("vase-e0.25-box", compute, factor * 30.0),
+        ]
+    };
+    let runs = [
+        of_driver("one 1.2", &pictures(1.0)),
+        of_driver("two", &pictures(2.0)),
+        of_driver("three", &pictures(4.0)[..3]),
+    ];
+    let found = compare(&runs.each_ref().map(|run| run.path())).unwrap();
+    let own = found.table.records.iter().filter(|r| r[1] == "exact");
+    let own: Vec<String> = own.map(|r| r.join(", ")).collect();
+    let wanted = [
+        "revolution, exact, fragment, 0.5 (0.5 to 0.5); 0.01; 96, 1 (1 to 1); 0.01; 96, 2 (2 to 2); 0.01; 96",
+        "textured, exact, fragment, 0.4 (0.4 to 0.4); 0.01; 48, 0.8 (0.8 to 0.8); 0.01; 48, 1.6 (1.6 to 1.6); 0.01; 48",
+        "revolution, cut by the box, exact, fragment, –, –, –",
+        "revolution, cut by the box, exact, compute, –, –, –",
+    ];
+    assert_eq!(own, wanted);
+    assert!(found.table.header[3].starts_with("one 1.2: time / RBM baseline"));
+    assert!(found.pairs.is_empty() && found.warnings[0].starts_with("no drawn.toml in "));
+    // Different scenes under one name are not compared.
+    for (run, eye) in runs.iter().zip([2.0, 2.0, 2.5]) {
+        let mut view = spindle();
+        view.name = "vase-revolution".to_owned();
+        view.scene.camera.eye.x = eye;
+        let text = Drawn::of(&Plan::new(vec![view])).text().unwrap();
+        std::fs::write(run.path().join(drawn::FILE), text).unwrap();
     }
+    let found = compare(&runs.each_ref().map(|run| run.path())).unwrap();
+    let wanted = "the runs drew different scenes as vase-revolution: camera.eye (old [2.0, ";
+    assert!(
+        found.warnings.iter().any(|w| w.starts_with(wanted)),
+        "{:?}",
+        found.warnings
+    );
+    assert!(
+        found.table.records[0][3].starts_with("1 (1 to 1)"),
+        "{:?}",
+        found.table
+    );
 }

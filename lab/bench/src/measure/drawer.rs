@@ -2,8 +2,8 @@
 
 use super::TimedDraw;
 use crate::measure::row::{Clocks, Sample};
-use crate::measure::stats;
 use revmap::error::Result;
+use revmap_figures::stats;
 
 /// How often a pass of a picture is measured at most: again while the two clocks of any of its rows
 /// disagree, as they do if another program gets the processor between them.

@@ -6,10 +6,10 @@
 mod scene;
 
 use crate::plan::Plan;
-use crate::plan::names::count;
 use crate::plan::view::View;
 use revmap::error::{Error, ErrorKind, Result};
-use scene::{scene, table};
+use revmap_figures::names::count;
+use scene::scene;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -67,7 +67,7 @@ impl Drawn {
             }
         };
         Self {
-            settings: table(settings),
+            settings: Table::from_iter(settings.map(|(key, value)| (key.to_owned(), value))),
             view: plan.views.iter().map(view).collect(),
         }
     }
@@ -116,12 +116,9 @@ impl Drawn {
     pub(crate) fn other_scenes(&self, new: &Self) -> BTreeMap<&str, Vec<String>> {
         let names: BTreeSet<&str> = self.view.iter().map(|v| v.name.as_str()).collect();
         let changed = |name| (name, changes(&self.keys_of(name), &new.keys_of(name)));
-        let both = names
-            .into_iter()
-            .filter(|name| new.view.iter().any(|v| v.name == *name));
-        both.map(changed)
-            .filter(|(_, changes)| !changes.is_empty())
-            .collect()
+        let is_known = |name: &&str| new.view.iter().any(|v| v.name == *name);
+        let both = names.into_iter().filter(is_known).map(changed);
+        both.filter(|(_, changes)| !changes.is_empty()).collect()
     }
 
     /// The keys of the views of a name, of which a plan may have several.
@@ -143,20 +140,19 @@ pub(crate) fn told(others: &BTreeMap<&str, Vec<String>>) -> Option<String> {
         others => format!(" and {}", count(others, what)),
     };
     let named: Vec<&str> = changes.iter().take(NAMED).map(String::as_str).collect();
-    let more_views = more(others.len() - 1, "other view");
-    let more_keys = more(changes.len() - named.len(), "other key");
+    let views = more(others.len() - 1, "other view");
+    let keys = more(changes.len() - named.len(), "other key");
     let named = named.join(", ");
-    Some(format!(
-        "different scenes as {first}{more_views}: {named}{more_keys}"
-    ))
+    Some(format!("different scenes as {first}{views}: {named}{keys}"))
 }
 
 /// The values that differ: `camera.eye (old [1, 2, 3], new [1, 2, 4])`.
-fn changes(old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> Vec<String> {
+pub(crate) fn changes(
+    old: &BTreeMap<String, String>,
+    new: &BTreeMap<String, String>,
+) -> Vec<String> {
     let names: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    let differs = names
-        .into_iter()
-        .filter(|name| old.get(*name) != new.get(*name));
+    let differs = |name: &&String| old.get(*name) != new.get(*name);
     let shown = |of: &BTreeMap<String, String>, name: &String| match of.get(name) {
         Some(value) if value.chars().count() > SHOWN => {
             format!("{}...", value.chars().take(SHOWN).collect::<String>())
@@ -165,13 +161,10 @@ fn changes(old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> Ve
         None => "not set".to_owned(),
     };
     let change = |name: &String| {
-        format!(
-            "{name} (old {}, new {})",
-            shown(old, name),
-            shown(new, name)
-        )
+        let [old, new] = [old, new].map(|of| shown(of, name));
+        format!("{name} (old {old}, new {new})")
     };
-    differs.map(change).collect()
+    names.into_iter().filter(differs).map(change).collect()
 }
 
 /// The values of a table and of those below it, by their whole keys: `object.0.bevel`.

@@ -1,9 +1,10 @@
 //! How the time of each way of drawing grows with a quantity.
 
 use crate::measure::row::Row;
-use crate::measure::stats::{self, Interval, PowerLaw};
 use crate::plan::method::MethodSettings;
-use crate::plan::{grouped, variant};
+use crate::plan::variant;
+use revmap_figures::groups::grouped;
+use revmap_figures::stats::{self, Interval, PowerLaw};
 
 /// A way of drawing over a quantity.
 #[derive(Clone, Debug)]

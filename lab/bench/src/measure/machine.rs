@@ -22,7 +22,7 @@ impl Machine {
     pub fn here(device: &str, kind: &str, driver: &str, version: &str, command: &str) -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let (processor, memory) = hardware();
-        let system = System::long_os_version();
+        let system = System::long_os_version().unwrap_or_else(|_| std::env::consts::OS.to_owned());
         let date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M UTC");
         let date = date.to_string();
         let mut lines = vec![
@@ -30,10 +30,7 @@ impl Machine {
             ("driver", driver.to_owned()),
             ("processor", format!("{processor}, {threads} threads")),
             ("memory", memory.unwrap_or_default()),
-            (
-                "system",
-                system.unwrap_or_else(|_| std::env::consts::OS.to_owned()),
-            ),
+            ("system", system),
             ("date", date.clone()),
             ("program", format!("revmap {version}")),
             ("command", command.to_owned()),
@@ -70,10 +67,8 @@ fn hardware() -> (String, Option<String>) {
         "" => std::env::consts::ARCH,
         brand => brand,
     };
-    let bytes = system
-        .as_ref()
-        .map(|s| s.total_memory())
-        .filter(|bytes| *bytes > 0);
+    let bytes = system.as_ref().map(|s| s.total_memory());
+    let bytes = bytes.filter(|bytes| *bytes > 0);
     let memory = bytes.map(|bytes| format!("{:.0} GB", bytes as f64 / f64::from(1 << 30)));
     (processor.to_owned(), memory)
 }

@@ -13,7 +13,6 @@ pub(crate) mod growth;
 pub mod machine;
 pub mod ratios;
 pub mod row;
-pub(crate) mod stats;
 pub(crate) mod surroundings;
 
 pub use bench::{Bench, Observer, RenderedCase, TimedDraw};

@@ -1,10 +1,11 @@
 //! Times in proportion to those of other rows: which way is faster, and how sure that is.
 
 use crate::measure::row::{Row, Sample};
-use crate::measure::stats::{self, Interval};
 use crate::plan::method::{Edges, Method, MethodSettings};
-use crate::plan::{grouped, is_rbm_baseline, variant};
+use crate::plan::{is_rbm_baseline, variant};
 use revmap::settings::{DrawStage, Tolerance};
+use revmap_figures::groups::grouped;
+use revmap_figures::stats::{self, Interval};
 
 /// The row that others are put in proportion to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]

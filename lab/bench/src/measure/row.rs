@@ -1,13 +1,14 @@
 //! One measurement with all that was found out about it.
 
-use crate::measure::stats::{self, Interval};
 use crate::plan::Case;
 use crate::plan::method::{Method, MethodSettings};
-use crate::plan::view::{Framing, View, one};
+use crate::plan::view::{Framing, View};
 use revmap::frame::Frame;
 use revmap::maps::MapSource;
 use revmap::scene::{Offset, Shadow};
 use revmap_compare::{Comparison, PixelErrors};
+use revmap_figures::groups::one;
+use revmap_figures::stats::{self, Interval};
 
 /// How far the device's clock and the wall clock may be apart, relative to the wall clock.
 pub const CLOCKS_APART: f64 = 0.15;

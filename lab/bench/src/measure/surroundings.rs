@@ -1,36 +1,12 @@
 //! The surroundings of a run that change its times: variables that drivers read, allowed processors,
 //! niceness, and the clock's governor.
 
+use crate::measure::drawn::changes;
 use std::collections::BTreeMap;
 
 /// Starts of the names of variables that Vulkan's loader and layers, Mesa's and other drivers read.
-const PREFIXES: [&str; 25] = [
-    "ANV_",
-    "DRAW_",
-    "DRI_",
-    "ENABLE_",
-    "GALLIUM_",
-    "GALLIVM_",
-    "INTEL_DEBUG",
-    "LD_",
-    "LIBGL",
-    "LP_",
-    "MALLOC_",
-    "MANGOHUD",
-    "MESA_",
-    "NIR_",
-    "NVK_",
-    "RADEON_",
-    "RADV_",
-    "RAYON_NUM_THREADS",
-    "REVMAP_SPECIALITIES",
-    "ST_",
-    "TU_",
-    "VK_",
-    "ZINK_",
-    "__GL_",
-    "__NV_",
-];
+const PREFIXES: &str = "ANV_ DRAW_ DRI_ ENABLE_ GALLIUM_ GALLIVM_ INTEL_DEBUG LD_ LIBGL LP_ MALLOC_ MANGOHUD MESA_ NIR_ \
+    NVK_ RADEON_ RADV_ RAYON_NUM_THREADS REVMAP_SPECIALITIES ST_ TU_ VK_ ZINK_ __GL_ __NV_";
 
 /// The word for a variable in the note on the machine; each has a line of its own.
 const VARIABLE: &str = "variable";
@@ -53,11 +29,14 @@ pub(crate) fn here() -> Vec<(&'static str, String)> {
     // Fields are counted from behind the program's name, which may hold blanks.
     let stat = read("/proc/self/stat");
     let fields = stat.rsplit(')').next().unwrap_or_default();
-    let niceness = fields.split_whitespace().nth(16).unwrap_or_default();
-    let policy = fields
-        .split_whitespace()
-        .nth(38)
-        .and_then(|n| n.parse::<usize>().ok());
+    let field_of = |n| {
+        fields
+            .split_whitespace()
+            .nth(n)
+            .unwrap_or_default()
+            .to_owned()
+    };
+    let policy = field_of(38).parse::<usize>().ok();
     let policy = policy.and_then(|n| POLICIES.get(n)).copied();
     let boost = match cpu("intel_pstate/no_turbo").as_str() {
         "1" => "0".to_owned(),
@@ -66,7 +45,7 @@ pub(crate) fn here() -> Vec<(&'static str, String)> {
     };
     let values = [
         allowed.unwrap_or_default(),
-        niceness.to_owned(),
+        field_of(16),
         policy.unwrap_or_default().to_owned(),
         cpu("cpu0/cpufreq/scaling_governor"),
         boost,
@@ -82,7 +61,7 @@ fn variables(all: impl Iterator<Item = (std::ffi::OsString, std::ffi::OsString)>
     let home = std::env::var("HOME").unwrap_or_default();
     let text = |(name, value): (std::ffi::OsString, std::ffi::OsString)| {
         let name = name.to_string_lossy().into_owned();
-        let counts = PREFIXES.iter().any(|prefix| name.starts_with(prefix));
+        let counts = PREFIXES.split(' ').any(|prefix| name.starts_with(prefix));
         let mut value = value.to_string_lossy().replace(char::is_control, " ");
         // The note goes into public folders, and a home folder has a person's name.
         if home.len() > 1 {
@@ -104,15 +83,15 @@ pub(crate) fn of_note(note: &str) -> BTreeMap<String, String> {
     for (word, value) in note.lines().filter_map(|line| line.split_once(": ")) {
         if word == VARIABLE {
             let (name, value) = value.split_once('=').unwrap_or((VARIABLE, value));
-            found.insert(name.to_owned(), value.to_owned());
+            found.insert(name.to_owned(), format!("{value:?}"));
         } else if WORDS.contains(&word) {
-            found.insert(word.to_owned(), value.to_owned());
+            found.insert(word.to_owned(), format!("{value:?}"));
         }
     }
     found
 }
 
-/// A warning for each name that differs; none if a note is of an earlier version.
+/// What differs, as [`changes`] has it; nothing if a note is of an earlier version.
 pub(crate) fn differences(
     old: &BTreeMap<String, String>,
     new: &BTreeMap<String, String>,
@@ -120,27 +99,14 @@ pub(crate) fn differences(
     if old.is_empty() || new.is_empty() {
         return Vec::new();
     }
-    let mut names: Vec<&String> = old.keys().chain(new.keys()).collect();
-    names.sort();
-    names.dedup();
-    // This entry only says that there is no variable.
-    names.retain(|name| *name != VARIABLE);
-    // Notes of earlier versions lack this word.
     let both = |name: &str| old.contains_key(name) && new.contains_key(name);
-    names.retain(|name| *name != "scheduling" || both(name));
-    let value = |run: &BTreeMap<String, String>, name: &String| {
-        run.get(name)
-            .map_or("not set".to_owned(), |v| format!("{v:?}"))
+    // The first only says that there is no variable; notes of earlier versions lack the second.
+    let counts = |name: &str| name != VARIABLE && (name != "scheduling" || both(name));
+    let of = |run: &BTreeMap<String, String>| {
+        let all = run.clone().into_iter();
+        all.filter(|(name, _)| counts(name)).collect()
     };
-    let differs = |name: &&String| old.get(*name) != new.get(*name);
-    let warning = |name: &String| {
-        format!(
-            "the runs differ in {name}: old {}, new {}; times depend on it",
-            value(old, name),
-            value(new, name)
-        )
-    };
-    names.into_iter().filter(differs).map(warning).collect()
+    changes(&of(old), &of(new))
 }
 
 /// The value of the first line `key: value` of this key.
@@ -163,15 +129,9 @@ mod tests {
             ("GALLIVM_PERF", "a\nb"),
         ];
         let all = all.map(|(name, value)| (name.into(), value.into()));
-        let found = variables(all.into_iter());
-        assert_eq!(
-            found,
-            [
-                "GALLIVM_PERF=a b",
-                "LD_LIBRARY_PATH=/opt/mesa",
-                "LP_NUM_THREADS=1"
-            ]
-        );
+        let found = variables(all.into_iter()).join(" ");
+        let wanted = "GALLIVM_PERF=a b LD_LIBRARY_PATH=/opt/mesa LP_NUM_THREADS=1";
+        assert_eq!(found, wanted);
         assert_eq!(variables([].into_iter()), [NONE]);
     }
 
@@ -179,23 +139,15 @@ mod tests {
     #[test]
     fn this_process_has_processors_and_a_niceness() {
         let lines = here();
-        let value = |word| {
-            lines
-                .iter()
-                .find(|(w, _)| *w == word)
-                .map(|(_, v)| v.clone())
+        let is = |word: &str, right: &dyn Fn(&str) -> bool| {
+            let right = lines.iter().any(|(w, value)| *w == word && right(value));
+            assert!(right, "{word}: {lines:?}");
         };
-        let niceness = value("niceness").and_then(|n| n.parse::<i32>().ok());
-        assert!(
-            niceness.is_some_and(|n| (-20..20).contains(&n)),
-            "{lines:?}"
-        );
-        assert!(
-            value("scheduling").is_some_and(|p| POLICIES.contains(&p.as_str())),
-            "{lines:?}"
-        );
-        assert!(value("processors").is_some_and(|p| !p.is_empty()));
-        assert!(value(VARIABLE).is_some());
+        let nice = |n: i32| (-20..20).contains(&n);
+        is("niceness", &|n| n.parse().is_ok_and(nice));
+        is("scheduling", &|p| POLICIES.contains(&p));
+        is("processors", &|p| !p.is_empty());
+        is(VARIABLE, &|_| true);
     }
 
     #[test]
@@ -206,9 +158,9 @@ mod tests {
         assert_eq!(differences(&plain, &plain), [""; 0]);
         let found = differences(&plain, &other);
         assert_eq!(found.len(), 1);
-        assert!(found[0].starts_with("the runs differ in LP_NUM_THREADS: old not set, new \"1\""));
+        assert_eq!(found[0], "LP_NUM_THREADS (old not set, new \"1\")");
         let found = differences(&note("scheduling: other\n"), &note("scheduling: batch\n"));
-        assert!(found[0].contains("differ in scheduling"), "{found:?}");
+        assert!(found[0].starts_with("scheduling"), "{found:?}");
         // A run of an earlier version says nothing.
         assert_eq!(differences(&of_note("device: card\n"), &other), [""; 0]);
     }

@@ -9,29 +9,15 @@ use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement};
 use std::sync::Arc;
 
-/// Two solids that the suite has not: a column and a baluster, `(r, z)`.
-const COLUMN: &[[f64; 2]] = &[
-    [0.0, 0.0],
-    [0.16, 0.0],
-    [0.16, 0.06],
-    [0.11, 0.1],
-    [0.09, 0.9],
-    [0.16, 0.94],
-    [0.16, 1.0],
-    [0.0, 1.0],
-];
-const BALUSTER: &[[f64; 2]] = &[
-    [0.0, 0.0],
-    [0.14, 0.0],
-    [0.14, 0.08],
-    [0.06, 0.14],
-    [0.15, 0.34],
-    [0.05, 0.66],
-    [0.09, 0.7],
-    [0.05, 0.74],
-    [0.12, 0.94],
-    [0.0, 1.0],
-];
+/// Two solids that the suite has not: a column and a baluster, radii at heights.
+const COLUMN: ([f64; 8], [f64; 8]) = (
+    [0.0, 0.16, 0.16, 0.11, 0.09, 0.16, 0.16, 0.0],
+    [0.0, 0.0, 0.06, 0.1, 0.9, 0.94, 1.0, 1.0],
+);
+const BALUSTER: ([f64; 10], [f64; 10]) = (
+    [0.0, 0.14, 0.14, 0.06, 0.15, 0.05, 0.09, 0.05, 0.12, 0.0],
+    [0.0, 0.0, 0.08, 0.14, 0.34, 0.66, 0.7, 0.74, 0.94, 1.0],
+);
 /// From one solid of an army to the next, in heights of a solid.
 const APART: f64 = 1.1;
 /// Copies of each of three solids in the distance.
@@ -163,8 +149,13 @@ pub fn army(count: u32) -> Result<View> {
     let mut scene = views[0].scene.clone();
     let mut kinds: Vec<Object> = Vec::new();
     kinds.extend(views.into_iter().flat_map(|view| view.scene.objects));
-    for (name, points) in [("column", COLUMN), ("baluster", BALUSTER)] {
-        let mut object = Object::new(name, Arc::new(Profile::polygon(points, 0.2)?));
+    let both = [
+        ("column", &COLUMN.0[..], &COLUMN.1[..]),
+        ("baluster", &BALUSTER.0, &BALUSTER.1),
+    ];
+    for (name, radii, heights) in both {
+        let points: Vec<_> = radii.iter().zip(heights).map(|(r, z)| [*r, *z]).collect();
+        let mut object = Object::new(name, Arc::new(Profile::polygon(&points, 0.2)?));
         object.color = [0.7, 0.68, 0.62];
         kinds.push(object);
     }

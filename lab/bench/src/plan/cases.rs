@@ -6,6 +6,7 @@ use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::view::View;
 use revmap::maps::MapFormat;
 use revmap::settings::{DrawStage, Planes, Tolerance};
+use revmap_figures::groups::grouped;
 use revmap_searches::CIRCLE;
 
 /// Most quads of all copies of a mesh: beyond, a frame takes many seconds.
@@ -183,22 +184,6 @@ fn ways(
     let all = with(all, (&m.map_formats, maps), |s, v| s.map_format = v);
     let all = with(all, (&m.tolerances, toleranced), |s, v| s.tolerance = v);
     with(all, (&m.edges, searched), |s, v| s.edges = v)
-}
-
-/// Puts together what has one key, in the order in which keys first appear.
-pub(crate) fn grouped<T, K: PartialEq>(
-    all: impl IntoIterator<Item = T>,
-    key: impl Fn(&T) -> K,
-) -> Vec<(K, Vec<T>)> {
-    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
-    for one in all {
-        let key = key(&one);
-        match groups.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, group)) => group.push(one),
-            None => groups.push((key, vec![one])),
-        }
-    }
-    groups
 }
 
 /// The RBM baseline's name in reports.

@@ -144,26 +144,21 @@ mod tests {
     }
 
     #[test]
-    fn framing_fills_the_picture() {
-        for elevation in [0.0, 25.0, 60.0] {
-            let [across, up] = reach(&spindle().framed(elevation));
-            let most = across.0.max(up.0);
-            assert!((most - FILLED).abs() < 0.01, "{elevation}: {most}");
-        }
-    }
-
-    #[test]
-    fn close_up_the_box_reaches_past_the_picture() {
+    fn framing_fills_the_picture_and_close_up_the_box_reaches_past_it() {
         for elevation in [0.0, 25.0, 60.0] {
             let whole = spindle().framed(elevation);
+            let [across, up] = reach(&whole);
+            assert!((across.0.max(up.0) - FILLED).abs() < 0.01, "{elevation}");
             let close = whole.clone().in_framing(Framing::Close);
             let [across, up] = reach(&close);
             assert!((across.1.min(up.1) - OVERFILL).abs() < 1e-6);
             assert!(close.scene.camera.fov_y < whole.scene.camera.fov_y);
-            let named = |view: &View| (view.name.clone(), view.framing);
-            assert_eq!(named(&close), ("spindle:close".into(), Framing::Close));
+            assert_eq!(
+                (&*close.name, close.framing),
+                ("spindle:close", Framing::Close)
+            );
             let same = whole.clone().in_framing(Framing::Whole);
-            assert_eq!(named(&same), ("spindle".into(), Framing::Whole));
+            assert_eq!((&*same.name, same.framing), ("spindle", Framing::Whole));
             assert_eq!(same.scene.camera.fov_y, whole.scene.camera.fov_y);
         }
     }

@@ -1,10 +1,10 @@
 //! The solids that are measured when no scene is named, carried within the program.
 
-use crate::plan::names::number;
 use crate::plan::view::View;
 use glam::DVec3;
 use revmap::error::Result;
 use revmap::scene::{Camera, Object, Scene};
+use revmap_figures::names::number;
 use revmap_files::ProfileAxis;
 use std::sync::Arc;
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use revmap::scene::{Offset, Scene};
 use revmap::settings::name_of;
+use revmap_figures::groups::one;
 use std::sync::Arc;
 
 /// A scene to be measured.
@@ -126,15 +127,13 @@ impl View {
         camera.eye = camera.target + back.length() * (level * cos + DVec3::Z * sin);
         // Straight from above there is no up but sideways.
         camera.up = if cos.abs() < 1e-6 { -level } else { DVec3::Z };
-        self.name = format!("{}@{}", self.name, crate::plan::names::number(degrees, 4));
+        self.name = format!(
+            "{}@{}",
+            self.name,
+            revmap_figures::names::number(degrees, 4)
+        );
         self
     }
-}
-
-/// The value that all have, if they do.
-pub(crate) fn one<T: PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
-    let first = all.next()?;
-    all.all(|other| other == first).then_some(first)
 }
 
 #[cfg(test)]

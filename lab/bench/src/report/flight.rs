@@ -2,17 +2,17 @@
 //! are from exact ones.
 
 use crate::measure::row::Row;
-use crate::measure::stats;
 use crate::plan::method::renderer::MethodDevice;
 use crate::plan::method::{Edges, Method, MethodSettings};
 use crate::plan::{army, flight_camera};
+use crate::report::columns::Cell;
 use crate::report::plan_file::Flight;
-use crate::report::table::Table;
-use crate::report::table::columns::Cell;
 use revmap::error::Result;
 use revmap::scene::{Placement, Scene};
 use revmap::settings::{DrawStage, Planes, Tolerance};
 use revmap_compare::{PixelErrors, pixel_errors};
+use revmap_figures::stats;
+use revmap_figures::table::Table;
 use revmap_offscreen::Times;
 use std::time::Instant;
 

@@ -6,14 +6,11 @@ use crate::measure::row::{CLOCKS_APART, Clocks, Row, SUBMISSION_MS};
 use crate::measure::{Measured, TRIES};
 use crate::plan::Plan;
 use crate::plan::method::MethodSettings;
-use crate::plan::names;
-use crate::report::chart::Figure;
-use crate::report::chart::svg::svg;
-use crate::report::table::Table;
-use crate::report::table::columns::results_table;
+use crate::report::columns::results_table;
 use revmap::error::{Error, ErrorKind, Result};
-use revmap_files::Picture;
-pub use revmap_files::write_bytes;
+pub use revmap_figures::files::{keep_figure, make, png, write_bytes, write_text};
+use revmap_figures::names;
+use revmap_figures::table::Table;
 use std::path::{Path, PathBuf};
 
 /// Makes a folder that does not exist yet: `base/name`, else `base/name-2` and so on.
@@ -125,47 +122,10 @@ pub fn discard(folder: &Path, made: bool) -> Result<()> {
     })
 }
 
-/// Makes a folder and those above it.
-pub fn make(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|e| {
-        let message = format!("cannot be made ({e}); choose another folder");
-        Error::new(ErrorKind::File, message).in_file(folder)
-    })
-}
-
-/// Writes a text file, whole or not at all.
-pub fn write_text(file: &Path, text: &str) -> Result<()> {
-    write_bytes(file, text.as_bytes())
-}
-
-/// Writes a figure into `folder/charts`: as SVG.
-pub fn keep_figure(folder: &Path, name: &str, figure: &Figure) -> Result<()> {
-    let charts = folder.join("charts");
-    make(&charts)?;
-    write_text(&charts.join(format!("{name}.svg")), &svg(figure))
-}
-
-/// A picture as a PNG file.
-pub fn png(picture: &Picture) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    picture.encode_png(&mut bytes)?;
-    Ok(bytes)
-}
-
 /// `raw.csv`: every sample. Rows of `results.csv`, passes and rounds count from 1.
 pub fn raw(rows: &[Row]) -> Table {
-    let header = [
-        "row",
-        "scene",
-        "stage",
-        "solver",
-        "pass",
-        "round",
-        "gpu_ms",
-        "frame_ms",
-        "change_ms",
-    ];
-    let mut table = Table::new(header, Vec::new());
+    let header = "row,scene,stage,solver,pass,round,gpu_ms,frame_ms,change_ms";
+    let mut table = Table::new(header.split(','), Vec::new());
     for (number, row) in rows.iter().enumerate() {
         for (pass, samples) in row.passes.iter().enumerate() {
             for (round, sample) in samples.iter().enumerate() {
@@ -305,32 +265,26 @@ mod tests {
         assert!(!out.exists());
     }
 
-    #[test]
-    fn inputs_are_not_written_over() {
-        let base = tempfile::tempdir().unwrap();
-        make(&base.path().join("pictures")).unwrap();
-        for (name, refused) in [
-            ("scene.toml", false),
-            ("pictures/vase.png", true),
-            ("machine.txt", true),
-        ] {
-            let input = base.path().join(name);
-            write_text(&input, "").unwrap();
-            let claimed = claim(base.path(), true, [input.as_path()]);
-            assert_eq!(claimed.is_err(), refused, "{name}");
-            assert!(input.exists());
-        }
-    }
-
     #[cfg(target_os = "linux")]
     #[test]
-    fn inputs_whose_name_is_no_text_are_not_written_over() {
+    fn inputs_are_not_written_over() {
         use std::os::unix::ffi::OsStrExt;
         let base = tempfile::tempdir().unwrap();
         make(&base.path().join("pictures")).unwrap();
-        let name = std::ffi::OsStr::from_bytes(b"pictures/\xff.png");
-        let input = base.path().join(name);
-        write_text(&input, "").unwrap();
-        assert!(claim(base.path(), true, [input.as_path()]).is_err());
+        let names: [(&[u8], bool); 4] = [
+            (b"scene.toml", false),
+            (b"pictures/vase.png", true),
+            (b"machine.txt", true),
+            // A name that is no text.
+            (b"pictures/\xff.png", true),
+        ];
+        for (name, refused) in names {
+            let name = std::ffi::OsStr::from_bytes(name);
+            let input = base.path().join(name);
+            write_text(&input, "").unwrap();
+            let claimed = claim(base.path(), true, [input.as_path()]);
+            assert_eq!(claimed.is_err(), refused, "{name:?}");
+            assert!(input.exists());
+        }
     }
 }

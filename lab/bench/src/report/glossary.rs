@@ -4,35 +4,29 @@ use crate::measure::Measured;
 use crate::measure::row::Row;
 use crate::plan::method::Method;
 use crate::plan::{RBM_BASELINE, is_rbm_baseline};
-use crate::report::page::Page;
 use revmap::settings::Solver;
+use revmap_figures::page::Page;
 use revmap_searches::folder;
 
 /// The meaning of a method's name.
 pub fn meaning(method: Method) -> &'static str {
     match method {
         Method::Search(Solver::Other(search)) => search.about,
-        Method::Search(Solver::Live) => {
-            "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame"
-        }
-        Method::Search(Solver::Quadric) => {
-            "no map: the outline as quadric patches, solved exactly, found by a tree"
-        }
-        Method::Search(Solver::Exact) => {
-            "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage"
-        }
-        Method::MeshWithin { .. } => {
-            "the mesh that follows the view: triangles whose silhouettes keep so many pixels, segments and rings for each copy by its size on the screen, in levels of a factor of 1.4; copies beside the picture are left out, the nearest are drawn first. Only silhouettes keep the tolerance: depths and normals err by more. Beyond 65,536 pixels for a solid's height meshes grow no finer"
-        }
-        Method::Floor => {
-            "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. It is an estimate of the least time of a search, not a proven bound: it shades some pixels beside the solid, and reads only the nearest copies"
-        }
-        Method::Mesh { .. } => {
-            "a mesh of one fineness: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone"
-        }
+        Method::Search(Solver::Live) => LIVE,
+        Method::Search(Solver::Quadric) => QUADRIC,
+        Method::Search(Solver::Exact) => EXACT,
+        Method::MeshWithin { .. } => MESH_WITHIN,
+        Method::Mesh { .. } => MESH,
+        Method::Floor => FLOOR,
     }
 }
 
+const LIVE: &str = "steps through the map that are safe to a texel under every offset, ending in a secant; for parameters that change from frame to frame";
+const QUADRIC: &str = "no map: the outline as quadric patches, solved exactly, found by a tree";
+const EXACT: &str = "the default: quadric patches of the outline, found by the rasteriser in the fragment stage and by tiles of pixels in the compute stage";
+const MESH_WITHIN: &str = "the mesh that follows the view: triangles whose silhouettes keep so many pixels, segments and rings for each copy by its size on the screen, in levels of a factor of 1.4; copies beside the picture are left out, the nearest are drawn first. Only silhouettes keep the tolerance: depths and normals err by more. Beyond 65,536 pixels for a solid's height meshes grow no finer";
+const MESH: &str = "a mesh of one fineness: the same solid as triangles, so many segments around the axis by so many rings along the outline; fragment stage alone";
+const FLOOR: &str = "the default's frame without a search: each pixel returns its first possible point (the hull's own fragment, the ray's entry into the solid's bounding cylinder), with the same vertices, tiles, lists of copies, depth, shading and store. It is an estimate of the least time of a search, not a proven bound: it shades some pixels beside the solid, and reads only the nearest copies";
 const PAPERS: &str = "revolution-bump mapping as it was published: circle tracing of 20 steps (25 and 10 halvings under a bevel) over the distances of a binary image in 8 bits";
 
 /// The publications of the RBM baseline.
@@ -45,34 +39,29 @@ const SOURCES: [&str; 4] = [
 
 /// The names that occur in these rows, each with its meaning, in the reports' order.
 pub fn names(rows: &[Row]) -> Vec<(&'static str, String)> {
-    let occurs = |of: &dyn Fn(&Row) -> bool| rows.iter().any(of);
-    let mut all: Vec<(&'static str, String)> = Vec::new();
-    for method in Method::ALL {
-        if occurs(&|r| r.settings.method == method && !is_rbm_baseline(&r.settings)) {
-            all.push((method.name(), meaning(method).to_owned()));
-        }
-    }
-    for row in rows {
+    let term = |row: &Row| -> (usize, &'static str, String) {
         let method = row.settings.method;
-        if let Some(folder) = method.solver().and_then(folder::of)
-            && all.iter().all(|(name, _)| *name != method.name())
-        {
-            let about = format!("{} ({})", meaning(method), folder.origin());
-            all.push((method.name(), about));
+        let place = Method::ALL.iter().position(|m| *m == method);
+        let about = meaning(method).to_owned();
+        let folder = method.solver().and_then(folder::of);
+        match method {
+            _ if is_rbm_baseline(&row.settings) => (usize::MAX, RBM_BASELINE, PAPERS.to_owned()),
+            Method::Floor => (usize::MAX - 1, method.name(), about),
+            Method::Mesh { .. } => (usize::MAX - 2, "mesh:SEGMENTSxRINGS", about),
+            Method::MeshWithin { .. } => (usize::MAX - 3, "mesh:PIXELSpx", about),
+            Method::Search(_) => {
+                let origin = folder.map(|folder| format!(" ({})", folder.origin()));
+                let place = place.unwrap_or(Method::ALL.len());
+                (place, method.name(), about + &origin.unwrap_or_default())
+            }
         }
-    }
-    let meshes = || rows.iter().map(|r| r.settings.method);
-    let within = meshes().find(|m| m.pixels().is_some());
-    all.extend(within.map(|mesh| ("mesh:PIXELSpx", meaning(mesh).to_owned())));
-    let fixed = meshes().find(|m| m.quads() > 0);
-    all.extend(fixed.map(|mesh| ("mesh:SEGMENTSxRINGS", meaning(mesh).to_owned())));
-    if occurs(&|r| r.settings.method == Method::Floor) {
-        all.push((Method::Floor.name(), meaning(Method::Floor).to_owned()));
-    }
-    if occurs(&|r| is_rbm_baseline(&r.settings)) {
-        all.push((RBM_BASELINE, PAPERS.to_owned()));
-    }
-    all
+    };
+    let mut all: Vec<_> = rows.iter().map(term).collect();
+    all.sort();
+    all.dedup();
+    all.into_iter()
+        .map(|(_, name, about)| (name, about))
+        .collect()
 }
 
 /// The chapter that explains them.

@@ -1,31 +1,33 @@
 //! The report of a run: its tables and charts as a page, as files beside it, and as text.
 
-pub mod chart;
+pub mod columns;
 pub mod exhibit;
 pub mod flight;
 pub mod folder;
 pub mod glossary;
-pub mod page;
 pub mod pictures;
 pub mod plan_file;
-pub mod table;
+mod published;
+pub mod series_style;
+
+pub use revmap_figures::table;
 
 use crate::measure::Measured;
 use crate::measure::machine::Machine;
 use crate::measure::ratios::Over;
 use crate::measure::row::{CLOCKS_APART, Row, SUBMISSION_MS};
 use crate::plan::Plan;
-use crate::plan::names::number;
-use crate::report::chart::series_style::SeriesStyles;
+use crate::report::columns::{COLUMNS, Column, Context};
 use crate::report::exhibit::Exhibit;
 use crate::report::exhibit::places::{Place, places};
 use crate::report::plan_file::PlanFile;
-use crate::report::table::columns::{COLUMNS, Column, Context};
+use crate::report::series_style::SeriesStyles;
 use flight::FlightTimes;
 use folder::{excluded, keep_figure, write_text};
-use page::Page;
 use pictures::{Album, heat_key};
 use revmap::error::Result;
+use revmap_figures::names::number;
+use revmap_figures::page::Page;
 use std::path::Path;
 
 /// All that came out of a run.

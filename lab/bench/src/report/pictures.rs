@@ -4,14 +4,14 @@
 use crate::measure::RenderedCase;
 use crate::plan::is_rbm_baseline;
 use crate::plan::method::{Edges, Method, MethodSettings};
-use crate::plan::names::{self, FileNames};
-use crate::report::chart::series_style::SeriesStyles;
 use crate::report::folder::{make, png, write_bytes};
+use crate::report::series_style::SeriesStyles;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::settings::DrawStage;
 use revmap_compare::mosaic::{enlarged, painted, pixel, tiled, worst_part};
 use revmap_compare::{EMPTY, Heat, PIXELS_PER_DEGREE, Scale, flip_map, heat_map};
+use revmap_figures::names::{self, FileNames};
 use revmap_files::Picture;
 use std::path::{Path, PathBuf};
 

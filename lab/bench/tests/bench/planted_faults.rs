@@ -9,10 +9,10 @@ use revmap_bench::measure::ratios::{Over, Ratio, over};
 use revmap_bench::measure::row::{Clocks, Row};
 use revmap_bench::plan::is_rbm_baseline;
 use revmap_bench::plan::method::Method;
-use revmap_bench::report::chart::front::front;
+use revmap_bench::report::columns::{Context, results_table};
 use revmap_bench::report::exhibit;
 use revmap_bench::report::folder;
-use revmap_bench::report::table::columns::{Context, results_table};
+use revmap_figures::chart::front::front;
 use revmap_searches::CIRCLE;
 use std::sync::atomic::AtomicBool;
 

@@ -6,8 +6,8 @@ mod views;
 
 use super::case::{Case, Step};
 use revmap::error::{Error, ErrorKind, Result};
-use revmap_bench::report::folder::{make, png, write_bytes};
 use revmap_compare::mosaic::painted;
+use revmap_figures::files::{make, png, write_bytes};
 use revmap_files::Picture;
 use std::path::Path;
 

@@ -12,7 +12,7 @@ use numbers::Random;
 use revmap::error::Result;
 use revmap::gpu::Device;
 use revmap::settings::Solver;
-use revmap_bench::report::folder::write_text;
+use revmap_figures::files::write_text;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;

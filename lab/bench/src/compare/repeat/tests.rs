@@ -33,10 +33,8 @@ fn unlike(kept: &[Row], new: &[Row]) -> Vec<(Verdict, String)> {
     let (kept, new) = (folder_of(kept, "dev", "drv"), folder_of(new, "dev", "drv"));
     let methods = ["exact", "baseline"].map(str::to_owned);
     let (claims, _) = claims(kept.path(), new.path(), &methods).unwrap();
-    let unlike = claims
-        .into_iter()
-        .filter(|c| c.verdict != Verdict::Repeated);
-    unlike.map(|c| (c.verdict, c.text)).collect()
+    let unlike = claims.into_iter().filter(|c| c.0 != Verdict::Repeated);
+    unlike.collect()
 }
 
 /// The same rows under names with this ending.
@@ -52,21 +50,16 @@ fn ending(rows: Vec<Row>, ending: &str) -> Vec<Row> {
 #[test]
 fn ratios_are_those_of_the_report() {
     let rows = rows(0.5, 0);
-    let folder = folder_of(&rows, "dev", "drv");
-    let run = Run::load(folder.path()).unwrap();
-    let own = super::rows(&run, "exact", "fragment");
-    let logs = |&row: &usize| {
-        let ratios = run.over_baseline(row, "fragment").unwrap().into_iter();
-        ratios.map(f64::ln).collect()
-    };
-    let of_each: Vec<Vec<f64>> = own.iter().map(logs).collect();
+    let runs = [Run::load(folder_of(&rows, "dev", "drv").path()).unwrap()];
+    let by = |run: &Run, record: &[String]| vec![groups::method(run, record)];
+    let groups = groups::groups(&runs, &[Scenes::default()], &by);
     let wanted = over(&rows, Over::Baseline);
-    let (a, b) = (stats::over_pictures(&of_each).unwrap(), wanted[0].time);
+    let found = stats::over_pictures(&groups[0].times(&runs, true).values[0]);
+    let (a, b) = (found.unwrap(), wanted[0].time);
     for (a, b) in [(a.value, b.value), (a.low, b.low), (a.high, b.high)] {
         assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
     }
-    assert_eq!(own.len(), 2);
-    assert_eq!(super::rows(&run, "live", "fragment"), [0; 0]);
+    assert_eq!((groups.len(), groups[0].pictures.len()), (2, 2));
 }
 
 #[test]

@@ -2,21 +2,20 @@
 
 use super::{Line, OnePicture, Submission};
 use crate::measure::machine;
-use crate::measure::stats::Interval;
+use crate::plan::RBM_BASELINE;
 use crate::plan::method::Method;
-use crate::plan::names::{number, percent, range};
-use crate::plan::{RBM_BASELINE, grouped};
-use crate::report::chart::Figure;
-use crate::report::chart::dots::{self, Placed};
-use crate::report::chart::style::{Marker, Style, color};
+use crate::report::columns::{Cell, RESOLVED};
 use crate::report::folder::{keep_figure, write_text};
-use crate::report::page::Page;
-use crate::report::table::Table;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::chart::Figure;
+use revmap_figures::chart::dots::{self, Placed};
+use revmap_figures::chart::style::Style;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{number, percent};
+use revmap_figures::page::Page;
+use revmap_figures::stats::Interval;
+use revmap_figures::table::Table;
 use std::path::{Path, PathBuf};
-
-/// Half the width of an interval, relative, above which a ratio is marked as not resolved.
-const RESOLVED: f64 = 0.25;
 
 /// A submission and its name among the others.
 pub struct Named {
@@ -111,7 +110,7 @@ pub fn write(all: &[Named], folder: &Path, width: Option<usize>) -> Result<Strin
             more => format!("devices-{}", more + 1),
         };
         keep_figure(folder, &name, &figure)?;
-        page.figure(&figure, "Time of each method over that of the RBM baseline on the same device, with its 95 % interval; the numbers at the right are the values. Further left is faster. Markers are filled in the fragment stage and hollow in the compute stage.");
+        page.figure(&figure, "Time of each method over that of the RBM baseline on the same device, with its 95 % interval; the value is behind its name. Further left is faster. Markers are filled in the fragment stage and hollow in the compute stage.");
     }
     let ratios = across(all, &|line| shown(line.ratio));
     page.table(&ratios);
@@ -160,43 +159,50 @@ fn main_lines(one: &Named) -> impl Iterator<Item = &Line> {
 
 /// `0.5 (0.4 to 0.6)`.
 fn shown([value, low, high]: super::Figure) -> String {
-    format!("{} ({})", number(value, 3), range((low, high)))
+    Cell::Known(Interval::new(value, low, high)).shown()
+}
+
+/// A column of [`results`] or [`devices`].
+type Facts = &'static [(&'static str, fn(&Named) -> &str)];
+
+/// What tables say of each submission.
+const FACTS: Facts = &[
+    ("submission", |o| &o.label),
+    ("device", |o| &o.submission.device.name),
+    ("driver", |o| &o.submission.device.driver),
+    ("vulkan", |o| &o.submission.device.vulkan),
+    ("processor", |o| &o.submission.device.processor),
+    ("system", |o| &o.submission.device.system),
+    ("program", |o| &o.submission.program),
+    ("plan", |o| &o.submission.plan),
+    ("clock", |o| &o.submission.clock),
+    ("size", |o| &o.submission.size),
+    ("date", |o| &o.submission.date),
+];
+
+fn facts(one: &Named) -> Vec<String> {
+    FACTS.iter().map(|(_, of)| of(one).to_owned()).collect()
 }
 
 /// `results.csv`: a record for each line of each submission.
 fn results(all: &[Named]) -> Table {
-    let header = "submission,device,driver,vulkan,processor,system,program,plan,clock,size,date,part,method,stage,pictures,time_ms,time_low_ms,time_high_ms,ratio,ratio_low,ratio_high,wrong,depth_p99,worst_depth_p99";
-    let mut table = Table::new(header.split(','), Vec::new());
+    let own = "part,method,stage,pictures,time_ms,time_low_ms,time_high_ms,ratio,ratio_low,ratio_high,wrong,depth_p99,worst_depth_p99";
+    let header = FACTS.iter().map(|(name, _)| *name).chain(own.split(','));
+    let record = |one: &Named, line: &Line| {
+        let mut record = facts(one);
+        record.extend([&line.part, &line.method, &line.stage].map(Clone::clone));
+        record.push(line.pictures.to_string());
+        let figures = line.time_ms.into_iter().chain(line.ratio).map(Some);
+        let errors = [line.wrong, line.depth_p99, line.worst_depth_p99];
+        record.extend(figures.chain(errors).map(|v| Cell::number(v).csv()));
+        record
+    };
+    let mut records = Vec::new();
     for one in all {
-        let s = &one.submission;
-        let d = &s.device;
-        for line in &s.lines {
-            let words = [
-                &one.label,
-                &d.name,
-                &d.driver,
-                &d.vulkan,
-                &d.processor,
-                &d.system,
-                &s.program,
-                &s.plan,
-                &s.clock,
-                &s.size,
-                &s.date,
-                &line.part,
-                &line.method,
-                &line.stage,
-            ];
-            let mut record: Vec<String> = words.map(Clone::clone).to_vec();
-            record.push(line.pictures.to_string());
-            let figures = line.time_ms.iter().chain(&line.ratio);
-            record.extend(figures.map(|v| number(*v, 5)));
-            let errors = [line.wrong, line.depth_p99, line.worst_depth_p99];
-            record.extend(errors.map(|v| v.map_or(String::new(), |v| number(v, 5))));
-            table.records.push(record);
-        }
+        let lines = one.submission.lines.iter();
+        records.extend(lines.map(|line| record(one, line)));
     }
-    table
+    Table::new(header, records)
 }
 
 /// The devices, and how many of their pictures equal those of the first device of the same size.
@@ -212,29 +218,13 @@ fn devices(all: &[Named]) -> Table {
         let count = own.pictures.iter().filter(twin).count();
         format!("{count} of {}", own.pictures.len())
     };
-    Table::of(
-        all,
-        &[
-            ("submission", &|o: &Named| o.label.clone()),
-            ("file", &|o| o.file.clone()),
-            ("device", &|o| {
-                format!(
-                    "{} ({})",
-                    o.submission.device.name, o.submission.device.kind
-                )
-            }),
-            ("driver", &|o| o.submission.device.driver.clone()),
-            ("Vulkan", &|o| o.submission.device.vulkan.clone()),
-            ("processor", &|o| o.submission.device.processor.clone()),
-            ("system", &|o| o.submission.device.system.clone()),
-            ("program", &|o| o.submission.program.clone()),
-            ("plan", &|o| o.submission.plan.clone()),
-            ("pictures", &|o| o.submission.size.clone()),
-            ("clock", &|o| o.submission.clock.clone()),
-            ("date", &|o| o.submission.date.clone()),
-            ("colours as on the first", &equal),
-        ],
-    )
+    let header = FACTS.iter().map(|(name, _)| *name);
+    let header = header.chain(["kind", "file", "colours as on the first"]);
+    let record = |one: &Named| {
+        let kind = one.submission.device.kind.clone();
+        [facts(one), vec![kind, one.file.clone(), equal(one)]].concat()
+    };
+    Table::new(header, all.iter().map(record).collect())
 }
 
 /// A table with a row for each line that any submission has, and a column for each submission.
@@ -293,14 +283,13 @@ fn charts(all: &[Named]) -> Vec<Figure> {
     let placed = |(place, line): (usize, &Line)| -> Placed {
         let [value, low, high] = line.ratio;
         let value = Interval::new(value, low, high);
-        let marker = Marker::ALL[place % Marker::ALL.len()];
         let heading = format!("{}, {} stage", line.method, line.stage);
         let dot = dots::Line {
             name: all[place].label.clone(),
             value,
             style: Style {
                 filled: line.stage == "fragment",
-                ..Style::new(color::ALL[place % color::ALL.len()], marker)
+                ..Style::numbered(place)
             },
             unresolved: value.relative() > RESOLVED,
         };

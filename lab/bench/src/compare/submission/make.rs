@@ -8,8 +8,8 @@ use crate::measure::ratios::{Over, mean_ms, over};
 use crate::measure::row::{Clocks, Row};
 use crate::plan::Plan;
 use crate::plan::view::Framing;
+use crate::report::columns::Context;
 use crate::report::exhibit::cell;
-use crate::report::table::columns::Context;
 use revmap::error::Result;
 use revmap::gpu::DeviceReport;
 

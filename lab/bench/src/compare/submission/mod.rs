@@ -10,9 +10,9 @@ pub use make::make;
 
 use crate::measure::RenderedCase;
 use crate::measure::drawn::fnv1a_64;
-use crate::measure::stats::Interval;
 use crate::plan::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::stats::Interval;
 use revmap_files::Picture;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -261,7 +261,7 @@ fn figure(interval: Interval) -> Figure {
 
 /// A number with five digits.
 fn short(value: f64) -> f64 {
-    crate::plan::names::number(value, 5)
+    revmap_figures::names::number(value, 5)
         .parse()
         .unwrap_or(value)
 }

@@ -1,7 +1,7 @@
 //! The values of a scene under the keys of scene files.
 
 use super::digest;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use revmap::maps::{ColorMap, DisplacementMap};
 use revmap::profile::{Profile, Raster};
 use revmap::scene::{
@@ -11,60 +11,56 @@ use revmap::scene::{
 use revmap::settings::name_of;
 use toml::{Table, Value};
 
-/// A scene. This function and those below take their value apart by name, so that no member is
-/// forgotten.
+/// Puts every member of a value into a table: its key, and how it is written; `_` leaves it out.
+/// The value is taken apart by name, so that no member is forgotten.
+macro_rules! put {
+    ($all:ident, $of:expr => $type:ident { $($member:ident: $key:tt $($how:expr)?),* $(,)? }) => {
+        let $type { $($member),* } = $of;
+        $(put!(@ $all, $member, $key $($how)?);)*
+    };
+    (@ $all:ident, $member:ident, _) => { let _ = $member; };
+    (@ $all:ident, $member:ident, $key:literal $how:expr) => {
+        $all.insert($key.to_owned(), Value::from($how($member)));
+    };
+}
+
+/// A scene.
 pub(super) fn scene(of: &Scene) -> Table {
-    let Scene {
-        background,
-        ambient,
-        environment,
-        camera:
-            Camera {
-                eye,
-                target,
-                up,
-                fov_y,
-                shift,
-                ray_width,
-            },
-        lights,
-        shadow,
-        objects,
-    } = of;
-    let camera = [
-        ("eye", vector(*eye)),
-        ("target", vector(*target)),
-        ("up", vector(*up)),
-        ("fov_y", real(*fov_y)),
-        ("shift", list(shift.map(real))),
-        ("ray_width", real(*ray_width)),
-    ];
-    let mut all = table([
-        ("background", list(background.map(single))),
-        ("ambient", list(ambient.map(single))),
-        ("camera", table(camera).into()),
-        ("light", tables(lights.iter().map(light))),
-        ("shadow", name_of(&Shadow::NAMES, shadow).into()),
-        ("object", tables(objects.iter().map(object))),
-    ]);
-    if let Some(Environment { up, down }) = environment {
-        let sky = [("up", up), ("down", down)].map(|(key, color)| (key, list(color.map(single))));
-        all.insert("environment".to_owned(), table(sky).into());
+    let mut all = Table::new();
+    put!(all, of => Scene {
+        background: "background" singles,
+        ambient: "ambient" singles,
+        environment: _,
+        camera: "camera" of_camera,
+        lights: "light" |lights: &Vec<Light>| lights.iter().map(light).collect::<Vec<_>>(),
+        shadow: "shadow" |shadow| name_of(&Shadow::NAMES, shadow),
+        objects: "object" |objects: &Vec<Object>| objects.iter().map(object).collect::<Vec<_>>(),
+    });
+    if let Some(sky) = environment {
+        let mut own = Table::new();
+        put!(own, sky => Environment { up: "up" singles, down: "down" singles });
+        all.insert("environment".to_owned(), own.into());
     }
     all
 }
 
+fn of_camera(of: &Camera) -> Table {
+    let mut all = Table::new();
+    put!(all, of => Camera {
+        eye: "eye" vector,
+        target: "target" vector,
+        up: "up" vector,
+        fov_y: "fov_y" real,
+        shift: "shift" reals,
+        ray_width: "ray_width" real,
+    });
+    all
+}
+
 fn light(of: &Light) -> Table {
-    let Light {
-        direction,
-        color,
-        radius,
-    } = of;
-    table([
-        ("direction", vector(*direction)),
-        ("color", list(color.map(single))),
-        ("radius", real(*radius)),
-    ])
+    let mut all = Table::new();
+    put!(all, of => Light { direction: "direction" vector, color: "color" singles, radius: "radius" real });
+    all
 }
 
 /// An object without the keys at their default.
@@ -77,85 +73,53 @@ fn object(of: &Object) -> Table {
 }
 
 fn values(of: &Object) -> Table {
-    let Object {
+    let mut all = Table::new();
+    put!(all, of => Object {
         name: _,
         file: _,
         profile: _,
-        map_rows,
-        color,
-        specular: Specular {
-            strength,
-            shininess,
-        },
-        material,
-        texturing:
-            Texturing {
-                color_map,
-                displacement_map,
-                bump,
-                bump_form,
-                projection,
-                repeat: texture_repeat,
-                offset: texture_offset,
-            },
-        offset: Offset {
-            extend,
-            bevel,
-            chamfer,
-        },
-        clip,
-        axis,
-        repeat,
-        mirror,
-        placement:
-            Placement {
-                position,
-                rotation,
-                scale,
-            },
-        instances,
-    } = of;
-    let mut all = table([
-        ("map_rows", Value::from(*map_rows)),
-        ("color", list(color.map(single))),
-        ("specular", single(*strength)),
-        ("shininess", single(*shininess)),
-        ("bump", real(*bump)),
-        ("bump_form", name_of(&BumpForm::NAMES, bump_form).into()),
-        ("projection", projection.name().into()),
-        ("texture_repeat", list(texture_repeat.map(real))),
-        ("texture_offset", list(texture_offset.map(real))),
-        ("extend", real(*extend)),
-        ("bevel", real(*bevel)),
-        ("chamfer", real(*chamfer)),
-        ("clip", name_of(&Clip::NAMES, clip).into()),
-        ("axis", list(axis.map(real))),
-        ("repeat", list(repeat.map(Value::from))),
-        ("mirror", list(mirror.map(Value::from))),
-        ("position", vector(*position)),
-        ("rotation", list(rotation.to_array().map(real))),
-        ("scale", vector(*scale)),
-    ]);
-    let mut put = |key: &str, value: Value| {
-        all.insert(key.to_owned(), value);
+        map_rows: "map_rows" |rows: &u32| *rows,
+        color: "color" singles,
+        specular: _,
+        material: _,
+        texturing: _,
+        offset: _,
+        clip: "clip" |clip| name_of(&Clip::NAMES, clip),
+        axis: "axis" reals,
+        repeat: "repeat" |repeat: &[u32; 3]| repeat.to_vec(),
+        mirror: "mirror" |mirror: &[bool; 3]| mirror.to_vec(),
+        placement: _,
+        instances: _,
+    });
+    put!(all, specular => Specular { strength: "specular" single, shininess: "shininess" single });
+    put!(all, texturing => Texturing {
+        color_map: _,
+        displacement_map: _,
+        bump: "bump" real,
+        bump_form: "bump_form" |form| name_of(&BumpForm::NAMES, form),
+        projection: "projection" |projection: &revmap::maps::Projection| projection.name(),
+        repeat: "texture_repeat" reals,
+        offset: "texture_offset" reals,
+    });
+    let Object { offset, .. } = of;
+    put!(all, offset => Offset { extend: "extend" real, bevel: "bevel" real, chamfer: "chamfer" real });
+    put!(all, placement => Placement {
+        position: "position" vector,
+        rotation: "rotation" |turn: &DQuat| reals(&turn.to_array()),
+        scale: "scale" vector,
+    });
+    if let Some(material) = material {
+        put!(all, material => Material { roughness: "roughness" single, metalness: "metalness" single });
+    }
+    let mut put = |key: &str, text: Option<String>| {
+        all.extend(text.map(|text| (key.to_owned(), Value::from(text))));
     };
-    if let Some(Material {
-        roughness,
-        metalness,
-    }) = material
-    {
-        put("roughness", single(*roughness));
-        put("metalness", single(*metalness));
-    }
-    if let Some(map) = color_map {
-        put("color_map", colors(map).into());
-    }
-    if let Some(map) = displacement_map {
-        put("height_map", slopes(map).into());
-    }
-    if !instances.is_empty() {
-        put("instances", copies(instances).into());
-    }
+    put("color_map", color_map.as_deref().map(colors));
+    put("height_map", displacement_map.as_deref().map(slopes));
+    put(
+        "instances",
+        (!instances.is_empty()).then(|| copies(instances)),
+    );
     all
 }
 
@@ -168,83 +132,65 @@ fn profile(of: &Profile) -> String {
         notes: _,
     } = of;
     let points = || outline.loops.iter().flatten();
-    let ends = outline.loops.iter().map(|points| points.len() as f64);
-    let numbers = points()
-        .flat_map(|p| p.to_array())
-        .chain(ends)
-        .chain([*radius]);
-    let pixels = raster.as_ref().map(|raster| {
-        let Raster {
-            columns,
-            rows,
-            coverage,
-        } = raster;
-        let size = [*columns, *rows].map(f64::from);
-        size.into_iter()
-            .chain(coverage.iter().map(|c| f64::from(*c)))
-    });
-    let numbers = numbers.chain(pixels.into_iter().flatten());
-    counted(points().count(), "points", digest(numbers.flat_map(bytes)))
+    let mut numbers: Vec<f64> = points().flat_map(|p| p.to_array()).collect();
+    numbers.extend(outline.loops.iter().map(|points| points.len() as f64));
+    numbers.push(*radius);
+    if let Some(Raster {
+        columns,
+        rows,
+        coverage,
+    }) = raster
+    {
+        numbers.extend([*columns, *rows].map(f64::from));
+        numbers.extend(coverage.iter().map(|c| f64::from(*c)));
+    }
+    let digest = digest(numbers.into_iter().flat_map(bytes));
+    format!("{} points, {digest}", points().count())
 }
 
 fn colors(of: &ColorMap) -> String {
     let texels = of.levels.iter().take(1).flat_map(|level| &level.texels);
-    let digest = digest(texels.flatten().copied());
-    format!("{} texels, {digest}", size(of.size()))
+    let ([width, height], digest) = (of.size(), digest(texels.flatten().copied()));
+    format!("{width}x{height} texels, {digest}")
 }
 
 fn slopes(of: &DisplacementMap) -> String {
     let texels = of.levels.iter().take(1).flat_map(|level| &level.texels);
     let digest = digest(texels.flatten().flat_map(|slope| bytes(f64::from(*slope))));
-    format!("{} texels, {digest}", size(of.size()))
-}
-
-fn size([width, height]: [u32; 2]) -> String {
-    format!("{width}x{height}")
+    let [width, height] = of.size();
+    format!("{width}x{height} texels, {digest}")
 }
 
 fn copies(of: &[Placement]) -> String {
-    let numbers = of.iter().flat_map(|placement| {
-        let Placement {
-            position,
-            rotation,
-            scale,
-        } = placement;
-        let vectors = position.to_array().into_iter().chain(scale.to_array());
-        vectors.chain(rotation.to_array())
+    let numbers = of.iter().flat_map(|p| {
+        let vectors = p.position.to_array().into_iter().chain(p.scale.to_array());
+        vectors.chain(p.rotation.to_array())
     });
-    counted(of.len(), "copies", digest(numbers.flat_map(bytes)))
+    let digest = digest(numbers.flat_map(bytes));
+    format!("{} copies, {digest}", of.len())
 }
 
-fn counted(count: usize, what: &str, digest: String) -> String {
-    format!("{count} {what}, {digest}")
+fn singles<const N: usize>(values: &[f32; N]) -> Vec<Value> {
+    values.iter().map(single).collect()
 }
 
-pub(super) fn table<const N: usize>(entries: [(&str, Value); N]) -> Table {
-    Table::from_iter(entries.map(|(key, value)| (key.to_owned(), value)))
+fn reals<const N: usize>(values: &[f64; N]) -> Vec<Value> {
+    values.iter().map(real).collect()
 }
 
-fn tables(all: impl Iterator<Item = Table>) -> Value {
-    Value::Array(all.map(Value::Table).collect())
-}
-
-fn list<const N: usize>(values: [Value; N]) -> Value {
-    Value::Array(values.to_vec())
-}
-
-fn vector(of: DVec3) -> Value {
-    list(of.to_array().map(real))
+fn vector(of: &DVec3) -> Vec<Value> {
+    reals(&of.to_array())
 }
 
 /// A number with twelve digits: the functions of another system err in the last ones.
-fn real(of: f64) -> Value {
-    let near = if of.abs() < 1e-12 { 0.0 } else { of };
+fn real(of: &f64) -> Value {
+    let near = if of.abs() < 1e-12 { 0.0 } else { *of };
     Value::Float(format!("{near:.11e}").parse().unwrap_or(near))
 }
 
 /// A number of single precision, by its shortest text.
-fn single(of: f32) -> Value {
-    real(of.to_string().parse().unwrap_or_else(|_| of.into()))
+fn single(of: &f32) -> Value {
+    real(&of.to_string().parse().unwrap_or_else(|_| f64::from(*of)))
 }
 
 /// The bytes of a number in steps of 2^-30, as above.

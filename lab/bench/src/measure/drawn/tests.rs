@@ -3,13 +3,8 @@ use super::*;
 use crate::plan::suite::{self, Extent};
 use crate::plan::view::Framing;
 use crate::plan::view::tests::spindle;
-use revmap::maps::{ColorMap, DisplacementMap};
-use revmap::profile::{Profile, Raster};
-use revmap::scene::{Environment, Light, Material, Placement};
+use revmap::profile::Raster;
 use std::sync::Arc;
-
-/// A change of a view, and the key under which it is told.
-type Change = (&'static str, fn(&mut View));
 
 fn drawn(view: &View) -> Drawn {
     Drawn::of(&Plan::new(vec![view.clone()]))
@@ -22,97 +17,86 @@ fn changes_to(view: &View, new: &View) -> Vec<String> {
     others.into_values().next().unwrap_or_default()
 }
 
-fn profile(view: &mut View, change: impl FnOnce(&mut Profile)) {
-    change(Arc::make_mut(&mut view.scene.objects[0].profile));
+/// A scene file, and its view with a key changed.
+const FILE_TEXT: &str = "\
+camera.eye = [2, 0, 0.5]
+camera.target = [0, 0, 0.5]
+environment = { up = [1, 1, 1], down = [0, 0, 0] }
+light = [{ direction = [0, 0, -1] }]
+object = [{ polygon = [[0, 0], [0.4, 0.5], [0, 1]], roughness = 0.5, metalness = 0 }]
+";
+
+fn view(text: &str, set: &str) -> View {
+    let sets = [set.to_owned()];
+    let sets = if set.is_empty() { &[][..] } else { &sets };
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
+    let scene = revmap_files::SceneFile::parse(text, assets)
+        .unwrap()
+        .scene(sets);
+    View::new("spindle", scene.unwrap())
 }
+
+/// Keys of scene files with another value, and what is told of each.
+const CHANGES: &str = "
+camera.eye=[2,0,0.25] => camera.eye (old [2.0, 0.0, 0.5], new [2.0, 0.0, 0.25])
+camera.target=[0.1,0,0.5] => camera.target
+camera.up=[0,1,0] => camera.up
+camera.fov_y=41 => camera.fov_y
+background=[0,0,0,0.5] => background
+ambient=[0.11,0.1,0.1] => ambient
+environment.down=[1,0,0] => environment.down
+shadow=\"soft\" => shadow (old \"off\", new \"soft\")
+light.0.direction=[1,0,-1] => light.0.direction
+light.0.radius=1 => light.0.radius
+object.0.polygon=[[0,0],[0.4,0.500001],[0,1]] => object.0.profile (old \"
+object.0.radius=0.6 => object.0.profile
+object.0.map_rows=256 => object.0.map_rows (old not set, new 256)
+object.0.bevel=0.4 => object.0.bevel (old not set, new 0.4)
+object.0.color=[0.8,0.8,0.7] => object.0.color
+object.0.roughness=0.3 => object.0.roughness
+object.0.color_map=\"colors/natural-earth.png\" => object.0.color_map (old not set, new \"
+object.0.height_map=\"heights/brick.png\" => object.0.height_map
+object.0.rotation=[1,0,0,0] => object.0.rotation
+object.0.repeat=[2,1,1] => object.0.repeat
+object.0.clip=\"box\" => object.0.clip
+";
 
 #[test]
 fn every_value_of_a_scene_is_told_by_its_key() {
-    let changes: &[Change] = &[
-        (
-            "camera.eye (old [2.0, 0.0, 0.5], new [2.0, 0.0, 0.25])",
-            |v| v.scene.camera.eye.z = 0.25,
-        ),
-        ("camera.target", |v| v.scene.camera.target.x = 0.1),
-        ("camera.fov_y", |v| v.scene.camera.fov_y = 41.0),
-        ("background", |v| v.scene.background[3] = 0.5),
-        ("ambient", |v| v.scene.ambient[0] = 0.11),
-        ("environment.down (old not set, new ", |v| {
-            let (up, down) = ([1.0; 3], [0.5; 3]);
-            v.scene.environment = Some(Environment { up, down });
-        }),
-        ("shadow (old \"off\", new \"soft\")", |v| {
-            v.scene.shadow = revmap::scene::Shadow::Soft
-        }),
-        ("light.0.direction", |v| v.scene.lights[0].direction.x = 1.0),
-        ("light.2.color (old not set, new ", |v| {
-            v.scene.lights.push(Light::default())
-        }),
-        ("object.0.profile (old \"", |v| {
-            profile(v, |p| p.outline.loops[0][1].x += 1e-6)
-        }),
-        ("object.0.profile", |v| profile(v, |p| p.radius = 0.6)),
-        ("object.0.profile", |v| {
-            let (columns, rows, coverage) = (1, 1, vec![0.5]);
-            profile(v, |p| {
-                p.raster = Some(Raster {
-                    columns,
-                    rows,
-                    coverage,
-                })
-            });
-        }),
-        ("object.0.map_rows (old not set, new 256)", |v| {
-            v.scene.objects[0].map_rows = 256
-        }),
-        ("object.0.bevel (old not set, new 0.4)", |v| {
-            v.scene.objects[0].offset.bevel = 0.4
-        }),
-        ("object.0.color", |v| {
-            v.scene.objects[0].color = [0.8, 0.8, 0.7]
-        }),
-        ("object.0.roughness", |v| {
-            let (roughness, metalness) = (0.3, 0.0);
-            v.scene.objects[0].material = Some(Material {
-                roughness,
-                metalness,
-            });
-        }),
-        ("object.0.color_map (old not set, new \"1x1 texels", |v| {
-            let map = ColorMap::from_texels(1, 1, vec![[1, 2, 3, 255]]).unwrap();
-            v.scene.objects[0].texturing.color_map = Some(Arc::new(map));
-        }),
-        ("object.0.height_map", |v| {
-            let map = DisplacementMap::from_slopes(1, 1, vec![[0.5, 0.0]]).unwrap();
-            v.scene.objects[0].texturing.displacement_map = Some(Arc::new(map));
-        }),
-        ("object.0.rotation", |v| {
-            v.scene.objects[0].placement.rotation = glam::DQuat::from_rotation_x(0.1);
-        }),
-        ("object.0.instances (old not set, new \"2 copies", |v| {
-            v.scene.objects[0].instances = vec![Placement::default(); 2].into();
-        }),
-        ("object.1.profile (old not set", |v| {
-            let twin = v.scene.objects[0].clone();
-            v.scene.objects.push(twin);
-        }),
-    ];
-    let plain = spindle();
+    let plain = view(FILE_TEXT, "");
     assert_eq!(changes_to(&plain, &plain.clone()), [""; 0]);
-    for (told, change) in changes {
-        let mut other = plain.clone();
-        change(&mut other);
-        let found = changes_to(&plain, &other);
+    for line in CHANGES.trim().lines() {
+        let (set, told) = line.split_once(" => ").unwrap();
+        let found = changes_to(&plain, &view(FILE_TEXT, set));
         assert!(
             found.iter().any(|f| f.starts_with(told)),
             "{told}: {found:?}"
         );
-        // One more value of the same list changes its digest.
-        if told.starts_with("object.0.instances") {
-            let mut moved = other.clone();
-            moved.scene.objects[0].instances[1].position.x += 1e-6;
-            assert_eq!(changes_to(&other, &moved).len(), 1);
-        }
+    }
+    // Pixels, one more value of a list, one more object, no sky.
+    let mut other = plain.clone();
+    let (columns, rows, coverage) = (1, 1, vec![0.5]);
+    let raster = Raster {
+        columns,
+        rows,
+        coverage,
+    };
+    Arc::make_mut(&mut other.scene.objects[0].profile).raster = Some(raster);
+    other.scene.objects[0].instances = vec![Default::default(); 2].into();
+    let mut moved = other.clone();
+    moved.scene.objects[0].instances[1].position.x += 1e-6;
+    assert_eq!(changes_to(&other, &moved).len(), 1);
+    let twin = other.scene.objects[0].clone();
+    other.scene.objects.push(twin);
+    other.scene.environment = None;
+    let found = changes_to(&plain, &other).join("; ");
+    for told in [
+        "environment.down (old [",
+        "object.0.instances (old not set, new \"2 copies",
+        "object.0.profile",
+        "object.1.profile (old not set",
+    ] {
+        assert!(found.contains(told), "{told}: {found}");
     }
 }
 
@@ -122,7 +106,8 @@ fn roundings_are_no_changes() {
     let mut turned = spindle();
     turned.scene.camera.eye.y += 1e-17;
     turned.scene.camera.eye.x *= 1.0 + f64::EPSILON;
-    profile(&mut turned, |p| p.outline.loops[0][1] *= 1.0 + f64::EPSILON);
+    let profile = Arc::make_mut(&mut turned.scene.objects[0].profile);
+    profile.outline.loops[0][1] *= 1.0 + f64::EPSILON;
     assert_eq!(changes_to(&spindle(), &turned), [""; 0]);
     let text = drawn(&spindle()).text().unwrap();
     assert!(text.contains("ambient = [0.1, 0.1, 0.1]"), "{text}");
@@ -133,11 +118,10 @@ fn roundings_are_no_changes() {
 fn a_file_is_read_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(Drawn::load(folder.path()).unwrap(), None);
-    let file = "camera.eye = [2, 0, 0.5]\nobject = [{ polygon = [[0, 0], [0.4, 0.5], [0, 1]] }]\n";
     let views = suite::views(&Extent::ALL, &[25.0]).unwrap();
     let close = views.iter().map(|v| v.clone().in_framing(Framing::Close));
     let mut all: Vec<View> = views.iter().cloned().chain(close).collect();
-    all.push(spindle().of_file(file));
+    all.push(spindle().of_file(FILE_TEXT));
     let one = Drawn::of(&Plan::new(all));
     std::fs::write(folder.path().join(FILE), one.text().unwrap()).unwrap();
     let read = Drawn::load(folder.path()).unwrap().unwrap();
@@ -145,11 +129,8 @@ fn a_file_is_read_as_it_was_written() {
     assert_eq!(read.other_scenes(&one), BTreeMap::new());
     let digests: BTreeSet<String> = one.digests().into_values().collect();
     assert_eq!(digests.len(), 2 * views.len() + 1);
-    assert!(
-        one.text()
-            .unwrap()
-            .contains("[view.file.camera]\neye = [2, 0, 0.5]")
-    );
+    let text = one.text().unwrap();
+    assert!(text.contains("[view.file.camera]\neye = [2, 0, 0.5]"));
     std::fs::write(folder.path().join(FILE), "view = 3").unwrap();
     let error = Drawn::load(folder.path()).unwrap_err();
     assert!(error.to_string().contains("measure again"), "{error}");

@@ -1,8 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::measure::row::tests::{papers, row, timed};
+use crate::measure::row::tests::{drawn, papers, row, timed};
 use crate::plan::method::Method;
-use revmap_compare::Spread;
 
 /// Passes of the default and of the baseline in two views: 5 ms over 20 and 20 over 20.
 fn two_views(passes: [usize; 2]) -> Vec<Row> {
@@ -77,13 +76,7 @@ fn a_pass_that_was_ended_early_is_left_out() {
 /// The ratio that counts is that to the coarsest mesh which is not wrong.
 #[test]
 fn the_default_search_is_held_against_meshes() {
-    let timed = |method, ms: f64, p99| {
-        let mut row = timed(&[ms, ms]);
-        row.settings.method = method;
-        let (rms, max) = (p99, p99);
-        row.errors.depth = Some(Spread { rms, p99, max });
-        row
-    };
+    let timed = |method, ms: f64, p99| drawn(method, DrawStage::Fragment, &[ms, ms], p99);
     let mesh = |n| Method::mesh(n, 2 * n).unwrap();
     let rows = [
         timed(Method::DEFAULT, 9.0, 0.01),

@@ -3,7 +3,8 @@ use super::*;
 use crate::plan::method::Method;
 use crate::plan::rbm_baseline;
 use crate::plan::view::tests::spindle;
-use revmap_compare::{CompareOptions, compare};
+use revmap::settings::DrawStage;
+use revmap_compare::{CompareOptions, Spread, compare};
 use revmap_searches::CIRCLE;
 
 /// A row without errors, timed as told: `(gpu, frame)` in each pass and round.
@@ -38,6 +39,15 @@ pub(crate) fn row(passes: &[&[(Option<f64>, f64)]]) -> Row {
 pub(crate) fn timed(passes: &[f64]) -> Row {
     let passes: Vec<_> = passes.iter().map(|ms| [(None, *ms)]).collect();
     row(&passes.iter().map(|p| p.as_slice()).collect::<Vec<_>>())
+}
+
+/// A row of a search in a stage, one frame in each pass, its depths off by so much.
+pub(crate) fn drawn(method: Method, stage: DrawStage, passes: &[f64], p99: f64) -> Row {
+    let mut row = timed(passes);
+    row.settings = MethodSettings::default().by(method).in_stage(stage);
+    let (rms, max) = (p99, p99);
+    row.errors.depth = Some(Spread { rms, p99, max });
+    row
 }
 
 /// The same as the RBM baseline draws it.

@@ -1,17 +1,15 @@
-//! Questions that a report answers in one sentence, and the tables behind the answers: fragment or
-//! compute, and whether another search than the default is faster.
+//! Questions that a report answers in one sentence: fragment or compute, and whether another search
+//! than the default is faster.
 
-use super::losses::{Pair, to_meshes, worst};
-use crate::measure::ratios::{Over, Ratio, between, mean_ms, over};
+use crate::measure::ratios::{Over, Ratio, between, over};
 use crate::measure::row::Row;
-use crate::measure::stats::Verdict;
+use crate::plan::is_rbm_baseline;
 use crate::plan::method::Method;
-use crate::plan::names::{count, number, range};
-use crate::plan::{grouped, is_rbm_baseline};
-use crate::report::table::Table;
-use crate::report::table::columns::{Cell, Context};
-use revmap::scene::Shadow;
-use revmap::settings::{DrawStage, name_of};
+use crate::report::columns::{Cell, Context};
+use revmap::settings::DrawStage;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{count, number, range};
+use revmap_figures::stats::{Interval, Verdict};
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -38,70 +36,10 @@ impl Question {
 
 /// The sentences at the top of a report: a reader wants them first.
 pub(crate) fn findings(context: &Context) -> Vec<String> {
-    let mut all = Question::Stages.answers(context, context.rows);
-    let opponent = format!("{}, the mesh of that silhouette", Method::OPPONENT);
-    let mesh = "the coarsest mesh that errs no more in depth";
-    for (reference, name) in [
-        (Over::Opponent, opponent),
-        (Over::Mesh, mesh.to_owned()),
-        (Over::Baseline, context.baseline()),
-    ] {
-        let mut ratios = over(context.rows.iter().copied(), reference);
-        ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
-        let told = ratios.iter().map(|r| {
-            let (way, stage) = (context.styles.way(&r.settings), r.settings.stage.name());
-            let time = Cell::Known(r.time).shown();
-            let verdict = r.time.verdict(context.resolved).word("faster", "slower");
-            let over = context.over_pictures(r.pairs.len());
-            format!("{way}, {stage} stage: {time}{over}, {verdict}")
-        });
-        let told = told.collect::<Vec<_>>().join("; ");
-        if !told.is_empty() {
-            all.push(format!(
-                "Speed: the default takes this part of the time of {name} (95 % interval): {told}."
-            ));
-        }
-    }
-    all.extend(exactness(context));
-    let loses: Vec<_> = rivals(context, context.rows)
-        .into_iter()
-        .chain(to_meshes(context))
-        .collect();
-    if !loses.is_empty() {
-        all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
-    }
-    all
-}
-
-/// The worst errors of the default, of the RBM baseline and of each mesh.
-fn exactness(context: &Context) -> Option<String> {
-    let mut all: Vec<(String, [f64; 4])> = Vec::new();
-    for row in context.rows {
-        let settings = &row.settings;
-        let is_mesh = settings.method.is_mesh();
-        let way = match settings.method {
-            _ if is_rbm_baseline(settings) => context.baseline(),
-            method if is_mesh || method == Method::DEFAULT => context.styles.way(settings),
-            _ => continue,
-        };
-        let errors = &row.errors;
-        let view = errors.view.unwrap_or_default();
-        let depth = errors.depth.map_or(0.0, |depth| depth.p99);
-        let wrong = 100.0 * errors.wrong();
-        let own = [view.silhouette_max, view.depth_p99, depth, wrong];
-        match all.iter_mut().find(|known| known.0 == way) {
-            Some((_, known)) => *known = [0, 1, 2, 3].map(|k| known[k].max(own[k])),
-            None => all.push((way, own)),
-        }
-    }
-    let told = all.iter().map(|(way, worst)| {
-        let [silhouette, pixels, depth, wrong] = worst.map(|v| number(v, 2));
-        format!("{way} {silhouette} pixels, {pixels} pixels ({depth} h/512), {wrong} %")
-    });
-    let told = told.collect::<Vec<_>>().join("; ");
-    (!told.is_empty()).then(|| {
-        format!("Exactness, in the worst picture: silhouettes are within, 99 % of depths are within, and wrong pixels of the pixels hit are: {told}.")
-    })
+    let all = [Question::Stages, Question::Rivals];
+    all.iter()
+        .flat_map(|question| question.answers(context, context.rows))
+        .collect()
 }
 
 /// How many times are not resolved, if any is not.
@@ -161,32 +99,19 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
     ratios.iter().map(sentence).collect()
 }
 
-/// Ways of drawing, the times of both stages side by side, over the pictures that both drew.
-pub(super) fn stages_table(context: &Context, rows: &[&Row]) -> Table {
-    let mean = |rows: Vec<&Row>| context.known(mean_ms(&rows)).shown();
-    let spread = |r: &Ratio| match r.pairs.len() {
-        1 => Cell::Empty.shown(),
-        _ => range(r.range),
-    };
-    Table::of(
-        &over(rows.iter().copied(), Over::Fragment),
-        &[
-            ("method", &|r| context.styles.way(&r.settings)),
-            ("compute / fragment", &|r| Cell::Known(r.time).shown()),
-            ("faster", &|r| {
-                let verdict = r.time.verdict(context.resolved);
-                verdict.word("compute", "fragment").to_owned()
-            }),
-            ("fragment (ms)", &|r| {
-                mean(r.pairs.iter().map(|p| p.1).collect())
-            }),
-            ("compute (ms)", &|r| {
-                mean(r.pairs.iter().map(|p| p.0).collect())
-            }),
-            ("range over pictures", &spread),
-            ("pictures", &|r| r.pairs.len().to_string()),
-        ],
-    )
+/// A row of the default search, the fastest other search, and the ratio of their times.
+type Pair<'a> = (&'a Row, &'a Row, Interval);
+
+/// The pair whose ratio is largest, of those that are resolved.
+fn worst<'a, 'b>(
+    context: &Context,
+    pairs: impl Iterator<Item = &'b Pair<'a>>,
+) -> Option<&'b Pair<'a>>
+where
+    'a: 'b,
+{
+    let known = pairs.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
+    known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
 }
 
 fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
@@ -226,79 +151,35 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
     ))
 }
 
-/// For each kind of shadows and size the largest ratio of each stage, and which picture it is of.
-pub(super) fn rivals_table(context: &Context, rows: &[&Row]) -> Table {
-    let mut groups = grouped(pairs(context, rows), |p| {
-        (p.0.shadow, p.0.settings.width, p.0.settings.height)
-    });
-    let place = |shadow: Shadow| Shadow::NAMES.iter().position(|n| n.1 == shadow);
-    groups.sort_by_key(|((shadow, width, _), _)| (place(*shadow), *width));
-    let record = |((shadow, width, height), group): &((Shadow, u32, u32), Vec<Pair>)| {
-        let shadow = name_of(&Shadow::NAMES, shadow).to_owned();
-        let mut record = vec![shadow, format!("{width}x{height}")];
-        for stage in [DrawStage::Fragment, DrawStage::Compute] {
-            let own = || group.iter().filter(|p| p.0.settings.stage == stage);
-            record.extend(match (worst(context, own()), own().count()) {
-                (Some((row, other, time)), _) => [
-                    Cell::Known(*time).shown(),
-                    format!("{}, {}", other.settings.method, row.scene),
-                ],
-                (None, 0) => ["–", "–"].map(str::to_owned),
-                (None, _) => ["not resolved", "–"].map(str::to_owned),
-            });
-        }
-        record
-    };
-    let header = [
-        "shadows",
-        "size",
-        "fragment: worst",
-        "against",
-        "compute: worst",
-        "against",
-    ];
-    Table::new(header, groups.iter().map(record).collect())
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::measure::row::tests;
-    use crate::plan::method::MethodSettings;
-    use crate::report::table::columns::tests::with_context;
+    use crate::measure::row::tests::drawn;
+    use crate::report::columns::tests::with_context;
     use revmap::settings::Solver;
-    use revmap_compare::Spread;
 
     /// A row of a search in a stage of a picture; its passes take these times.
     fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
-        let mut row = tests::timed(passes);
-        row.settings = MethodSettings::default().by(method).in_stage(stage);
-        row.view = view;
-        row.scene = format!("scene{view}");
-        erring(row, 0.01)
+        Row {
+            view,
+            scene: format!("scene{view}"),
+            ..drawn(method, stage, passes, 0.01)
+        }
     }
 
-    fn erring(mut row: Row, p99: f64) -> Row {
-        let (rms, max) = (p99, p99);
-        row.errors.depth = Some(Spread { rms, p99, max });
-        row
-    }
-
-    /// The answers of a question, and the records of its table.
-    fn told(question: Question, rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
+    /// The answers of the question of an exhibit, and the records of its first table.
+    fn told(name: &str, rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
+        let all = crate::report::exhibit::all(&[]).unwrap();
+        let exhibit = all.iter().find(|e| e.name == name).unwrap();
         with_context(rows, |context| {
-            let rows = context.rows;
-            let table = match question {
-                Question::Stages => stages_table(context, rows),
-                _ => rivals_table(context, rows),
-            };
-            (question.answers(context, rows), table.records)
+            let table = exhibit.table[0].shown(context, context.rows).unwrap();
+            (exhibit.answers(context, context.rows), table.records)
         })
     }
 
     fn stages_of(rows: &[Row]) -> (Vec<String>, Vec<Vec<String>>) {
-        told(Question::Stages, rows)
+        told("stages", rows)
     }
 
     /// Compute takes half the fragment stage's time, while the machine slows down between passes.
@@ -363,30 +244,6 @@ mod tests {
         assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
     }
 
-    /// The fastest mesh is named, however much it errs, and one picture is not counted.
-    #[test]
-    fn the_mesh_that_is_faster_is_named() {
-        let mesh = |method, passes: &[f64]| timed(method, DrawStage::Fragment, 0, passes);
-        let coarse = Method::mesh_within(4.0).unwrap();
-        let rows = [
-            mesh(Method::DEFAULT, &[10.0, 10.2, 10.0]),
-            mesh(Method::OPPONENT, &[5.0, 5.1, 5.0]),
-            erring(mesh(coarse, &[2.5, 2.55, 2.5]), 9.0),
-        ];
-        let told = with_context(&rows, findings).join(" ");
-        let wanted = "Where it loses, if anywhere: Against the fastest mesh of the picture it takes at most 4 (4 to 4) of the time: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
-        assert!(told.contains(wanted), "{told}");
-        assert!(!told.contains("1 picture"), "{told}");
-        // Times that are not resolved still have a fastest mesh.
-        let rows = [
-            mesh(Method::DEFAULT, &[10.0, 90.0, 30.0]),
-            mesh(coarse, &[2.5, 2.55, 2.5]),
-        ];
-        let told = with_context(&rows, findings).join(" ");
-        let wanted = "No ratio to a mesh is resolved; the fastest is `mesh:4px`.";
-        assert!(told.contains(wanted), "{told}");
-    }
-
     /// The quadric search is faster in one picture; a wider interval with a larger ratio does not
     /// count, and neither does a search that errs by more than a texel.
     #[test]
@@ -394,21 +251,23 @@ mod tests {
         use DrawStage::{Compute, Fragment};
         let quadric = Method::Search(Solver::Quadric);
         let live = Method::Search(Solver::Live);
-        let wrong = erring(timed(live, Fragment, 0, &[1.0, 1.0, 1.0]), 1.5);
         let rows = [
             timed(Method::DEFAULT, Fragment, 0, &[5.0, 5.1, 5.0]),
             timed(quadric, Fragment, 0, &[10.0, 10.2, 10.0]),
-            wrong,
+            drawn(live, Fragment, &[1.0, 1.0, 1.0], 1.5),
             timed(Method::DEFAULT, Compute, 0, &[6.0, 6.0, 6.0]),
             timed(quadric, Compute, 0, &[5.0, 5.0, 5.0]),
             timed(Method::DEFAULT, Fragment, 1, &[9.0, 40.0, 20.0]),
             timed(quadric, Fragment, 1, &[5.0, 5.0, 5.0]),
         ];
-        let (answers, records) = told(Question::Rivals, &rows);
+        let (answers, records) = told("rivals", &rows);
         let wanted = "The default search takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved.";
         assert_eq!(answers, [wanted]);
-        let wanted = ["off", "800x600", "0.5 (0.5 to 0.5)", "quadric, scene0"];
-        assert_eq!(records[0][..4], wanted);
-        assert_eq!(records[0][4..], ["1.2 (1.2 to 1.2)", "quadric, scene0"]);
+        // The fragment stage's mean is not resolved, as one picture of two is not.
+        let wanted = ["compute", "1.2 (1.2 to 1.2)", "–", "1"];
+        assert!(
+            records[0][1].ends_with("not resolved") && records[1] == wanted,
+            "{records:?}"
+        );
     }
 }

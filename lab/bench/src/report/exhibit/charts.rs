@@ -1,21 +1,22 @@
 //! Charts of a report.
 
-use super::{check_column, tables};
+use super::tables::{Record, heading, records};
 use crate::measure::growth::growing;
 use crate::measure::ratios::{Over, over};
 use crate::measure::row::Row;
-use crate::measure::stats::Interval;
+use crate::plan::is_rbm_baseline;
 use crate::plan::method::{Method, MethodSettings};
-use crate::plan::{grouped, is_rbm_baseline};
-use crate::report::chart::Figure;
-use crate::report::chart::dots::{Line, Placed, pages};
-use crate::report::chart::front::{WORTH, front, stairs};
-use crate::report::chart::series_style::{self, floor_line, of_source};
-use crate::report::chart::style::{Dash, Marker, Style, color};
-use crate::report::chart::xy::{Guide, Point, Series, XyChart};
-use crate::report::table::columns::{self, Cell, Context};
+use crate::report::columns::{Cell, Context};
+use crate::report::series_style::{self, floor_line, of_source};
 use revmap::error::Result;
 use revmap::settings::DrawStage;
+use revmap_figures::chart::Figure;
+use revmap_figures::chart::dots::{Line, Placed, pages};
+use revmap_figures::chart::front::{WORTH, front, stairs};
+use revmap_figures::chart::style::{Dash, Style};
+use revmap_figures::chart::xy::{Guide, Point, Series, XyChart};
+use revmap_figures::groups::grouped;
+use revmap_figures::stats::Interval;
 
 /// A chart.
 #[derive(Clone, Debug, serde::Deserialize)]
@@ -100,9 +101,9 @@ struct Item {
 impl Chart {
     pub(super) fn check(&self) -> Result<()> {
         if self.kind == Kind::Points {
-            check_column(&self.y, self.over)?;
+            heading(&self.y, self.over)?;
             if self.over.is_none() || self.over_column() {
-                check_column(&self.x, None)?;
+                heading(&self.x, None)?;
             }
         }
         Ok(())
@@ -127,10 +128,7 @@ impl Chart {
         // Meshes from coarse to fine.
         rows.sort_by_key(|r| r.settings.method.order());
         let rows = rows.as_slice();
-        let (items, floors) = match self.over {
-            Some(reference) => self.of_ways(context, rows, reference)?,
-            None => self.of_rows(context, rows)?,
-        };
+        let (items, floors) = self.items(context, rows)?;
         if items.is_empty() {
             return Ok(Vec::new());
         }
@@ -203,41 +201,48 @@ impl Chart {
         pages(&self.title, "time of a frame (ms)", None, &lines)
     }
 
-    /// Points that are rows, and the lines of floors.
-    fn of_rows(&self, context: &Context, rows: &[&Row]) -> Result<(Vec<Item>, Vec<Guide>)> {
-        let (x, y) = (columns::named(&self.x)?, columns::named(&self.y)?);
+    /// Points that are rows or ways of drawing, and the lines of floors.
+    fn items(&self, context: &Context, rows: &[&Row]) -> Result<(Vec<Item>, Vec<Guide>)> {
         let (mut items, mut floors) = (Vec::new(), Vec::new());
-        for row in rows {
-            let (across, up) = ((x.cell)(context, row), (y.cell)(context, row));
-            let s = &row.settings;
+        let lowest = self.floor();
+        for record in records(rows, self.over) {
+            let s = record.settings();
             if s.method == Method::Floor {
-                floors.extend(row.time().map(|time| floor_line(s, time.value)));
+                floors.extend(record.time().map(|time| floor_line(s, time.value)));
                 continue;
             }
-            let (Some(x), Some(height)) = (across.value(), up.value()) else {
+            let across = match self.over.is_some() && !self.over_column() {
+                true => context.known(record.time()),
+                false => record.cell(context, rows, &self.x)?,
+            };
+            let up = record.cell(context, rows, &self.y)?;
+            let (Some(x), Some(y)) = (across.value(), up.value()) else {
                 continue;
             };
-            let Some((name, style, joined)) = self.line(context, row) else {
+            let Some((name, style, joined)) = self.line(context, &record) else {
                 continue;
             };
             // Zero has no place on a logarithmic axis without a floor.
             let [even_x, even_y] = self.linear;
-            if (x <= 0.0 && !even_x) || (height <= 0.0 && !even_y && y.floor == 0.0) {
+            if (x <= 0.0 && !even_x) || (y <= 0.0 && !even_y && lowest == 0.0) {
                 continue;
             }
             let label = match self.series {
                 SeriesBy::Scene => None,
                 SeriesBy::Source if self.most_exact => None,
                 SeriesBy::Source => {
-                    Some(format!("{} {}", s.method.name(), row.map_rows.unwrap_or(0)))
+                    Some(format!("{} {}", s.method.name(), s.map_rows.unwrap_or(0)))
                 }
                 SeriesBy::Method => label(context, s),
                 SeriesBy::Way => label(context, s).filter(|_| s.method.is_mesh()),
             };
+            let sure = record
+                .time()
+                .is_some_and(|t| t.relative() <= context.resolved);
             let wide = |name: &str, cell: &Cell| match cell {
                 Cell::Known(_) => false,
                 Cell::Unresolved(_) => true,
-                _ => is_timed(name) && !row.resolved(context.resolved),
+                _ => !sure && (self.over.is_some() || is_timed(name)),
             };
             let unresolved = wide(&self.x, &across) || wide(&self.y, &up);
             items.push(Item {
@@ -247,9 +252,9 @@ impl Chart {
                 stage: s.stage,
                 point: Point {
                     x,
-                    y: height,
-                    spread: ends(&self.x, &across, row),
-                    rise: ends(&self.y, &up, row),
+                    y,
+                    spread: ends(&self.x, &across, &record),
+                    rise: ends(&self.y, &up, &record),
                     unresolved,
                     label: label.filter(|_| !unresolved),
                 },
@@ -258,69 +263,26 @@ impl Chart {
         Ok((items, floors))
     }
 
-    /// Points that are ways of drawing over others, and the lines of floors.
-    fn of_ways(
-        &self,
-        context: &Context,
-        rows: &[&Row],
-        reference: Over,
-    ) -> Result<(Vec<Item>, Vec<Guide>)> {
-        let (mut items, mut floors) = (Vec::new(), Vec::new());
-        for ratio in over(rows.iter().copied(), reference) {
-            let s = &ratio.settings;
-            if s.method == Method::Floor {
-                floors.push(floor_line(s, ratio.time.value));
-                continue;
-            }
-            let up = tables::cell(context, rows, (reference, &ratio), &self.y)?;
-            let Some(y) = up.value() else { continue };
-            let (mut x, mut spread, mut rise) = (ratio.time.value, ratio.time.ends(), None);
-            if self.over_column() {
-                let across = tables::cell(context, rows, (reference, &ratio), &self.x)?;
-                let Some(place) = across.value() else {
-                    continue;
-                };
-                (x, spread, rise) = (place, None, up.interval().and_then(|i| i.ends()));
-            }
-            items.push(Item {
-                name: context.line(s),
-                style: series_style::style(s),
-                joined: true,
-                stage: s.stage,
-                point: Point {
-                    x,
-                    y,
-                    spread,
-                    rise,
-                    unresolved: ratio.time.relative() > context.resolved,
-                    label: label(context, s),
-                },
-            });
-        }
-        Ok((items, floors))
-    }
-
-    /// The name and look of a row's line, and whether its points are joined.
-    fn line(&self, context: &Context, row: &Row) -> Option<(String, Style, bool)> {
-        let s = &row.settings;
-        Some(match self.series {
-            SeriesBy::Method => (context.line(s), series_style::style(s), true),
-            SeriesBy::Way => {
+    /// The name and look of a record's line, and whether its points are joined.
+    fn line(&self, context: &Context, record: &Record) -> Option<(String, Style, bool)> {
+        let s = record.settings();
+        Some(match (self.series, record) {
+            (SeriesBy::Method, _) => (context.line(s), series_style::style(s), true),
+            (SeriesBy::Way, _) => {
                 let way = growing(s);
                 let (name, style) = (context.styles.way(&way), context.styles.style(&way));
                 (name, style, !self.law)
             }
-            SeriesBy::Source => {
+            (SeriesBy::Source, _) => {
                 let source = s.map_source?;
                 (source.name.to_owned(), of_source(source), self.most_exact)
             }
-            SeriesBy::Scene => {
+            (SeriesBy::Scene, Record::Row(row)) => {
                 let scenes = grouped(context.rows, |r| &r.scene);
-                let k = scenes.iter().position(|s| *s.0 == row.scene).unwrap_or(0);
-                let paint = color::ALL[k % color::ALL.len()];
-                let style = Style::new(paint, Marker::ALL[k % Marker::ALL.len()]);
-                (row.scene.clone(), style, true)
+                let k = scenes.iter().position(|s| *s.0 == row.scene)?;
+                (row.scene.clone(), Style::numbered(k), true)
             }
+            (SeriesBy::Scene, Record::Way(..)) => return None,
         })
     }
 
@@ -372,8 +334,8 @@ fn is_timed(name: &str) -> bool {
 }
 
 /// The ends of the interval of a cell, where they are known.
-fn ends(name: &str, cell: &Cell, row: &Row) -> Option<(f64, f64)> {
-    let time = || row.time()?.ends();
+fn ends(name: &str, cell: &Cell, record: &Record) -> Option<(f64, f64)> {
+    let time = || record.time()?.ends();
     match name {
         "time_ms" => time(),
         "rate" => time().map(|(low, high)| (1e3 / high, 1e3 / low)),

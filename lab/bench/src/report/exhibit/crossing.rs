@@ -2,10 +2,10 @@
 
 use crate::measure::ratios::{Over, Ratio, over};
 use crate::measure::row::Row;
-use crate::plan::grouped;
 use crate::plan::method::Method;
-use crate::plan::names::number;
-use crate::report::table::columns::Context;
+use crate::report::columns::Context;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::number;
 
 /// A sentence for each stage of the default: its time over the mesh's at each tolerance, and where
 /// the two cross.
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
     use crate::measure::row::tests::timed;
     use crate::plan::method::MethodSettings;
-    use crate::report::table::columns::tests::with_context;
+    use crate::report::columns::tests::with_context;
     use revmap::settings::Tolerance;
 
     /// The default takes 2 ms at any tolerance, meshes take less the more they may err: 4 ms at 0.1

@@ -3,11 +3,11 @@
 use super::{Chart, tables};
 use crate::measure::growth::growth;
 use crate::measure::row::Row;
-use crate::report::chart::axis::Axis;
-use crate::report::chart::xy::{Guide, Series};
-use crate::report::table::columns::{self, Context};
-use crate::report::table::published;
+use crate::report::columns::{self, Context};
+use crate::report::published;
 use revmap::error::Result;
+use revmap_figures::chart::axis::Axis;
+use revmap_figures::chart::xy::{Guide, Series};
 
 impl Chart {
     pub(super) fn axes(
@@ -20,16 +20,9 @@ impl Chart {
             Some(_) => Axis::log(format!("time / {}", context.baseline())).with(1.0),
             None => Axis::log(columns::named(&self.x)?.heading),
         };
-        let heading = match self.over {
-            Some(over) => tables::heading(&self.y, over)?,
-            None => columns::named(&self.y)?.heading.to_owned(),
-        };
-        let mut y = Axis::log(heading);
+        let mut y = Axis::log(tables::heading(&self.y, self.over)?);
         (x.log, y.log) = (!self.linear[0], !self.linear[1]);
-        let parts = self.y.split_once(' ');
-        let name = parts.map_or(&*self.y, |(_, column)| column);
-        let floor = columns::named(name).map_or(0.0, |column| column.floor);
-        y.floor = (floor > 0.0).then_some(floor);
+        y.floor = Some(self.floor()).filter(|floor| *floor > 0.0);
         if self.front {
             let places = floors.iter().filter_map(|floor| floor.points.first());
             x.include.extend(places.map(|place| place.0));
@@ -39,6 +32,13 @@ impl Chart {
         }
         y.include.extend(self.published().iter().map(|p| p.1));
         Ok((x, y))
+    }
+
+    /// Where the column up begins; 0 for none.
+    pub(super) fn floor(&self) -> f64 {
+        let parts = self.y.split_once(' ');
+        let name = parts.map_or(&*self.y, |(_, column)| column);
+        columns::named(name).map_or(0.0, |column| column.floor)
     }
 
     /// The published line, in charts that have one.

@@ -5,7 +5,6 @@ mod answers;
 mod charts;
 mod crossing;
 mod guides;
-mod losses;
 pub(crate) mod places;
 mod tables;
 
@@ -13,11 +12,10 @@ pub use answers::Question;
 pub(crate) use answers::{findings, unresolved};
 pub use charts::Chart;
 pub(crate) use tables::cell;
-pub use tables::{Records, Table, ways_table};
+pub use tables::{Records, Table};
 
-use crate::measure::ratios::Over;
 use crate::measure::row::Row;
-use crate::report::table::columns::{self, Context};
+use crate::report::columns::Context;
 use revmap::error::{Error, ErrorKind, Result};
 
 /// Tables and charts on one question.
@@ -126,13 +124,5 @@ impl Exhibit {
             (self.only.is_empty() || row.sweeps & only != 0) && row.sweeps & !except != 0
         };
         context.rows.iter().copied().filter(counts).collect()
-    }
-}
-
-/// Checks that a name is that of a column, or a name that tables over ways have.
-fn check_column(name: &str, over: Option<Over>) -> Result<()> {
-    match over {
-        Some(over) => tables::heading(name, over).map(|_| ()),
-        None => columns::named(name).map(|_| ()),
     }
 }

@@ -1,12 +1,12 @@
 //! The groups of rows that have tables and charts of their own.
 
 use crate::measure::row::Row;
-use crate::plan::grouped;
-use crate::plan::names::{count, number, percent, safe};
 use crate::plan::view::Framing;
+use crate::report::columns::Context;
 use crate::report::exhibit::{Exhibit, Per};
-use crate::report::table::columns::Context;
 use revmap::settings::DrawStage;
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{count, number, percent, safe};
 
 /// Rows that have tables and charts of their own, and how these are named.
 pub(crate) struct Place<'a> {
@@ -135,7 +135,7 @@ fn title(name: &str, rows: &[&Row]) -> String {
 mod tests {
     use super::*;
     use crate::measure::row::tests::timed;
-    use crate::report::table::columns::tests::with_context;
+    use crate::report::columns::tests::with_context;
 
     fn seen(view: usize, framing: Framing, hits: usize) -> Row {
         let mut row = timed(&[10.0]);

@@ -1,17 +1,16 @@
 //! Tables of a report.
 
-use super::{answers, check_column};
 use crate::measure::growth::growth;
 use crate::measure::ratios::{Over, Ratio, mean_ms, over};
 use crate::measure::row::Row;
-use crate::measure::stats::{self, Interval};
-use crate::plan::grouped;
-use crate::plan::method::Method;
-use crate::plan::names::{number, range};
-use crate::report::table::Table as Text;
-use crate::report::table::columns::{self, Cell, Context};
-use crate::report::table::published::published;
+use crate::plan::method::{Method, MethodSettings};
+use crate::report::columns::{self, Cell, Context};
+use crate::report::published::published;
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::groups::grouped;
+use revmap_figures::names::{number, range};
+use revmap_figures::stats::{self, Interval};
+use revmap_figures::table::Table as Text;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 
@@ -24,9 +23,9 @@ pub struct Table {
     /// The heading above it.
     pub heading: String,
     /// Columns, by their names. In tables of ways also `ratio R` (in brackets if not resolved),
-    /// `interval R`, `range R` of the time over `R`, `known ms` for the mean time, `mean C`,
-    /// `worst C`, `average C` of a column, `other C` of the mesh's, `pictures`, `total wrong`,
-    /// `no worse`.
+    /// `interval R`, `range R`, `faster R` of the time over `R`, `known ms` and `other ms` for the
+    /// mean times, `mean C`, `worst C`, `average C` of a column, `other C` of the mesh's,
+    /// `pictures`, `total wrong`, `no worse`.
     pub columns: Vec<String>,
     /// In tables of ways, what times are put over.
     pub over: Option<Over>,
@@ -49,10 +48,6 @@ pub enum Records {
     Pictures,
     /// Ways of drawing, over all pictures.
     Ways,
-    /// Ways of drawing, the fragment and the compute stage side by side.
-    Stages,
-    /// The default search against the fastest other one, by shadows and size.
-    Rivals,
     /// Ways of drawing, and how their times grow.
     Growth,
     /// A published table, measured again.
@@ -73,55 +68,90 @@ fn reference(name: &str) -> Result<Over> {
 impl Table {
     pub(super) fn check(&self) -> Result<()> {
         let mut names = self.columns.iter();
-        names.try_for_each(|name| check_column(name, self.over))
+        names.try_for_each(|name| heading(name, self.over).map(|_| ()))
     }
 
     /// The table over these rows, for a page.
     pub fn shown(&self, context: &Context, rows: &[&Row]) -> Result<Text> {
-        match self.of {
-            Records::Rows => context.page(rows, &self.columns),
-            Records::Pictures => {
-                let pictures = grouped(rows, |r| r.picture());
-                let firsts: Vec<&Row> = pictures.iter().map(|(_, p)| *p[0]).collect();
-                context.page(&firsts, &self.columns)
-            }
-            Records::Ways => {
-                let over = self.over.unwrap_or(Over::Baseline);
-                ways_table(context, rows, over, &self.columns)
-            }
-            Records::Stages => Ok(answers::stages_table(context, rows)),
-            Records::Rivals => Ok(answers::rivals_table(context, rows)),
-            Records::Growth => growth_table(context, rows, &self.x),
-            Records::Published => Ok(published(context, rows, &self.x)),
-            Records::Flights => Ok(Text::default()),
+        let over = match self.of {
+            Records::Ways => Some(self.over.unwrap_or(Over::Baseline)),
+            Records::Rows | Records::Pictures => None,
+            Records::Growth => return growth_table(context, rows, &self.x),
+            Records::Published => return Ok(published(context, rows, &self.x)),
+            Records::Flights => return Ok(Text::default()),
+        };
+        let mut all = records(rows, over);
+        if self.of == Records::Pictures {
+            let pictures = grouped(rows, |r| r.picture()).into_iter();
+            all = pictures.map(|(_, p)| Record::Row(p[0])).collect();
+        }
+        let names = &self.columns;
+        let header = names.iter().map(|name| heading(name, over));
+        let header = header.collect::<Result<Vec<String>>>()?;
+        let record = |one: &Record| -> Result<Vec<String>> {
+            let shown = |name: &String| Ok(one.cell(context, rows, name)?.shown());
+            names.iter().map(shown).collect()
+        };
+        let records = all.iter().map(record);
+        Ok(Text::new(header, records.collect::<Result<_>>()?))
+    }
+}
+
+/// A record of a table, or a point of a chart.
+pub(crate) enum Record<'a> {
+    /// A row.
+    Row(&'a Row),
+    /// A way of drawing over other rows.
+    Way(Over, Ratio<'a>),
+}
+
+/// A record for each row, or for each way of drawing over other rows.
+pub(super) fn records<'a>(rows: &[&'a Row], reference: Option<Over>) -> Vec<Record<'a>> {
+    let own = rows.iter().copied();
+    match reference {
+        None => own.map(Record::Row).collect(),
+        Some(other) => {
+            let ratios = over(own, other).into_iter();
+            ratios.map(|ratio| Record::Way(other, ratio)).collect()
         }
     }
 }
 
-/// The table of ways of drawing over others.
-pub fn ways_table(
-    context: &Context,
-    rows: &[&Row],
-    reference: Over,
-    names: &[impl AsRef<str>],
-) -> Result<Text> {
-    let names = || names.iter().map(AsRef::as_ref);
-    let header = names().map(|name| heading(name, reference));
-    let header = header.collect::<Result<Vec<String>>>()?;
-    let record = |ratio: Ratio| -> Result<Vec<String>> {
-        let shown = |name| Ok(cell(context, rows, (reference, &ratio), name)?.shown());
-        names().map(shown).collect()
-    };
-    let ratios = over(rows.iter().copied(), reference);
-    let records = ratios.into_iter().map(record);
-    Ok(Text::new(header, records.collect::<Result<_>>()?))
+impl Record<'_> {
+    pub(super) fn settings(&self) -> &MethodSettings {
+        match self {
+            Self::Row(row) => &row.settings,
+            Self::Way(_, ratio) => &ratio.settings,
+        }
+    }
+
+    /// The time of a row, or the ratio of a way's.
+    pub(super) fn time(&self) -> Option<Interval> {
+        match self {
+            Self::Row(row) => row.time(),
+            Self::Way(_, ratio) => Some(ratio.time),
+        }
+    }
+
+    /// Its cell in a column.
+    pub(super) fn cell(&self, context: &Context, rows: &[&Row], name: &str) -> Result<Cell> {
+        match self {
+            Self::Row(row) => Ok((columns::named(name)?.cell)(context, row)),
+            Self::Way(over, ratio) => cell(context, rows, (*over, ratio), name),
+        }
+    }
 }
 
-/// The heading of a column of ways.
-pub(super) fn heading(name: &str, over: Over) -> Result<String> {
+/// The heading of a column of rows, or of ways.
+pub(super) fn heading(name: &str, over: Option<Over>) -> Result<String> {
     let head = |column: &str| columns::named(column).map(|c| c.heading);
+    let Some(over) = over else {
+        return Ok(head(name)?.to_owned());
+    };
     Ok(match name.split_once(' ') {
         Some(("known", "ms")) => "time (ms)".to_owned(),
+        Some(("other", "ms")) => "the other time (ms)".to_owned(),
+        Some((word @ "faster", _)) => word.to_owned(),
         Some((kind @ ("ratio" | "known" | "interval" | "range"), other)) => {
             match (kind, reference(other)?) {
                 ("interval", _) => "95 % interval".to_owned(),
@@ -184,6 +214,14 @@ pub(crate) fn cell(
             let own: Vec<&Row> = ratio.pairs.iter().map(|(row, _)| *row).collect();
             context.known(mean_ms(&own))
         }
+        Some(("other", "ms")) => {
+            let others: Vec<&Row> = ratio.pairs.iter().map(|(_, other)| *other).collect();
+            context.known(mean_ms(&others))
+        }
+        Some(("faster", other)) => time(other)?.map_or(Cell::Empty, |(time, _)| {
+            let verdict = time.verdict(context.resolved);
+            Cell::text(verdict.word(ratio.settings.stage.name(), other))
+        }),
         Some(("known", other)) => context.known(time(other)?.map(|t| t.0)),
         Some(("interval", other)) => {
             time(other)?.map_or(Cell::Empty, |t| Cell::Text(context.ends(&t.0)))
@@ -203,7 +241,7 @@ pub(crate) fn cell(
         None if name == "pair" => {
             let mesh = ratio.mesh.map(|m| m.to_string());
             let mesh = mesh.unwrap_or("coarsest as accurate".to_owned());
-            Cell::Text(format!("{} / {mesh}", ratio.settings.method))
+            Cell::Text(format!("{} / {mesh}", context.styles.way(&ratio.settings)))
         }
         _ => {
             let column = columns::named(name)?;

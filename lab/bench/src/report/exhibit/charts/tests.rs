@@ -1,8 +1,9 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::measure::row::tests::timed;
-use crate::report::table::columns::tests::with_context;
+use crate::report::columns::tests::with_context;
 use revmap::settings::Solver;
+use revmap_figures::chart::style::{Marker, color};
 
 fn item(stage: DrawStage, x: f64, y: f64, unresolved: bool) -> Item {
     Item {
