@@ -2,14 +2,13 @@
 
 use super::gaps;
 use super::paint::{Paint, Rgba, is_dark, over_white};
-use super::svg::{Band, Clip, Group, Node, Path};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
-use crate::pixels::luminance;
 use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Shape, Size, StrokeOpts, Vec2};
 use revmap::error::Result;
 use revmap::profile::{FillRule, Grid, Outline, Profile, Region};
+use revmap_drawing::{Band, Clip, Group, Node, Path, luminance};
 use std::cell::Cell;
 
 /// Largest distance between a curve and its chords, object units.
@@ -126,7 +125,7 @@ impl Canvas {
                     let region = match &path.band {
                         None => {
                             check_reach(&path.curve, to_profile)?;
-                            self.enclosed(&path.curve, to_profile, FLATNESS, path.rule)
+                            self.enclosed(&path.curve, to_profile, FLATNESS, rule(path.rule))
                         }
                         Some(band) => self.band(path, band, to_profile)?,
                     };
@@ -190,7 +189,7 @@ impl Canvas {
         let mut regions = Vec::new();
         for shape in &clip.shapes {
             check_reach(&shape.curve, to_profile)?;
-            let mut region = self.enclosed(&shape.curve, to_profile, FLATNESS, shape.rule);
+            let mut region = self.enclosed(&shape.curve, to_profile, FLATNESS, rule(shape.rule));
             if let Some(clip) = &shape.clip {
                 region = region.intersection(&self.clip_region(clip, to_profile)?);
             }
@@ -276,6 +275,13 @@ impl Canvas {
             points = kept;
         }
         points
+    }
+}
+
+fn rule(of_drawing: revmap_drawing::FillRule) -> FillRule {
+    match of_drawing {
+        revmap_drawing::FillRule::NonZero => FillRule::NonZero,
+        revmap_drawing::FillRule::EvenOdd => FillRule::EvenOdd,
     }
 }
 

@@ -9,10 +9,10 @@ use super::layer::Layer;
 use super::paint::{Paint, is_dark};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
-use crate::pixels::luminance;
 use glam::DVec2;
 use revmap::error::Result;
 use revmap::profile::{Outline, Region};
+use revmap_drawing::luminance;
 
 /// A tile with at most this many changes of colour is laid down at once.
 const FEW: usize = 8;

@@ -7,12 +7,11 @@
 //! difference. Text, pictures, patterns, masks, filters and blend modes have no outline here and
 //! are refused by name.
 
+use super::ProfileAxis;
 use super::canvas::{Canvas, FLATNESS};
 use super::form::{DRAWING, Silhouette, loop_length};
 use super::paint::{Paint, gradients, lightened};
-use super::svg::has_translucency;
 use super::tile::Tile;
-use super::{ProfileAxis, svg};
 use crate::content_fault;
 use crate::faults::{empty_fault, full_fault, half_empty_fault};
 use glam::DVec2;
@@ -27,7 +26,7 @@ const SMALL: f64 = 2e-3;
 /// A profile from the text of an SVG drawing (or its gzip-compressed form). Strokes thinner than
 /// `min_stroke`, in heights, are left out.
 pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Result<Profile> {
-    let drawing = svg::read(bytes)?;
+    let drawing = revmap_drawing::read(bytes).map_err(|e| content_fault(e.to_string()))?;
     let (width, height) = drawing.size;
     let (fraction, wide) = (axis.fraction(), width / height);
     let (left, radius) = (fraction * width, (1.0 - fraction) * wide);
@@ -36,7 +35,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
         low: DVec2::new(-fraction * wide, 0.0),
         high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
-        two_tone: !has_translucency(&drawing.content),
+        two_tone: !drawing.has_translucency(),
         tinted: false,
         min_stroke,
         page,
@@ -180,6 +179,3 @@ fn without_slivers(outline: &mut Outline) {
     let is_thick = |points: &Vec<DVec2>| loop_area(points).abs() > FLATNESS * loop_length(points);
     outline.loops.retain(is_thick);
 }
-
-#[cfg(test)]
-mod tests;

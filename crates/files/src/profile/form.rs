@@ -403,6 +403,3 @@ fn wall(segment: &Segment, part: f64, segments: &[Segment]) -> f64 {
         .filter_map(crossing);
     ahead.filter(|d| *d > 1e-9).fold(f64::INFINITY, f64::min)
 }
-
-#[cfg(test)]
-mod tests;

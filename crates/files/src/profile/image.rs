@@ -5,12 +5,13 @@ use super::{KINDS, ProfileOptions, ProfileRead, options, photo, thin_lines, tran
 use crate::content_fault;
 use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;
-use crate::pixels::{decode, luminance};
+use crate::pixels::decode;
 use crate::trace::{trace, trace_split};
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::host_memory;
 use revmap::profile::{Profile, Raster};
+use revmap_drawing::luminance;
 
 /// What needs memory, in messages.
 const PICTURE: &str = "the pixels of a picture";

@@ -14,7 +14,6 @@ mod noise;
 mod options;
 mod paint;
 mod photo;
-mod svg;
 mod thin_lines;
 mod thin_strokes;
 mod tile;
@@ -25,7 +24,6 @@ pub(crate) use gaps::hints as gap_hints;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions, ProfileRead};
 pub(crate) use photo::outline_over;
-pub use svg::css_color;
 
 use crate::Picture;
 use crate::pixels::is_picture;
@@ -70,7 +68,7 @@ pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Re
 pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Profile> {
     let options = options.into();
     options.check()?;
-    if svg::is_markup(bytes) {
+    if revmap_drawing::is_markup(bytes) {
         drawing::profile(bytes, options.for_drawing()?, options.min_stroke)
     } else {
         image::profile(bytes, &options)
@@ -108,5 +106,5 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
 
 /// Returns true if the bytes are those of a picture or a drawing.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
-    is_picture(bytes) || svg::is_narrow_markup(bytes)
+    is_picture(bytes) || revmap_drawing::is_narrow_markup(bytes)
 }

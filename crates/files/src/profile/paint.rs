@@ -1,10 +1,8 @@
 //! Colours, and the list of paints that a drawing is.
 
-use crate::pixels::luminance;
 use revmap::profile::Region;
-
-/// Premultiplied red, green, blue and alpha, in the drawing's own (sRGB) values.
-pub(super) type Rgba = [f32; 4];
+pub(super) use revmap_drawing::Rgba;
+use revmap_drawing::luminance;
 
 /// Returns true for a colour darker than one half over white.
 pub(super) fn is_dark(color: Rgba) -> bool {
@@ -72,26 +70,4 @@ pub(super) fn lightened(paints: &[Paint], chosen: &dyn Fn(u32) -> bool) -> Vec<P
         },
     };
     paints.iter().map(lighter).collect()
-}
-
-/// Bounds of the colours of a gradient's stops: the darkest and, if that makes a difference, the
-/// lightest. Over every ground, each stop is between the two.
-pub(super) fn bounds(stops: &[Rgba]) -> Option<(Rgba, Option<Rgba>)> {
-    let count = stops.len() as f32;
-    let mean = std::array::from_fn(|k| stops.iter().map(|c| c[k] / count).sum());
-    let over_black = |c: &Rgba| luminance([c[0], c[1], c[2]]);
-    let over_white = |c: &Rgba| over_black(c) + 1.0 - c[3];
-    let least = |value: &dyn Fn(&Rgba) -> f32| stops.iter().map(value).reduce(f32::min);
-    let most = |value: &dyn Fn(&Rgba) -> f32| stops.iter().map(value).reduce(f32::max);
-    let grey = |black: f32, white: f32| [black, black, black, 1.0 - (white - black)];
-    let (low, low_white) = (least(&over_black)?, least(&over_white)?);
-    let (high, high_white) = (most(&over_black)?, most(&over_white)?);
-    if high - low < 1e-3 && high_white - low_white < 1e-3 {
-        return Some((mean, None));
-    }
-    let opaque = stops.iter().all(|c| c[3] >= 1.0);
-    if opaque && (high < 0.5 || low >= 0.5) {
-        return Some((mean, Some(grey(high, high_white))));
-    }
-    Some((grey(low, low_white), Some(grey(high, high_white))))
 }

@@ -3,11 +3,11 @@
 use super::canvas::{Canvas, FLATNESS};
 use super::marks::{Mark, Marks, SOLID, THIN};
 use super::paint::is_dark;
-use super::svg::Node;
 use glam::DVec2;
 use kurbo::{Affine, BezPath, ParamCurve as _, PathSeg};
 use revmap::error::Result;
 use revmap::profile::{Outline, Region};
+use revmap_drawing::Node;
 use std::cell::Cell;
 
 /// Places along a piece of a stroke.

@@ -11,8 +11,6 @@ mod map_accuracy;
 mod meshes;
 mod outlines;
 mod profiles;
-#[path = "../../../../tests/common/random.rs"]
-mod random;
 mod scenes;
 mod seeming;
 mod shape_maps;
