@@ -46,11 +46,7 @@ fn pictures_of_their_solids_look_as_intended() {
             });
             let half = image::GrayImage::from_fn(columns, rows, shade);
             for (picture, axis) in [(whole, ProfileAxis::Center), (half, ProfileAxis::Left)] {
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                picture
-                    .write_to(&mut bytes, image::ImageFormat::Png)
-                    .unwrap();
-                let read = revmap_files::profile_from_bytes(bytes.get_ref(), axis).unwrap();
+                let read = revmap_files::profile_from_bytes(&crate::png(picture), axis).unwrap();
                 assert_eq!(read.warnings, [""; 0], "{name}, {axis:?}");
             }
         }

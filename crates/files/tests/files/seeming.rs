@@ -1,6 +1,6 @@
 //! What a profile seems to be: one warning for each fault, the same for drawings and pictures.
 
-use crate::holds;
+use crate::{holds, png};
 use image::{GrayImage, Luma, Rgba, RgbaImage};
 use revmap::profile::Profile;
 use revmap_files::ProfileAxis::{self, Center, Left};
@@ -21,13 +21,6 @@ fn svg(body: &str) -> Vec<u8> {
 
 fn path(d: &str, attributes: &str) -> Vec<u8> {
     svg(&format!("<path d='{d}' {attributes}/>"))
-}
-
-fn png(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
-    let mut out = std::io::Cursor::new(Vec::new());
-    let picture = picture.into();
-    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
-    out.into_inner()
 }
 
 /// A drawing as a picture of `side` pixels: the colours of its body, black on white otherwise.

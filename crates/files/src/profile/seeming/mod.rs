@@ -4,8 +4,12 @@
 //! Drawings and pictures share these rules. Both give rows of solid spans and the outline of the
 //! half right of the axis.
 
-use super::ends::{ALIKE, Edge, Ends, Row};
-use super::{ProfileAxis, gaps};
+mod ends;
+pub(crate) mod gaps;
+pub(crate) mod marks;
+
+use super::ProfileAxis;
+use ends::{ALIKE, Edge, Ends, Row};
 use glam::DVec2;
 use revmap::profile::{FillRule, Outline, Segment, loop_area};
 

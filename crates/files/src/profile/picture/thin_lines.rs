@@ -1,8 +1,8 @@
 //! Thin straight lines of a picture beside its solid.
 
-use super::ProfileAxis;
-use super::form::Silhouette;
-use super::marks::{Mark, Marks, SOLID, THIN};
+use crate::profile::ProfileAxis;
+use crate::profile::seeming::Silhouette;
+use crate::profile::seeming::marks::{Mark, Marks, SOLID, THIN};
 use glam::{DVec2, Vec2Swizzles as _};
 use image::{GrayImage, Luma};
 use imageproc::distance_transform::Norm;

@@ -4,13 +4,13 @@
 use glam::DVec2;
 
 /// A line below this part of the height is thin.
-pub(super) const THIN: f64 = 0.01;
+pub(crate) const THIN: f64 = 0.01;
 /// What is thicker is no solid below this area, square heights.
-pub(super) const SOLID: f64 = 5e-3;
+pub(crate) const SOLID: f64 = 5e-3;
 
 /// A thin line beside the solid.
 #[derive(Clone, Debug)]
-pub(super) struct Mark {
+pub(crate) struct Mark {
     /// The corners of its box.
     pub low: DVec2,
     pub high: DVec2,
@@ -35,7 +35,7 @@ const DIMENSION: Kind = [
 const CURVE: Kind = ["a thin line", "becomes a sheet beside the solid"];
 
 /// The lines about a solid in a box. `slack`: a distance that does not count.
-pub(super) struct Marks {
+pub(crate) struct Marks {
     pub all: Vec<Mark>,
     pub solid: [DVec2; 2],
     /// The axis across the drawing.

@@ -7,18 +7,25 @@
 //! difference. Text, pictures, patterns, masks, filters and blend modes have no outline here and
 //! are refused by name.
 
+pub(crate) mod canvas;
+mod dark;
+mod layer;
+mod paint;
+mod thin_strokes;
+mod tile;
+
 use super::ProfileAxis;
-use super::canvas::{Canvas, FLATNESS};
-use super::form::{DRAWING, Silhouette, loop_length};
-use super::paint::{Paint, gradients, lightened};
-use super::tile::Tile;
+use super::seeming::{DRAWING, Silhouette, loop_length};
 use crate::content_fault;
 use crate::faults::{empty_fault, full_fault, half_empty_fault};
+use canvas::{Canvas, FLATNESS};
 use glam::DVec2;
 use kurbo::{Affine, Point};
+use paint::{Paint, gradients, lightened};
 use revmap::error::Result;
 use revmap::profile::{Grid, Outline, Profile, Region, loop_area};
 use std::cell::Cell;
+use tile::Tile;
 
 /// Places of less than this area are small, square object units.
 const SMALL: f64 = 2e-3;

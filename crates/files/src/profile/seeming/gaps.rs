@@ -4,7 +4,7 @@ use glam::{DVec2, Vec2Swizzles as _};
 use revmap::profile::Outline;
 
 /// A gap between solid and axis below this part of the height is not meant.
-pub(super) const BORE: f64 = 1e-2;
+pub(crate) const BORE: f64 = 1e-2;
 /// A gap between two parts of the solid below this part of the height is not meant.
 const SEAM: f64 = 1e-3;
 /// Gaps below this come from rounding.
@@ -33,7 +33,7 @@ pub(crate) fn hints(half: &Outline) -> Vec<String> {
 }
 
 /// The outline with its axes exchanged.
-pub(super) fn turned(outline: &Outline) -> Outline {
+pub(crate) fn turned(outline: &Outline) -> Outline {
     let turned = |l: &Vec<DVec2>| l.iter().rev().map(|p| p.yx()).collect();
     Outline {
         loops: outline.loops.iter().map(turned).collect(),

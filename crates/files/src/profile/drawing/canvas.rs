@@ -1,9 +1,9 @@
 //! The drawing area: nodes of a drawing as regions of the half-plane.
 
-use super::gaps;
 use super::paint::{Paint, Rgba, is_dark, over_white};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
+use crate::profile::seeming::gaps;
 use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Shape, Size, StrokeOpts, Vec2};
 use revmap::error::Result;

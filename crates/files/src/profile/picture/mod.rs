@@ -1,7 +1,14 @@
 //! Profiles from pictures: dark is solid.
 
-use super::form::{Silhouette, is_shell};
-use super::{KINDS, ProfileOptions, ProfileRead, options, photo, thin_lines, transparency};
+mod fair;
+mod photo;
+mod thin_lines;
+mod transparency;
+
+pub(crate) use photo::outline_over;
+
+use super::seeming::{Silhouette, is_shell};
+use super::{KINDS, ProfileOptions, ProfileRead, options};
 use crate::content_fault;
 use crate::faults::{full_fault, half_empty_fault};
 use crate::maps::header::Header;

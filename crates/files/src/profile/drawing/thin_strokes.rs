@@ -1,8 +1,8 @@
 //! Thin strokes of a drawing beside its filled shapes.
 
 use super::canvas::{Canvas, FLATNESS};
-use super::marks::{Mark, Marks, SOLID, THIN};
 use super::paint::is_dark;
+use crate::profile::seeming::marks::{Mark, Marks, SOLID, THIN};
 use glam::DVec2;
 use kurbo::{Affine, BezPath, ParamCurve as _, PathSeg};
 use revmap::error::Result;

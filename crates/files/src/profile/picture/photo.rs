@@ -1,9 +1,9 @@
 //! Profiles from photographs, as [`revmap_photo`] reads them.
 
 use super::fair::fair;
-use super::{KINDS, ProfileOptions, ProfileRead, Smooth};
 use crate::Picture;
 use crate::pixels::{Pixels, decode};
+use crate::profile::{KINDS, ProfileOptions, ProfileRead, Smooth};
 use crate::{content_fault, profile_from_bytes};
 use glam::DVec2;
 use revmap::error::Result;
@@ -142,6 +142,13 @@ mod tests {
     use crate::png_bytes;
     use image::{Rgb, RgbImage};
 
+    fn auto() -> ProfileOptions {
+        ProfileOptions {
+            read: ProfileRead::Auto,
+            ..ProfileOptions::default()
+        }
+    }
+
     /// A lit ball of radius 40 at (62, 58), in a picture of 120 x 160.
     fn ball() -> Vec<u8> {
         png_bytes(RgbImage::from_fn(120, 160, |x, y| {
@@ -179,11 +186,7 @@ mod tests {
             let grey = 220.0 + solid * (lit - 220.0) + 40.0 * grain(x, y);
             Rgb([grey as u8, (0.95 * grey) as u8, (0.9 * grey) as u8])
         });
-        let options = ProfileOptions {
-            read: ProfileRead::Auto,
-            ..ProfileOptions::default()
-        };
-        let profile = profile_from_bytes(&png_bytes(picture), options).unwrap();
+        let profile = profile_from_bytes(&png_bytes(picture), auto()).unwrap();
         let (mut sum, mut length, mut ledge) = (0.0, 0.0, 0.0f64);
         for segment in profile.outline.surface_segments() {
             let z = |p: glam::DVec2| (360.0 * p.y - 29.5) / 300.0;
@@ -207,12 +210,8 @@ mod tests {
 
     #[test]
     fn a_photograph_becomes_an_outline_in_the_units_of_its_picture() {
-        let options = ProfileOptions {
-            read: ProfileRead::Auto,
-            ..ProfileOptions::default()
-        };
         let ball = ball();
-        let profile = profile_from_bytes(&ball, options).unwrap();
+        let profile = profile_from_bytes(&ball, auto()).unwrap();
         assert_eq!(profile.outline.loops.len(), 1);
         assert!((profile.radius - 0.375).abs() < 2e-3, "{}", profile.radius);
         let middle = glam::DVec2::new(0.0, 1.0 - 58.0 / 160.0);
@@ -231,7 +230,7 @@ mod tests {
             let count = red.iter().filter(|r| (*r - 40.0).abs() < 2.5).count();
             (count, red.len())
         };
-        let (count, all) = near(&options);
+        let (count, all) = near(&auto());
         assert!(count > 200 && count == all, "{count} of {all}");
         let light = ProfileOptions {
             axis: crate::ProfileAxis::At(62.0 / 120.0),
