@@ -15,21 +15,23 @@ pub(crate) struct Notes {
     warnings: Vec<String>,
     /// What is said without its line.
     known: HashSet<String>,
-    /// Where the lines of the document begin.
+    /// Where the lines of the document begin, after the first.
     starts: Vec<usize>,
 }
 
 impl Notes {
     pub fn of(document: &roxmltree::Document) -> Self {
+        let ends = document.input_text().match_indices('\n');
         Self {
-            starts: line_starts(document.input_text()),
+            starts: ends.map(|(i, _)| i + 1).collect(),
             ..Self::default()
         }
     }
 
     /// The line of the document on which an element begins.
     pub fn line(&self, node: roxmltree::Node) -> u32 {
-        line_at(&self.starts, node.range().start)
+        let place = node.range().start;
+        1 + self.starts.partition_point(|&start| start <= place) as u32
     }
 
     /// Adds a warning. Those that differ only in the line are given once.
@@ -63,16 +65,6 @@ impl Notes {
         }
         self.warnings
     }
-}
-
-/// Where the lines of a text begin, after the first.
-pub(crate) fn line_starts(text: &str) -> Vec<usize> {
-    text.match_indices('\n').map(|(i, _)| i + 1).collect()
-}
-
-/// The line of a place in a text.
-pub(crate) fn line_at(starts: &[usize], place: usize) -> u32 {
-    1 + starts.partition_point(|&start| start <= place) as u32
 }
 
 /// The refusal of `what`, and why. It reads the document for the line of the element.

@@ -1,7 +1,7 @@
 //! The cascade: which declaration of a property counts for an element.
 
 use crate::css::selector::{Key, Matcher};
-use crate::css::{Declaration, Rule, declarations, media, one_line, sheet, without_comments};
+use crate::css::{Declaration, Rule, declarations, media, one_line, plain, sheet};
 use crate::element::{XHTML, attribute, is_svg};
 use crate::fault::{Fault, Result};
 use crate::notes::{Notes, OTHER_SHEET};
@@ -147,12 +147,12 @@ fn attributes(node: Node) -> Vec<(Strength, Declaration)> {
     let declaration = |a: roxmltree::Attribute| {
         let is_value = !matches!(a.name(), "d" | "transform") && a.value().contains("/*");
         let value = match is_value {
-            true => without_comments(a.value()).trim().to_owned(),
-            false => a.value().trim().to_owned(),
+            true => plain(&mut cssparser::Parser::new(a.value())),
+            false => a.value().to_owned(),
         };
         Declaration {
             name: a.name().to_owned(),
-            value,
+            value: value.trim().to_owned(),
             important: false,
             css: false,
         }

@@ -6,8 +6,11 @@ pub(crate) mod selector;
 
 use crate::css::selector::{Selector, selectors};
 use crate::element::{SVG, is_in};
-use crate::notes::{Notes, line_at, line_starts};
-use cssparser::{Parser, Token};
+use crate::notes::Notes;
+use cssparser::{
+    AtRuleParser, CowRcStr, DeclarationParser, ParseError, Parser, ParserState,
+    QualifiedRuleParser, RuleBodyItemParser, RuleBodyParser, StyleSheetParser, Token,
+};
 
 /// Rules and `@media` may be nested this deep.
 const MOST_NESTED: usize = 32;
@@ -42,27 +45,158 @@ const HOLDS: &str = "all screen (prefers-color-scheme:light) (prefers-reduced-mo
 const FAILS: &str = "print speech tty tv projection handheld braille embossed aural (prefers-color-scheme:dark) \
     (prefers-reduced-motion:reduce) (prefers-reduced-motion) (forced-colors:active)";
 
-/// Reads the declarations of a `style` attribute or of a rule.
+/// Reads the declarations of a `style` attribute.
 pub(crate) fn declarations(text: &str) -> Vec<Declaration> {
-    let text = without_comments(text);
-    let mut found = Vec::new();
-    for part in parts(&text, ';') {
-        let Some((name, value)) = part.split_once(':') else {
-            continue;
+    let mut notes = Notes::default();
+    let mut sheet = Sheet::new(0, &mut notes);
+    sheet.is_attribute = true;
+    RuleBodyParser::new(&mut Parser::new(text), &mut sheet).for_each(drop);
+    sheet.declarations
+}
+
+/// Reads a style sheet whose first line is `line` of the document.
+pub(crate) fn sheet(text: &str, line: u32, notes: &mut Notes) -> Vec<Rule> {
+    let mut sheet = Sheet::new(line, notes);
+    StyleSheetParser::new(&mut Parser::new(text), &mut sheet).for_each(drop);
+    sheet.rules
+}
+
+struct Sheet<'n> {
+    /// The text is that of a `style` attribute.
+    is_attribute: bool,
+    /// The line of the document on which the text begins.
+    line: u32,
+    notes: &'n mut Notes,
+    rules: Vec<Rule>,
+    within: Context,
+    /// Those of the rule that is being read, after the last rule within it.
+    declarations: Vec<Declaration>,
+}
+
+/// What is being read.
+#[derive(Clone, Default)]
+struct Context {
+    /// The selectors of the rule, with those of the rules about it, and its line.
+    rule: Option<(String, u32)>,
+    /// The condition that is not read.
+    unread: Option<String>,
+    depth: usize,
+}
+
+type Parsed<T> = Result<T, ParseError<()>>;
+
+impl<'n> Sheet<'n> {
+    fn new(line: u32, notes: &'n mut Notes) -> Self {
+        Self {
+            is_attribute: false,
+            line,
+            notes,
+            rules: Vec::new(),
+            within: Context::default(),
+            declarations: Vec::new(),
+        }
+    }
+
+    fn line_of(&self, start: &ParserState) -> u32 {
+        self.line + start.source_location().line
+    }
+
+    /// Reads a block within a rule or a condition. `own`: the text before it.
+    fn block<'i>(&mut self, own: &str, line: u32, mut inner: Context, input: &mut Parser<'i>) {
+        if inner.depth >= MOST_NESTED {
+            return self.refuse(one_line(own), line);
+        }
+        inner.depth += 1;
+        self.finish();
+        let outer = std::mem::replace(&mut self.within, inner);
+        RuleBodyParser::new(input, self).for_each(drop);
+        self.finish();
+        self.within = outer;
+    }
+
+    /// Adds a rule of the declarations so far.
+    fn finish(&mut self) {
+        let declarations = std::mem::take(&mut self.declarations);
+        let Some((text, line)) = self
+            .within
+            .rule
+            .as_ref()
+            .filter(|_| !declarations.is_empty())
+        else {
+            return;
         };
-        let mut input = Parser::new(name);
-        let name = input.expect_ident_cloned();
-        let name = match name.and_then(|name| input.expect_exhausted().map(|()| name)) {
-            Ok(custom) if custom.starts_with("--") => custom.to_string(),
-            Ok(name) => name.to_ascii_lowercase(),
-            Err(_) => continue,
+        let read = selectors(text);
+        let unread = match &read {
+            None => Some(one_line(text)),
+            Some(_) => self.within.unread.clone(),
+        };
+        self.rules.push(Rule {
+            unread,
+            selectors: read.unwrap_or_default(),
+            declarations,
+            line: *line,
+        });
+    }
+
+    /// Adds a rule that refuses every element.
+    fn refuse(&mut self, name: String, line: u32) {
+        self.rules.push(Rule {
+            declarations: declarations("--any:0"),
+            unread: Some(name),
+            line,
+            ..Rule::default()
+        });
+    }
+
+    fn at_rule(
+        &mut self,
+        (name, condition): (String, String),
+        line: u32,
+        block: Option<&mut Parser>,
+    ) {
+        let own = one_line(&format!("@{name}{condition}"));
+        let applies = match name.to_ascii_lowercase().as_str() {
+            "import" => {
+                return self.notes.warn(format!(
+                    "the drawing has @import (line {line}), which is not read; copy the rules into the drawing"
+                ));
+            }
+            "namespace" if condition.contains(SVG) => return,
+            "namespace" | "property" => return self.refuse(own, line),
+            "media" => media(&condition),
+            "supports" | "layer" | "container" | "scope" | "document" | "starting-style" => None,
+            _ => return,
+        };
+        if let Some(block) = block.filter(|_| applies != Some(false)) {
+            let mut inner = self.within.clone();
+            if applies.is_none() {
+                inner.unread = Some(own.clone());
+            }
+            self.block(&own, line, inner, block);
+        }
+    }
+}
+
+impl<'i> DeclarationParser<'i> for Sheet<'_> {
+    type Declaration = ();
+    type Error = ();
+
+    fn parse_value(
+        &mut self,
+        name: CowRcStr<'i>,
+        input: &mut Parser<'i>,
+        _: &ParserState,
+    ) -> Parsed<()> {
+        let mut value = String::new();
+        let has_block = add_plain(input, &mut value);
+        let name = match name.starts_with("--") {
+            true => name.to_string(),
+            // It is the rule of a selector such as `a:hover`.
+            false if has_block && !self.is_attribute => return Err(ParseError::unexpected_token()),
+            false => name.to_ascii_lowercase(),
         };
         let plain = name.strip_prefix("-webkit-");
         let name = plain.filter(|p| is_in(PREFIXED, p)).unwrap_or(&name);
-        // Ends of lines are attributes alone.
-        if matches!(name, "x1" | "x2" | "y1" | "y2") {
-            continue;
-        }
         let value = value.trim();
         let (value, important) = match value.rsplit_once('!') {
             Some((value, word)) if word.trim().eq_ignore_ascii_case("important") => {
@@ -70,174 +204,133 @@ pub(crate) fn declarations(text: &str) -> Vec<Declaration> {
             }
             _ => (value, false),
         };
-        found.push(Declaration {
-            name: name.to_owned(),
-            value: value.to_owned(),
-            important,
-            css: true,
-        });
+        // Ends of lines are attributes alone.
+        if !matches!(name, "x1" | "x2" | "y1" | "y2") {
+            self.declarations.push(Declaration {
+                name: name.to_owned(),
+                value: value.to_owned(),
+                important,
+                css: true,
+            });
+        }
+        Ok(())
     }
-    found
 }
 
-/// Reads a style sheet whose first line is `line` of the document.
-pub(crate) fn sheet(text: &str, line: u32, notes: &mut Notes) -> Vec<Rule> {
-    let text = without_comments(text)
-        .replace("<!--", "    ")
-        .replace("-->", "   ");
-    let mut sheet = Sheet {
-        text: &text,
-        starts: line_starts(&text),
-        line,
-        notes,
-        rules: Vec::new(),
-    };
-    sheet.rules(&text, Context::default());
-    sheet.rules
+impl<'i> QualifiedRuleParser<'i> for Sheet<'_> {
+    type Prelude = String;
+    type QualifiedRule = ();
+    type Error = ();
+
+    fn parse_prelude(&mut self, input: &mut Parser<'i>) -> Parsed<String> {
+        Ok(plain(input))
+    }
+
+    fn parse_block(
+        &mut self,
+        head: String,
+        start: &ParserState,
+        input: &mut Parser<'i>,
+    ) -> Parsed<()> {
+        let line = self.line_of(start);
+        let mut inner = self.within.clone();
+        let selectors = match &inner.rule {
+            Some((parent, _)) => nested(&head, parent),
+            None => head.trim().to_owned(),
+        };
+        inner.rule = Some((selectors, line));
+        self.block(&head, line, inner, input);
+        Ok(())
+    }
 }
 
-struct Sheet<'a> {
-    text: &'a str,
-    /// Where the lines of the text begin.
-    starts: Vec<usize>,
-    line: u32,
-    notes: &'a mut Notes,
-    rules: Vec<Rule>,
+impl<'i> AtRuleParser<'i> for Sheet<'_> {
+    type Prelude = (String, String);
+    type AtRule = ();
+    type Error = ();
+
+    fn parse_prelude(
+        &mut self,
+        name: CowRcStr<'i>,
+        input: &mut Parser<'i>,
+    ) -> Parsed<Self::Prelude> {
+        Ok((name.to_string(), plain(input)))
+    }
+
+    fn rule_without_block(
+        &mut self,
+        prelude: Self::Prelude,
+        start: &ParserState,
+    ) -> Result<(), ()> {
+        self.at_rule(prelude, self.line_of(start), None);
+        Ok(())
+    }
+
+    fn parse_block(
+        &mut self,
+        prelude: Self::Prelude,
+        start: &ParserState,
+        input: &mut Parser<'i>,
+    ) -> Parsed<()> {
+        self.at_rule(prelude, self.line_of(start), Some(input));
+        Ok(())
+    }
 }
 
-/// What a rule is within.
-#[derive(Clone, Copy, Default)]
-struct Context<'a> {
-    /// The selectors of the rule about a nested one.
-    parent: Option<&'a str>,
-    /// The condition that is not read.
-    unread: Option<&'a str>,
-    depth: usize,
-}
-
-impl Sheet<'_> {
-    /// The line of the document at which a part of the sheet begins.
-    fn line_of(&self, part: &str) -> u32 {
-        let offset = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
-        self.line - 1 + line_at(&self.starts, offset)
+impl RuleBodyItemParser<'_, (), ()> for Sheet<'_> {
+    fn parse_declarations(&self) -> bool {
+        self.is_attribute || self.within.rule.is_some()
     }
 
-    /// Reads rules, and within a rule its declarations.
-    fn rules(&mut self, text: &str, within: Context) {
-        let mut rest = text.trim_start();
-        while !rest.is_empty() {
-            let stops: &[char] = match within.parent.is_some() || rest.starts_with('@') {
-                true => &[';', '{'],
-                false => &['{'],
-            };
-            let (head, stop, after) = until(rest, stops);
-            let (block, after) = match stop {
-                Some('{') => {
-                    let (block, _, after) = until(after, &['}']);
-                    (Some(block), after)
-                }
-                _ => (None, after),
-            };
-            if let Some(at_rule) = head.strip_prefix('@') {
-                self.at_rule(at_rule.trim(), head, block, within);
-            } else if let Some(parent) = within.parent
-                && (block.is_none() || head.starts_with("--"))
-            {
-                let own = &rest[..rest.len() - after.len()];
-                if !head.is_empty() {
-                    self.add(parent, own, own, within);
-                }
-            } else if let Some(block) = block {
-                self.rule(head, block, within);
-            }
-            rest = after.trim_start();
-        }
-    }
-
-    fn rule(&mut self, head: &str, block: &str, within: Context) {
-        if within.depth >= MOST_NESTED {
-            return self.refuse(&one_line(head), head);
-        }
-        let own = match within.parent {
-            Some(parent) => nested(head, parent),
-            None => head.to_owned(),
-        };
-        if !block.contains('{') {
-            return self.add(&own, head, block, within);
-        }
-        let inner = Context {
-            parent: Some(&own),
-            depth: within.depth + 1,
-            ..within
-        };
-        self.rules(block, inner);
-    }
-
-    fn add(&mut self, selector: &str, at: &str, block: &str, within: Context) {
-        let read = selectors(selector);
-        let unread = match &read {
-            None => Some(one_line(selector)),
-            Some(_) => within.unread.map(str::to_owned),
-        };
-        self.rules.push(Rule {
-            unread,
-            selectors: read.unwrap_or_default(),
-            declarations: declarations(block),
-            line: self.line_of(at),
-        });
-    }
-
-    /// Adds a rule that refuses every element.
-    fn refuse(&mut self, name: &str, at: &str) {
-        self.rules.push(Rule {
-            declarations: declarations("--any:0"),
-            unread: Some(name.to_owned()),
-            line: self.line_of(at),
-            ..Rule::default()
-        });
-    }
-
-    fn at_rule(&mut self, text: &str, head: &str, block: Option<&str>, within: Context) {
-        let name_end = text.find(|c: char| !(c.is_alphanumeric() || c == '-'));
-        let (name, condition) = text.split_at(name_end.unwrap_or(text.len()));
-        let name = name.to_ascii_lowercase();
-        let own = format!("@{}", one_line(text));
-        let applies = match name.as_str() {
-            "import" => {
-                let line = self.line_of(head);
-                return self.notes.warn(format!(
-                    "the drawing has @import (line {line}), which is not read; copy the rules into the drawing"
-                ));
-            }
-            "namespace" if condition.contains(SVG) => return,
-            "namespace" | "property" => return self.refuse(&own, head),
-            "media" => media(condition),
-            "supports" | "layer" | "container" | "scope" | "document" | "starting-style" => None,
-            _ => return,
-        };
-        let (Some(block), true) = (block, applies != Some(false)) else {
-            return;
-        };
-        if within.depth >= MOST_NESTED {
-            return self.refuse(&own, head);
-        }
-        let inner = Context {
-            unread: applies.map_or(Some(own.as_str()), |_| within.unread),
-            depth: within.depth + 1,
-            ..within
-        };
-        self.rules(block, inner);
+    fn parse_qualified(&self) -> bool {
+        !self.is_attribute
     }
 }
 
 /// The selectors of a rule within the rule of `parent`.
 fn nested(head: &str, parent: &str) -> String {
-    let parent = format!(":is({})", parent.trim());
-    match head.contains('&') {
-        true => head.replace('&', &parent),
-        false => {
-            let own = |part: &str| format!("{parent} {}", part.trim());
-            parts(head, ',').map(own).collect::<Vec<_>>().join(",")
+    let parent = format!(":is({parent})");
+    if head.contains('&') {
+        return head.replace('&', &parent);
+    }
+    let mut input = Parser::new(head);
+    let own =
+        |input: &mut Parser| -> Parsed<String> { Ok(format!("{parent} {}", plain(input).trim())) };
+    input
+        .parse_comma_separated(own)
+        .unwrap_or_default()
+        .join(",")
+}
+
+/// The text that is left, without comments.
+pub(crate) fn plain(input: &mut Parser) -> String {
+    let mut text = String::new();
+    add_plain(input, &mut text);
+    text
+}
+
+/// Adds the text that is left. Comments become blanks, and blocks without an end get one. Returns true
+/// if a part of it is in braces.
+fn add_plain(input: &mut Parser, text: &mut String) -> bool {
+    let mut has_block = false;
+    loop {
+        let start = input.position();
+        let end = match input.next_including_whitespace_and_comments() {
+            Err(_) => return has_block,
+            Ok(Token::Comment(_)) => {
+                text.push(' ');
+                continue;
+            }
+            Ok(Token::Function(_) | Token::ParenthesisBlock) => Some(')'),
+            Ok(Token::SquareBracketBlock) => Some(']'),
+            Ok(Token::CurlyBracketBlock) => Some('}'),
+            Ok(_) => None,
+        };
+        text.push_str(input.slice_from(start));
+        if let Some(end) = end {
+            has_block |= end == '}';
+            let _: Parsed<bool> = input.parse_nested_block(|inner| Ok(add_plain(inner, text)));
+            text.push(end);
         }
     }
 }
@@ -283,76 +376,4 @@ pub(crate) fn one_line(text: &str) -> String {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
     }
-}
-
-/// The parts of a text that `stop` separates outside of quotes and brackets.
-fn parts(text: &str, stop: char) -> impl Iterator<Item = &str> {
-    let mut rest = Some(text);
-    std::iter::from_fn(move || {
-        let (part, found, after) = until(rest?, &[stop]);
-        rest = found.map(|_| after);
-        Some(part)
-    })
-}
-
-/// Splits at the first of `stops` outside of quotes and brackets: the text before it, the letter,
-/// the text after it.
-fn until<'a>(text: &'a str, stops: &[char]) -> (&'a str, Option<char>, &'a str) {
-    let mut input = Parser::new(text);
-    loop {
-        let stop = match input.next_including_whitespace() {
-            Ok(Token::Semicolon) => ';',
-            Ok(Token::Comma) => ',',
-            Ok(Token::CurlyBracketBlock) => '{',
-            Ok(Token::CloseCurlyBracket) => '}',
-            Ok(_) => continue,
-            Err(_) => return (text, None, ""),
-        };
-        if stops.contains(&stop) {
-            let after = input.position().byte_index();
-            return (&text[..after - 1], Some(stop), &text[after..]);
-        }
-    }
-}
-
-/// Comments become blanks, their line ends stay.
-pub(crate) fn without_comments(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(at) = rest.find(['"', '\'', '/']) {
-        let (before, found) = rest.split_at(at);
-        out.push_str(before);
-        let comment = found.strip_prefix("/*");
-        rest = match comment {
-            Some(comment) => {
-                let (comment, after) = comment.split_once("*/").unwrap_or((comment, ""));
-                out.push(' ');
-                out.extend(comment.chars().filter(|&c| c == '\n'));
-                after
-            }
-            None => {
-                let length = string_length(found);
-                out.push_str(&found[..length]);
-                &found[length..]
-            }
-        };
-    }
-    out.push_str(rest);
-    out
-}
-
-/// Length of the string that a text begins with, to the end of its line at most; 1 for another
-/// letter.
-fn string_length(text: &str) -> usize {
-    let mut letters = text.char_indices();
-    let quote = letters.next().map(|(_, c)| c).filter(|c| *c != '/');
-    while let (Some(quote), Some((i, c))) = (quote, letters.next()) {
-        match c {
-            '\\' => drop(letters.next()),
-            '\n' => return i,
-            c if c == quote => return i + 1,
-            _ => {}
-        }
-    }
-    quote.map_or(1, |_| text.len())
 }
