@@ -74,8 +74,11 @@ pub(crate) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
     }
 }
 
+/// Takes a unit of UTF-16 from two bytes.
+type ReadUnit = fn([u8; 2]) -> u16;
+
 /// How a unit of UTF-16 is read, and the bytes of the mark.
-fn wide(bytes: &[u8]) -> Option<(fn([u8; 2]) -> u16, usize)> {
+fn wide(bytes: &[u8]) -> Option<(ReadUnit, usize)> {
     match bytes {
         [0xff, 0xfe, ..] => Some((u16::from_le_bytes, 2)),
         [0xfe, 0xff, ..] => Some((u16::from_be_bytes, 2)),
