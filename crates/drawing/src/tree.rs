@@ -29,7 +29,12 @@ impl Drawing {
     /// Returns true if anything is translucent.
     #[must_use]
     pub fn has_translucency(&self) -> bool {
-        has_translucency(&self.content)
+        any(&self.content, &|node| match node {
+            Node::Group(group) => group.opacity < 1.0,
+            Node::Path(path) => {
+                path.color[3] < 1.0 || path.lightest.is_some_and(|(color, _)| color[3] < 1.0)
+            }
+        })
     }
 }
 
@@ -169,18 +174,24 @@ impl Group {
     }
 }
 
+/// Returns true if `is` is true for any of the nodes or of those in them.
+fn any(nodes: &[Node], is: &dyn Fn(&Node) -> bool) -> bool {
+    let within = |node: &Node| matches!(node, Node::Group(group) if any(&group.children, is));
+    nodes.iter().any(|node| is(node) || within(node))
+}
+
 /// Returns true if anything is painted.
 pub(crate) fn is_painted(nodes: &[Node]) -> bool {
-    nodes.iter().any(|node| match node {
-        Node::Group(group) => is_painted(&group.children),
+    any(nodes, &|node| match node {
+        Node::Group(_) => false,
         Node::Path(path) => path.color[3] > 0.0 || path.lightest.is_some(),
     })
 }
 
 /// Returns true if paint may reach beyond the geometry: strokes and markers.
 fn exceeds(nodes: &[Node]) -> bool {
-    nodes.iter().any(|node| match node {
-        Node::Group(group) => group.is_marker || exceeds(&group.children),
+    any(nodes, &|node| match node {
+        Node::Group(group) => group.is_marker,
         Node::Path(path) => path.band.is_some(),
     })
 }
@@ -204,13 +215,4 @@ pub(crate) fn bounds(nodes: &[Node], transform: Affine) -> Option<Rect> {
         Node::Path(path) => Some((transform * &path.curve).bounding_box()),
     });
     boxes.reduce(|a, b| a.union(b))
-}
-
-fn has_translucency(nodes: &[Node]) -> bool {
-    nodes.iter().any(|node| match node {
-        Node::Group(group) => group.opacity < 1.0 || has_translucency(&group.children),
-        Node::Path(path) => {
-            path.color[3] < 1.0 || path.lightest.is_some_and(|(color, _)| color[3] < 1.0)
-        }
-    })
 }

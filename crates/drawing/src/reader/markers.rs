@@ -8,7 +8,7 @@ use crate::reader::viewport::{fitted, view_box};
 use crate::reader::{Place, Reader, Shown};
 use crate::style::Style;
 use crate::tree::{Clip, Group, Node as Drawn};
-use crate::value::{Value, length, radians, split_number};
+use crate::value::{length, radians, split_number};
 use kurbo::{Affine, PathEl, Point, Rect, Vec2};
 use roxmltree::Node;
 
@@ -94,7 +94,8 @@ impl<'a> Reader<'a> {
         let size = |name: &str, whole: f64, usual: f64| {
             let text = attribute(marker, name).map(str::trim);
             let read = text.map(|t| length(t, style.fonts, true));
-            read.and_then(Value::ok).map_or(usual, |l| l.of(whole))
+            read.and_then(|read| read.ok())
+                .map_or(usual, |l| l.of(whole))
         };
         let own = (
             size("markerWidth", place.viewport.0, 3.0),

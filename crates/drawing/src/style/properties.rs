@@ -6,10 +6,11 @@ use crate::notes::Notes;
 use crate::style::reading::Reading;
 use crate::style::{Own, Reference, Style};
 use crate::tree::FillRule;
+use crate::value::Unusable::{Unread, Wrong};
 use crate::value::color::color;
 use crate::value::paint::{Paint, is_display, order, paint, path_data, positive, target, words};
 use crate::value::transform::{Base, origin, property, transform};
-use crate::value::{Value, alpha, length, list, number};
+use crate::value::{alpha, length, list, number};
 use kurbo::{Cap, Join};
 use roxmltree::Node;
 use std::rc::Rc;
@@ -100,14 +101,14 @@ impl StyleReader<'_, '_> {
         let font_size = |text: &str, css: bool| {
             let word = text.to_ascii_lowercase();
             if let Some((_, step)) = SIZES.iter().find(|(known, _)| *known == word) {
-                return Value::Is(16.0 * step);
+                return Ok(16.0 * step);
             }
             match word.as_str() {
-                "smaller" => Value::Is(parent.own / 1.2),
-                "larger" => Value::Is(parent.own * 1.2),
+                "smaller" => Ok(parent.own / 1.2),
+                "larger" => Ok(parent.own * 1.2),
                 _ => match length(text, parent, !css).map(|l| l.of(parent.own)) {
                     // Fonts matter only to lengths in em.
-                    Value::Unread(_) => Value::Is(parent.own),
+                    Err(Unread(_)) => Ok(parent.own),
                     other => other,
                 },
             }
@@ -118,7 +119,7 @@ impl StyleReader<'_, '_> {
         }
         let fonts = r.style.fonts;
         let plain = |text: &str, _: bool| match text.eq_ignore_ascii_case("currentcolor") {
-            true => Value::Is(Paint::Current),
+            true => Ok(Paint::Current),
             false => color(text).map(Paint::Color),
         };
         let any = |text: &str, _: bool| paint(text);
@@ -141,13 +142,16 @@ impl StyleReader<'_, '_> {
         let visible = words(&[("visible", true), ("hidden", false), ("collapse", false)]);
         let positive = |text: &str, _: bool| positive(length(text, fonts, true));
         let limit = |text: &str, _: bool| match number(text) {
-            Value::Is(v) if v < 0.0 => Value::Wrong,
+            Ok(v) if v < 0.0 => Err(Wrong),
             other => other,
         };
         let dashes = |text: &str, css: bool| match text.eq_ignore_ascii_case("none") {
-            true => Value::Is(Vec::new()),
-            false if text.split(',').any(|part| part.trim().is_empty()) => Value::Wrong,
-            false => Value::all(list(text).into_iter().map(|part| positive(part, css))),
+            true => Ok(Vec::new()),
+            false if text.split(',').any(|part| part.trim().is_empty()) => Err(Wrong),
+            false => list(text)
+                .into_iter()
+                .map(|part| positive(part, css))
+                .collect(),
         };
         let order = |text: &str, _: bool| order(text);
         properties! { r
@@ -184,27 +188,26 @@ impl StyleReader<'_, '_> {
         let name = r.reading.node.tag_name().name();
         let is_container = matches!(name, "g" | "svg" | "use" | "a" | "switch");
         let display = |text: &str, _: bool| match text.to_ascii_lowercase().as_str() {
-            "none" => Value::Is(false),
+            "none" => Ok(false),
             // Shapes have no content of their own.
-            "contents" => Value::Is(is_container),
-            word => Value::from_option(is_display(word).then_some(true)),
+            "contents" => Ok(is_container),
+            word => is_display(word).then_some(true).ok_or(Wrong),
         };
         let clip = |text: &str, css: bool| match target(text, css) {
-            Value::Wrong if text.contains('(') || text.ends_with("-box") => {
-                Value::Unread("clip with a <clipPath>")
+            Err(Wrong) if text.contains('(') || text.ends_with("-box") => {
+                Err(Unread("clip with a <clipPath>"))
             }
             other => other,
         };
         let mask = |text: &str, css: bool| match target(text, css) {
-            Value::Wrong => Value::Unread("clip with a path, or cut the shape"),
+            Err(Wrong) => Err(Unread("clip with a path, or cut the shape")),
             other => other,
         };
         let filter = |text: &str, css: bool| match target(text, css) {
-            Value::Wrong if text.contains('(') => Value::Unread("remove it"),
+            Err(Wrong) if text.contains('(') => Err(Unread("remove it")),
             other => other,
         };
-        let effect =
-            |text: &str, _: bool| Value::Is(text.eq_ignore_ascii_case("non-scaling-stroke"));
+        let effect = |text: &str, _: bool| Ok(text.eq_ignore_ascii_case("non-scaling-stroke"));
         let overflow = [
             ("visible", true),
             ("auto", true),
@@ -241,7 +244,7 @@ impl StyleReader<'_, '_> {
             let remedy = "draw a shape of one colour instead";
             r.reading.refuse("background-image", &["none"], remedy);
             let ground = |text: &str, _: bool| match paint(text) {
-                Value::Wrong => Value::Unread("draw a rectangle of one colour instead"),
+                Err(Wrong) => Err(Unread("draw a rectangle of one colour instead")),
                 other => other,
             };
             for name in ["background", "background-color"] {
@@ -303,7 +306,7 @@ impl StyleReader<'_, '_> {
             let mut slot = None;
             let is_size = matches!(name, "width" | "height" | "r");
             let read = |text: &str, css: bool| match length(text, fonts, !css) {
-                _ if text.eq_ignore_ascii_case("auto") => Value::Is(None),
+                _ if text.eq_ignore_ascii_case("auto") => Ok(None),
                 read if is_size => positive(read).map(Some),
                 read => read.map(Some),
             };

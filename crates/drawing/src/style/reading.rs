@@ -6,7 +6,9 @@ use crate::css::custom::{Custom, filled};
 use crate::css::one_line;
 use crate::fault::{Fault, Result};
 use crate::notes::{Notes, unsupported};
+use crate::value::Unusable::{Unread, Wrong};
 use crate::value::Value;
+use crate::value::color::before_profile;
 use crate::value::paint::Paint;
 use roxmltree::Node;
 use std::rc::Rc;
@@ -79,8 +81,12 @@ impl Reading<'_, '_> {
                 _ if value.eq_ignore_ascii_case("revert-layer") => {
                     return Some(unread("not read; write the value"));
                 }
-                Value::Is(v) => {
-                    if let Some(Trouble::Unread(text)) = trouble {
+                Ok(v) => {
+                    if before_profile(&value).is_some() {
+                        let how = "its sRGB colour counts, not the one after it";
+                        self.notes
+                            .warn(format!("the drawing has {}; {how}", said()));
+                    } else if let Some(Trouble::Unread(text)) = trouble {
                         let text = text.split(';').next().unwrap_or_default();
                         let how = "the declaration before it counts";
                         self.notes.warn(format!("{text}; {how}"));
@@ -88,13 +94,7 @@ impl Reading<'_, '_> {
                     *slot = v;
                     return None;
                 }
-                Value::Near(v, how) => {
-                    self.notes
-                        .warn(format!("the drawing has {}; {how}", said()));
-                    *slot = v;
-                    return None;
-                }
-                Value::Unread(remedy) => {
+                Err(Unread(remedy)) => {
                     let unread = unread(&format!("not read; {remedy}"));
                     if !lenient {
                         return Some(unread);
@@ -102,11 +102,11 @@ impl Reading<'_, '_> {
                     trouble.get_or_insert(unread);
                 }
                 // Browsers find this too late to go back to the declaration before it.
-                Value::Wrong if d.value.contains("var(") => {
+                Err(Wrong) if d.value.contains("var(") => {
                     *slot = of_word(Wide::Unset);
                     return None;
                 }
-                Value::Wrong => {
+                Err(Wrong) => {
                     let text = format!("the drawing has {}, which is not valid", said());
                     trouble.get_or_insert(Trouble::Wrong(text));
                 }

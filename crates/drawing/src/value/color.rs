@@ -1,6 +1,7 @@
 //! Colours of CSS, as values of sRGB.
 
 use crate::element::is_in;
+use crate::value::Unusable::{Unread, Wrong};
 use crate::value::Value;
 use ::color::{ColorSpaceTag, Srgb, parse_color};
 
@@ -46,51 +47,44 @@ pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
 /// ```
 #[must_use]
 pub fn css_color(text: &str) -> Option<[f32; 4]> {
-    match color(text.trim()) {
-        Value::Is(color) => Some(color),
-        _ => None,
-    }
+    let text = text.trim();
+    let color = color(text).ok();
+    color.filter(|_| before_profile(text).is_none())
+}
+
+/// The colour of sRGB before one of a profile.
+pub(crate) fn before_profile(text: &str) -> Option<&str> {
+    let small = text.to_ascii_lowercase();
+    let places = ["icc-color(", "device-color("].map(|word| small.find(word));
+    let at = places.into_iter().flatten().min().filter(|at| *at > 0)?;
+    Some(text[..at].trim())
 }
 
 /// Reads a colour. `currentColor` is left to the caller.
 pub(crate) fn color(text: &str) -> Value<Color> {
-    let small = text.to_ascii_lowercase();
-    let profile = ["icc-color(", "device-color("].iter();
-    if let Some(at) = profile
-        .filter_map(|word| small.find(word))
-        .min()
-        .filter(|at| *at > 0)
-    {
-        return match color(text[..at].trim()) {
-            Value::Is(color) => Value::Near(color, "its sRGB colour counts, not the one after it"),
-            other => other,
-        };
+    if let Some(before) = before_profile(text) {
+        return color(before);
     }
+    let small = text.to_ascii_lowercase();
     match (small.as_str(), small.split_once('(')) {
-        (_, Some((name, arguments))) => match function(name, arguments) {
-            Value::Is(()) => {}
-            Value::Unread(remedy) => return Value::Unread(remedy),
-            _ => return Value::Wrong,
-        },
-        ("canvas", _) => return Value::Is([1.0; 4]),
-        ("canvastext", _) => return Value::Is(BLACK),
-        (name, _) if is_in(SYSTEM, name) => return Value::Unread(REMEDY),
+        (_, Some((name, arguments))) => function(name, arguments)?,
+        ("canvas", _) => return Ok([1.0; 4]),
+        ("canvastext", _) => return Ok(BLACK),
+        (name, _) if is_in(SYSTEM, name) => return Err(Unread(REMEDY)),
         _ => {}
     }
-    let Ok(mut read) = parse_color(&small) else {
-        return Value::Wrong;
-    };
+    let mut read = parse_color(&small).map_err(|_| Wrong)?;
     if read.cs == ColorSpaceTag::Hsl {
         read.components[1] = read.components[1].min(100.0);
     }
     let components = read.to_alpha_color::<Srgb>().components;
-    Value::Is(components.map(|v| v.clamp(0.0, 1.0)))
+    Ok(components.map(|v| v.clamp(0.0, 1.0)))
 }
 
 /// Checks what `parse_color` is lax about.
 fn function(name: &str, arguments: &str) -> Value<()> {
     let Some(arguments) = arguments.strip_suffix(')') else {
-        return Value::Wrong;
+        return Err(Wrong);
     };
     let [read, known] = FUNCTIONS.map(|list| is_in(list, name));
     let ends = |c: char| c.is_ascii_whitespace() || c == ',';
@@ -102,22 +96,23 @@ fn function(name: &str, arguments: &str) -> Value<()> {
     let is_unread = arguments.contains('(') || space == "from";
     match (read, known) {
         (true, _) if !is_unread => {}
-        (false, false) => return Value::Wrong,
-        _ => return Value::Unread(REMEDY),
+        (false, false) => return Err(Wrong),
+        _ => return Err(Unread(REMEDY)),
     }
     if name == "color" && !SPACES.contains(&space) {
-        return Value::Unread(REMEDY);
+        return Err(Unread(REMEDY));
     }
     // Commas are of the older notation.
     let parts: Vec<bool> = arguments
         .split(',')
         .map(|part| part.trim().ends_with('%'))
         .collect();
-    Value::from_option(match parts[..] {
-        [_] => Some(()),
-        _ if arguments.contains("none") => None,
-        [a, b, c, ..] if name.starts_with("rgb") => (a == b && b == c).then_some(()),
-        [_, b, c, ..] => (b && c).then_some(()),
-        _ => None,
-    })
+    let is_valid = match parts[..] {
+        [_] => true,
+        _ if arguments.contains("none") => false,
+        [a, b, c, ..] if name.starts_with("rgb") => a == b && b == c,
+        [_, b, c, ..] => b && c,
+        _ => false,
+    };
+    is_valid.then_some(()).ok_or(Wrong)
 }

@@ -5,60 +5,31 @@ pub(crate) mod paint;
 pub(crate) mod transform;
 
 use crate::element::is_in;
+use Unusable::{Unread, Wrong};
 use std::rc::Rc;
 
-/// The reading of a value.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value<T> {
-    Is(T),
-    /// Read only in part; the text says how.
-    Near(T, &'static str),
+/// A value that is read, or why it is not.
+pub(crate) type Value<T> = Result<T, Unusable>;
+
+/// Why a value is not read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Unusable {
     /// Not valid: browsers ignore it.
     Wrong,
     /// Valid in browsers and not read here; the text is the remedy.
     Unread(&'static str),
 }
 
-impl<T> Value<T> {
-    pub fn from_option(value: Option<T>) -> Self {
-        value.map_or(Self::Wrong, Self::Is)
-    }
-
-    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Value<U> {
-        match self {
-            Self::Is(v) => Value::Is(f(v)),
-            Self::Near(v, how) => Value::Near(f(v), how),
-            Self::Wrong => Value::Wrong,
-            Self::Unread(remedy) => Value::Unread(remedy),
-        }
-    }
-
-    /// The values of a list, or the first that is none.
-    pub fn all(list: impl Iterator<Item = Self>) -> Value<Vec<T>> {
-        let mut all = Vec::new();
-        for value in list {
-            match value {
-                Self::Is(v) | Self::Near(v, _) => all.push(v),
-                Self::Wrong => return Value::Wrong,
-                Self::Unread(remedy) => return Value::Unread(remedy),
-            }
-        }
-        Value::Is(all)
-    }
-
-    /// No value: not read if it is a function, else not valid.
-    pub fn none(text: &str, remedy: &'static str) -> Self {
-        match text.contains('(') {
-            true => Self::Unread(remedy),
-            false => Self::Wrong,
-        }
-    }
-
-    pub fn ok(self) -> Option<T> {
-        match self {
-            Self::Is(v) | Self::Near(v, _) => Some(v),
-            Self::Wrong | Self::Unread(_) => None,
-        }
+/// The value of a number and its unit. Other text is not read if it is a function, else not valid.
+pub(crate) fn measured<T>(
+    text: &str,
+    remedy: &'static str,
+    value: impl FnOnce(f64, &str) -> Value<T>,
+) -> Value<T> {
+    match split_number(text) {
+        Some((number, unit)) => value(number, unit),
+        None if text.contains('(') => Err(Unread(remedy)),
+        None => Err(Wrong),
     }
 }
 
@@ -112,45 +83,45 @@ const UNREAD_UNITS: &str = "vw vh vi vb vmin vmax dvw dvh dvi dvb dvmin dvmax sv
     lvw lvh lvi lvb lvmin lvmax lh rlh cap rcap ic ric rex rch cqw cqh cqi cqb cqmin cqmax";
 
 pub(crate) fn number(text: &str) -> Value<f64> {
-    match split_number(text) {
-        Some((v, "")) => Value::Is(v),
-        None => Value::none(text, NUMBER),
-        _ => Value::Wrong,
-    }
+    let plain = |v: f64, unit: &str| unit.is_empty().then_some(v).ok_or(Wrong);
+    measured(text, NUMBER, plain)
+}
+
+/// A number or percentage.
+pub(crate) fn factor(text: &str) -> Value<f64> {
+    measured(text, NUMBER, |v, unit| match unit {
+        "" => Ok(v),
+        "%" => Ok(v / 100.0),
+        _ => Err(Wrong),
+    })
 }
 
 /// A number or percentage from 0 to 1.
 pub(crate) fn alpha(text: &str) -> Value<f32> {
-    match split_number(text) {
-        Some((v, "")) => Value::Is(v.clamp(0.0, 1.0) as f32),
-        Some((v, "%")) => Value::Is((v / 100.0).clamp(0.0, 1.0) as f32),
-        None => Value::none(text, NUMBER),
-        _ => Value::Wrong,
-    }
+    factor(text).map(|v| v.clamp(0.0, 1.0) as f32)
 }
 
 /// A length. `plain` lengths need no unit.
 pub(crate) fn length(text: &str, fonts: Fonts, plain: bool) -> Value<Length> {
-    let Some((v, unit)) = split_number(text) else {
-        return Value::none(text, LENGTH);
-    };
-    let factor = match unit.to_ascii_lowercase().as_str() {
-        "" if plain || v == 0.0 => 1.0,
-        "px" => 1.0,
-        "%" => return Value::Is(Length::Part(v / 100.0)),
-        "em" => fonts.own,
-        "rem" => fonts.root,
-        "ex" | "ch" => 0.5 * fonts.own,
-        "in" => 96.0,
-        "cm" => 96.0 / 2.54,
-        "mm" => 96.0 / 25.4,
-        "q" => 96.0 / 101.6,
-        "pt" => 96.0 / 72.0,
-        "pc" => 16.0,
-        unit if is_in(UNREAD_UNITS, unit) => return Value::Unread(LENGTH),
-        _ => return Value::Wrong,
-    };
-    Value::Is(Length::Px(v * factor))
+    measured(text, LENGTH, |v, unit| {
+        let factor = match unit.to_ascii_lowercase().as_str() {
+            "" if plain || v == 0.0 => 1.0,
+            "px" => 1.0,
+            "%" => return Ok(Length::Part(v / 100.0)),
+            "em" => fonts.own,
+            "rem" => fonts.root,
+            "ex" | "ch" => 0.5 * fonts.own,
+            "in" => 96.0,
+            "cm" => 96.0 / 2.54,
+            "mm" => 96.0 / 25.4,
+            "q" => 96.0 / 101.6,
+            "pt" => 96.0 / 72.0,
+            "pc" => 16.0,
+            unit if is_in(UNREAD_UNITS, unit) => return Err(Unread(LENGTH)),
+            _ => return Err(Wrong),
+        };
+        Ok(Length::Px(v * factor))
+    })
 }
 
 /// An angle of CSS in radians, by its number and unit.

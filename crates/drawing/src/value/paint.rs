@@ -1,6 +1,7 @@
 //! Values of properties: words, paints, addresses.
 
 use crate::element::is_in;
+use crate::value::Unusable::Wrong;
 use crate::value::color::{Color, color};
 use crate::value::{Length, Target, Value, list, url};
 use std::rc::Rc;
@@ -25,13 +26,13 @@ pub(crate) fn words<T: Clone>(list: &[(&'static str, T)]) -> impl Fn(&str, bool)
         let found = list
             .iter()
             .find(|(word, _)| text.eq_ignore_ascii_case(word));
-        Value::from_option(found.map(|(_, value)| value.clone()))
+        found.map(|(_, value)| value.clone()).ok_or(Wrong)
     }
 }
 
 pub(crate) fn positive(length: Value<Length>) -> Value<Length> {
     match length {
-        Value::Is(Length::Px(v) | Length::Part(v)) if v < 0.0 => Value::Wrong,
+        Ok(Length::Px(v) | Length::Part(v)) if v < 0.0 => Err(Wrong),
         other => other,
     }
 }
@@ -39,19 +40,19 @@ pub(crate) fn positive(length: Value<Length>) -> Value<Length> {
 pub(crate) fn paint(text: &str) -> Value<Paint> {
     if let Some((target, fallback)) = url(text) {
         if fallback.is_empty() {
-            return Value::Is(Paint::Server(target, None));
+            return Ok(Paint::Server(target, None));
         }
         // Only a colour may follow.
         if url(fallback).is_some() {
-            return Value::Wrong;
+            return Err(Wrong);
         }
         return paint(fallback).map(|f| Paint::Server(target, Some(Box::new(f))));
     }
     match text.to_ascii_lowercase().as_str() {
-        "none" => Value::Is(Paint::None),
-        "currentcolor" => Value::Is(Paint::Current),
-        "context-fill" => Value::Is(Paint::Context(false)),
-        "context-stroke" => Value::Is(Paint::Context(true)),
+        "none" => Ok(Paint::None),
+        "currentcolor" => Ok(Paint::Current),
+        "context-fill" => Ok(Paint::Context(false)),
+        "context-stroke" => Ok(Paint::Context(true)),
         _ => color(text).map(Paint::Color),
     }
 }
@@ -65,28 +66,28 @@ pub(crate) fn is_display(word: &str) -> bool {
 /// `none` or `url(#name)`.
 pub(crate) fn target(text: &str, _: bool) -> Value<Option<Target>> {
     if text.eq_ignore_ascii_case("none") {
-        return Value::Is(None);
+        return Ok(None);
     }
     match url(text) {
-        Some((target, "")) => Value::Is(Some(target)),
-        _ => Value::Wrong,
+        Some((target, "")) => Ok(Some(target)),
+        _ => Err(Wrong),
     }
 }
 
 /// The property `d`, which browsers read from CSS as `path("...")`.
 pub(crate) fn path_data(text: &str, css: bool) -> Value<Option<String>> {
     if !css {
-        return Value::Is(Some(text.to_owned()));
+        return Ok(Some(text.to_owned()));
     }
     if text.eq_ignore_ascii_case("none") {
-        return Value::Is(None);
+        return Ok(None);
     }
     let inner = text.strip_prefix("path(").and_then(|t| t.strip_suffix(')'));
     let quoted = inner.map(str::trim).and_then(|t| {
         let within = |q: char| t.strip_prefix(q).and_then(|t| t.strip_suffix(q));
         within('"').or_else(|| within('\''))
     });
-    Value::from_option(quoted.map(|t| Some(t.to_owned())))
+    quoted.map(|t| Some(t.to_owned())).ok_or(Wrong)
 }
 
 /// The order of painting: what is named comes first.
@@ -104,9 +105,9 @@ pub(crate) fn order(text: &str) -> Value<[u8; 3]> {
             .position(|w| *w == word)
         {
             Some(k) if !order.contains(&(k as u8)) => order.push(k as u8),
-            _ => return Value::Wrong,
+            _ => return Err(Wrong),
         }
     }
     let rest: Vec<u8> = (0..3).filter(|k| !order.contains(k)).collect();
-    Value::from_option([order, rest].concat().try_into().ok())
+    [order, rest].concat().try_into().map_err(|_| Wrong)
 }

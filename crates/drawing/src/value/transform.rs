@@ -1,6 +1,7 @@
 //! Transforms of attributes (`rotate(90 5 5)`) and of CSS (`rotate(90deg)`).
 
-use crate::value::{Fonts, NUMBER, Value, length, list, number, radians, split_number};
+use crate::value::Unusable::{Unread, Wrong};
+use crate::value::{Fonts, NUMBER, Value, factor, length, list, measured, number, radians};
 use kurbo::{Affine, Vec2};
 use svgtypes::Transform;
 
@@ -22,11 +23,10 @@ impl Base {
 
 /// An angle in radians.
 fn angle(text: &str) -> Value<f64> {
-    match split_number(text) {
-        Some((0.0, "")) => Value::Is(0.0),
-        Some((v, unit)) => Value::from_option(radians(v, unit)),
-        None => Value::none(text, NUMBER),
-    }
+    measured(text, NUMBER, |v, unit| match unit {
+        "" if v == 0.0 => Ok(0.0),
+        unit => radians(v, unit).ok_or(Wrong),
+    })
 }
 
 /// Reads a list of transform functions.
@@ -34,27 +34,20 @@ pub(crate) fn transform(text: &str, base: Base) -> Value<Affine> {
     let mut rest = text.trim();
     let mut product = Affine::IDENTITY;
     if rest.eq_ignore_ascii_case("none") {
-        return Value::Is(product);
+        return Ok(product);
     }
     if !base.css {
-        return Value::from_option(of_attribute(rest));
+        return of_attribute(rest).ok_or(Wrong);
     }
     while !rest.is_empty() {
-        let Some((name, after)) = rest.split_once('(') else {
-            return Value::Wrong;
-        };
+        let (name, after) = rest.split_once('(').ok_or(Wrong)?;
         // Parentheses within are of functions such as calc(), which are not read.
-        let Some((arguments, after)) = after.split_once(')') else {
-            return Value::Wrong;
-        };
+        let (arguments, after) = after.split_once(')').ok_or(Wrong)?;
         let arguments: Vec<&str> = arguments.split(',').map(str::trim).collect();
-        match function(name, &arguments, base) {
-            Value::Is(factor) => product *= factor,
-            other => return other,
-        }
+        product *= function(name, &arguments, base)?;
         rest = after.trim_start();
     }
-    Value::from_option(Some(product).filter(Affine::is_finite))
+    Some(product).filter(Affine::is_finite).ok_or(Wrong)
 }
 
 /// The attribute `transform`. Its parser takes a comma at the end of a list, browsers do not.
@@ -69,47 +62,34 @@ fn of_attribute(text: &str) -> Option<Affine> {
 /// The remedy for transforms in space.
 const MATRIX: &str = "write the transform with matrix(a, b, c, d, e, f)";
 
-/// The first value that is not read ends the function.
-macro_rules! read {
-    ($value:expr) => {
-        match $value {
-            Value::Is(v) | Value::Near(v, _) => v,
-            Value::Wrong => return Value::Wrong,
-            Value::Unread(remedy) => return Value::Unread(remedy),
-        }
-    };
-}
-
 fn function(name: &str, arguments: &[&str], base: Base) -> Value<Affine> {
     let (width, height) = base.size;
     if arguments.iter().any(|a| a.contains('(')) {
-        return Value::Unread(NUMBER);
+        return Err(Unread(NUMBER));
     }
-    Value::Is(match (name.to_ascii_lowercase().as_str(), arguments) {
+    Ok(match (name.to_ascii_lowercase().as_str(), arguments) {
         ("matrix", &[a, b, c, d, e, f]) => {
             let mut values = [0.0; 6];
             for (value, text) in values.iter_mut().zip([a, b, c, d, e, f]) {
-                *value = read!(number(text));
+                *value = number(text)?;
             }
             Affine::new(values)
         }
-        ("translate" | "translatex", &[x]) => {
-            Affine::translate((read!(base.length(x, width)), 0.0))
-        }
+        ("translate" | "translatex", &[x]) => Affine::translate((base.length(x, width)?, 0.0)),
         ("translate", &[x, y]) => {
-            Affine::translate((read!(base.length(x, width)), read!(base.length(y, height))))
+            Affine::translate((base.length(x, width)?, base.length(y, height)?))
         }
-        ("translatey", &[y]) => Affine::translate((0.0, read!(base.length(y, height)))),
-        ("scale", &[s]) => Affine::scale(read!(factor(s))),
-        ("scale", &[x, y]) => Affine::scale_non_uniform(read!(factor(x)), read!(factor(y))),
-        ("scalex", &[x]) => Affine::scale_non_uniform(read!(factor(x)), 1.0),
-        ("scaley", &[y]) => Affine::scale_non_uniform(1.0, read!(factor(y))),
-        ("rotate" | "rotatez", &[turn]) => Affine::rotate(read!(angle(turn))),
-        ("skewx" | "skew", &[x]) => Affine::skew(read!(angle(x)).tan(), 0.0),
-        ("skewy", &[y]) => Affine::skew(0.0, read!(angle(y)).tan()),
-        ("skew", &[x, y]) => Affine::skew(read!(angle(x)).tan(), read!(angle(y)).tan()),
-        (name, _) if is_spatial(name) => return Value::Unread(MATRIX),
-        _ => return Value::Wrong,
+        ("translatey", &[y]) => Affine::translate((0.0, base.length(y, height)?)),
+        ("scale", &[s]) => Affine::scale(factor(s)?),
+        ("scale", &[x, y]) => Affine::scale_non_uniform(factor(x)?, factor(y)?),
+        ("scalex", &[x]) => Affine::scale_non_uniform(factor(x)?, 1.0),
+        ("scaley", &[y]) => Affine::scale_non_uniform(1.0, factor(y)?),
+        ("rotate" | "rotatez", &[turn]) => Affine::rotate(angle(turn)?),
+        ("skewx" | "skew", &[x]) => Affine::skew(angle(x)?.tan(), 0.0),
+        ("skewy", &[y]) => Affine::skew(0.0, angle(y)?.tan()),
+        ("skew", &[x, y]) => Affine::skew(angle(x)?.tan(), angle(y)?.tan()),
+        (name, _) if is_spatial(name) => return Err(Unread(MATRIX)),
+        _ => return Err(Wrong),
     })
 }
 
@@ -121,19 +101,12 @@ fn is_spatial(name: &str) -> bool {
         )
 }
 
-fn factor(text: &str) -> Value<f64> {
-    match split_number(text) {
-        Some((v, "%")) => Value::Is(v / 100.0),
-        _ => number(text),
-    }
-}
-
 /// The property `translate`, `rotate` or `scale`.
 pub(crate) fn property(text: &str, name: &str, base: Base) -> Value<Affine> {
     let arguments = list(text);
     match arguments.as_slice() {
-        ["none"] => Value::Is(Affine::IDENTITY),
-        &[_, _, _] | &[_, _, _, _] => Value::Unread(MATRIX),
+        ["none"] => Ok(Affine::IDENTITY),
+        &[_, _, _] | &[_, _, _, _] => Err(Unread(MATRIX)),
         arguments => function(name, arguments, base),
     }
 }
@@ -146,16 +119,16 @@ pub(crate) fn origin(text: &str, base: Base) -> Value<Vec2> {
     let (mut x, mut y) = match parts.as_slice() {
         &[x] => (x, "center"),
         &[x, y] | &[x, y, _] => (x, y),
-        _ => return Value::Wrong,
+        _ => return Err(Wrong),
     };
     if matches!(x, "top" | "bottom") || matches!(y, "left" | "right") {
         (x, y) = (y, x);
     }
     let place = |text: &str, whole: f64| match text {
-        "left" | "top" => Value::Is(0.0),
-        "center" => Value::Is(0.5 * whole),
-        "right" | "bottom" => Value::Is(whole),
+        "left" | "top" => Ok(0.0),
+        "center" => Ok(0.5 * whole),
+        "right" | "bottom" => Ok(whole),
         text => base.length(text, whole),
     };
-    Value::Is(Vec2::new(read!(place(x, width)), read!(place(y, height))))
+    Ok(Vec2::new(place(x, width)?, place(y, height)?))
 }
