@@ -3,8 +3,9 @@
 use crate::css::cascade::Sheets;
 use crate::fault::Result;
 use crate::notes::Notes;
+use crate::style::Reference::{Fill, Stroke, View};
 use crate::style::reading::Reading;
-use crate::style::{Own, Reference, Style};
+use crate::style::{Own, Style};
 use crate::tree::FillRule;
 use crate::value::Unusable::{Unread, Wrong};
 use crate::value::color::color;
@@ -35,17 +36,6 @@ const REFUSED: [(&str, &[&str], &str); 5] = [
         &["none"],
         "clip with a path, or cut the shape",
     ),
-];
-
-/// Words of `font-size`, in parts of 16 pixels.
-const SIZES: [(&str, f64); 7] = [
-    ("xx-small", 0.5625),
-    ("x-small", 0.625),
-    ("small", 0.8125),
-    ("medium", 1.0),
-    ("large", 1.125),
-    ("x-large", 1.5),
-    ("xx-large", 2.0),
 ];
 
 /// Reads properties in order. A row has the name, the field of the style, whether it is inherited,
@@ -98,12 +88,15 @@ impl StyleReader<'_, '_> {
     fn inherited(&mut self) -> Result<()> {
         let r = self;
         let parent = r.parent.fonts;
+        let sizes = words(
+            "xx-small x-small small medium large x-large xx-large",
+            [9.0, 10.0, 13.0, 16.0, 18.0, 24.0, 32.0],
+        );
         let font_size = |text: &str, css: bool| {
-            let word = text.to_ascii_lowercase();
-            if let Some((_, step)) = SIZES.iter().find(|(known, _)| *known == word) {
-                return Ok(16.0 * step);
+            if let Ok(size) = sizes(text, css) {
+                return Ok(size);
             }
-            match word.as_str() {
+            match text.to_ascii_lowercase().as_str() {
                 "smaller" => Ok(parent.own / 1.2),
                 "larger" => Ok(parent.own * 1.2),
                 _ => match length(text, parent, !css).map(|l| l.of(parent.own)) {
@@ -122,24 +115,11 @@ impl StyleReader<'_, '_> {
             true => Ok(Paint::Current),
             false => color(text).map(Paint::Color),
         };
-        let any = |text: &str, _: bool| paint(text);
-        let alpha = |text: &str, _: bool| alpha(text);
-        let rule = words(&[
-            ("nonzero", FillRule::NonZero),
-            ("evenodd", FillRule::EvenOdd),
-        ]);
+        let rule = words("nonzero evenodd", [FillRule::NonZero, FillRule::EvenOdd]);
         let distance = |text: &str, _: bool| length(text, fonts, true);
-        let caps = [
-            ("butt", Cap::Butt),
-            ("round", Cap::Round),
-            ("square", Cap::Square),
-        ];
-        let joins = [
-            ("miter", Join::Miter),
-            ("round", Join::Round),
-            ("bevel", Join::Bevel),
-        ];
-        let visible = words(&[("visible", true), ("hidden", false), ("collapse", false)]);
+        let caps = words("butt round square", [Cap::Butt, Cap::Round, Cap::Square]);
+        let joins = words("miter round bevel", [Join::Miter, Join::Round, Join::Bevel]);
+        let visible = words("visible hidden collapse", [true, false, false]);
         let positive = |text: &str, _: bool| positive(length(text, fonts, true));
         let limit = |text: &str, _: bool| match number(text) {
             Ok(v) if v < 0.0 => Err(Wrong),
@@ -153,11 +133,10 @@ impl StyleReader<'_, '_> {
                 .map(|part| positive(part, css))
                 .collect(),
         };
-        let order = |text: &str, _: bool| order(text);
         properties! { r
             paint "color" [color] true plain;
-            paint "fill" [fill] true any;
-            paint "stroke" [stroke] true any;
+            paint "fill" [fill] true paint;
+            paint "stroke" [stroke] true paint;
             paint "stop-color" [own.stop_color] false plain;
             value "fill-opacity" [fill_opacity] true alpha;
             value "stroke-opacity" [stroke_opacity] true alpha;
@@ -167,8 +146,8 @@ impl StyleReader<'_, '_> {
             value "clip-rule" [clip_rule] true rule;
             value "stroke-width" [stroke_width] true positive;
             value "stroke-dashoffset" [dash_offset] true distance;
-            value "stroke-linecap" [cap] true words(&caps);
-            value "stroke-linejoin" [join] true words(&joins);
+            value "stroke-linecap" [cap] true caps;
+            value "stroke-linejoin" [join] true joins;
             value "stroke-miterlimit" [miter_limit] true limit;
             value "stroke-dasharray" [dashes] true dashes;
             value "paint-order" [order] true order;
@@ -208,13 +187,10 @@ impl StyleReader<'_, '_> {
             other => other,
         };
         let effect = |text: &str, _: bool| Ok(text.eq_ignore_ascii_case("non-scaling-stroke"));
-        let overflow = [
-            ("visible", true),
-            ("auto", true),
-            ("hidden", false),
-            ("scroll", false),
-            ("clip", false),
-        ];
+        let overflow = words(
+            "visible auto hidden scroll clip",
+            [true, true, false, false, false],
+        );
         properties! { r
             value "display" [own.display] false display;
             value "clip-path" [own.clip_path] false clip;
@@ -223,7 +199,7 @@ impl StyleReader<'_, '_> {
             value "backdrop-filter" [own.filter] false filter;
             value "filter" [own.filter] false filter;
             value "vector-effect" [own.vector_effect] false effect;
-            value "overflow" [own.overflow] false words(&overflow);
+            value "overflow" [own.overflow] false overflow;
         }
         for (name, usual, remedy) in REFUSED {
             r.reading.refuse(name, usual, remedy);
@@ -243,7 +219,7 @@ impl StyleReader<'_, '_> {
         if r.reading.is_root() {
             let remedy = "draw a shape of one colour instead";
             r.reading.refuse("background-image", &["none"], remedy);
-            let ground = |text: &str, _: bool| match paint(text) {
+            let ground = |text: &str, css: bool| match paint(text, css) {
                 Err(Wrong) => Err(Unread("draw a rectangle of one colour instead")),
                 other => other,
             };
@@ -270,13 +246,10 @@ impl StyleReader<'_, '_> {
             transform(text, base(css)).map(|_| Some((text.to_owned(), css)))
         };
         let place = |text: &str, css: bool| origin(text, base(css)).map(|_| Some(text.to_owned()));
-        let reference = [
-            ("view-box", Reference::View),
-            ("fill-box", Reference::Fill),
-            ("content-box", Reference::Fill),
-            ("stroke-box", Reference::Stroke),
-            ("border-box", Reference::Stroke),
-        ];
+        let reference = words(
+            "view-box fill-box content-box stroke-box border-box",
+            [View, Fill, Fill, Stroke, Stroke],
+        );
         properties! { r value "transform" [own.transform] false listed; }
         for (k, name) in Own::MOVED.into_iter().enumerate() {
             if r.reading.declared.css(name).is_some() {
@@ -289,7 +262,7 @@ impl StyleReader<'_, '_> {
         }
         properties! { r
             value "transform-origin" [own.origin] false place;
-            value "transform-box" [own.reference] false words(&reference);
+            value "transform-box" [own.reference] false reference;
         }
         Ok(())
     }

@@ -97,7 +97,7 @@ pub(crate) fn factor(text: &str) -> Value<f64> {
 }
 
 /// A number or percentage from 0 to 1.
-pub(crate) fn alpha(text: &str) -> Value<f32> {
+pub(crate) fn alpha(text: &str, _: bool) -> Value<f32> {
     factor(text).map(|v| v.clamp(0.0, 1.0) as f32)
 }
 

@@ -20,13 +20,15 @@ pub(crate) enum Paint {
     Fault(Rc<str>),
 }
 
-/// A reading of one of these words.
-pub(crate) fn words<T: Clone>(list: &[(&'static str, T)]) -> impl Fn(&str, bool) -> Value<T> {
+/// A reading of one of these words, which blanks separate, as the value in its place.
+pub(crate) fn words<T: Copy, const N: usize>(
+    names: &'static str,
+    values: [T; N],
+) -> impl Fn(&str, bool) -> Value<T> {
     move |text: &str, _: bool| {
-        let found = list
-            .iter()
-            .find(|(word, _)| text.eq_ignore_ascii_case(word));
-        found.map(|(_, value)| value.clone()).ok_or(Wrong)
+        let mut pairs = names.split(' ').zip(values);
+        let found = pairs.find(|(name, _)| text.eq_ignore_ascii_case(name));
+        found.map(|(_, value)| value).ok_or(Wrong)
     }
 }
 
@@ -37,7 +39,7 @@ pub(crate) fn positive(length: Value<Length>) -> Value<Length> {
     }
 }
 
-pub(crate) fn paint(text: &str) -> Value<Paint> {
+pub(crate) fn paint(text: &str, css: bool) -> Value<Paint> {
     if let Some((target, fallback)) = url(text) {
         if fallback.is_empty() {
             return Ok(Paint::Server(target, None));
@@ -46,7 +48,7 @@ pub(crate) fn paint(text: &str) -> Value<Paint> {
         if url(fallback).is_some() {
             return Err(Wrong);
         }
-        return paint(fallback).map(|f| Paint::Server(target, Some(Box::new(f))));
+        return paint(fallback, css).map(|f| Paint::Server(target, Some(Box::new(f))));
     }
     match text.to_ascii_lowercase().as_str() {
         "none" => Ok(Paint::None),
@@ -91,7 +93,7 @@ pub(crate) fn path_data(text: &str, css: bool) -> Value<Option<String>> {
 }
 
 /// The order of painting: what is named comes first.
-pub(crate) fn order(text: &str) -> Value<[u8; 3]> {
+pub(crate) fn order(text: &str, _: bool) -> Value<[u8; 3]> {
     let text = text.to_ascii_lowercase();
     let named = if text == "normal" {
         Vec::new()
