@@ -39,7 +39,7 @@ use reader::{Place, Reader, viewport};
 use value::color::premultiplied;
 use value::paint::Paint;
 
-/// How many times longer than the other a side of the page may be, and a stroke wider than the page.
+/// The largest ratio of the sides of the page, and of the width of a stroke to the page.
 const EXTENT: f64 = 1e4;
 
 /// Most nodes of the XML.
