@@ -39,7 +39,7 @@ pub(crate) fn positive(length: Value<Length>) -> Value<Length> {
     }
 }
 
-pub(crate) fn paint(text: &str, css: bool) -> Value<Paint> {
+pub(crate) fn paint(text: &str, _: bool) -> Value<Paint> {
     if let Some((target, fallback)) = url(text) {
         if fallback.is_empty() {
             return Ok(Paint::Server(target, None));
@@ -48,7 +48,7 @@ pub(crate) fn paint(text: &str, css: bool) -> Value<Paint> {
         if url(fallback).is_some() {
             return Err(Wrong);
         }
-        return paint(fallback, css).map(|f| Paint::Server(target, Some(Box::new(f))));
+        return paint(fallback, true).map(|f| Paint::Server(target, Some(Box::new(f))));
     }
     match text.to_ascii_lowercase().as_str() {
         "none" => Ok(Paint::None),
