@@ -83,7 +83,9 @@ struct Context {
     depth: usize,
 }
 
-type Parsed<T> = Result<T, ParseError<()>>;
+type Parsed<T = ()> = Result<T, ParseError<()>>;
+/// The name of a rule such as `@media`, and what follows it.
+type Head = (String, String);
 
 impl<'n> Sheet<'n> {
     fn new(line: u32, notes: &'n mut Notes) -> Self {
@@ -148,12 +150,7 @@ impl<'n> Sheet<'n> {
         });
     }
 
-    fn at_rule(
-        &mut self,
-        (name, condition): (String, String),
-        line: u32,
-        block: Option<&mut Parser>,
-    ) {
+    fn at_rule(&mut self, (name, condition): Head, line: u32, block: Option<&mut Parser>) {
         let own = one_line(&format!("@{name}{condition}"));
         let applies = match name.to_ascii_lowercase().as_str() {
             "import" => {
@@ -186,7 +183,7 @@ impl<'i> DeclarationParser<'i> for Sheet<'_> {
         name: CowRcStr<'i>,
         input: &mut Parser<'i>,
         _: &ParserState,
-    ) -> Parsed<()> {
+    ) -> Parsed {
         let mut value = String::new();
         let has_block = add_plain(input, &mut value);
         let name = match name.starts_with("--") {
@@ -226,12 +223,7 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_> {
         Ok(plain(input))
     }
 
-    fn parse_block(
-        &mut self,
-        head: String,
-        start: &ParserState,
-        input: &mut Parser<'i>,
-    ) -> Parsed<()> {
+    fn parse_block(&mut self, head: String, start: &ParserState, input: &mut Parser<'i>) -> Parsed {
         let line = self.line_of(start);
         let mut inner = self.within.clone();
         let selectors = match &inner.rule {
@@ -245,33 +237,25 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_> {
 }
 
 impl<'i> AtRuleParser<'i> for Sheet<'_> {
-    type Prelude = (String, String);
+    type Prelude = Head;
     type AtRule = ();
     type Error = ();
 
-    fn parse_prelude(
-        &mut self,
-        name: CowRcStr<'i>,
-        input: &mut Parser<'i>,
-    ) -> Parsed<Self::Prelude> {
+    fn parse_prelude(&mut self, name: CowRcStr<'i>, input: &mut Parser<'i>) -> Parsed<Head> {
         Ok((name.to_string(), plain(input)))
     }
 
-    fn rule_without_block(
-        &mut self,
-        prelude: Self::Prelude,
-        start: &ParserState,
-    ) -> Result<(), ()> {
+    fn rule_without_block(&mut self, prelude: Head, start: &ParserState) -> Result<(), ()> {
         self.at_rule(prelude, self.line_of(start), None);
         Ok(())
     }
 
     fn parse_block(
         &mut self,
-        prelude: Self::Prelude,
+        prelude: Head,
         start: &ParserState,
         input: &mut Parser<'i>,
-    ) -> Parsed<()> {
+    ) -> Parsed {
         self.at_rule(prelude, self.line_of(start), Some(input));
         Ok(())
     }
