@@ -10,10 +10,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Folders that still have a circle, as `crate: folder`: plans hold prepared objects, which hold
-/// plans, and tables of one format have a block of the object; styles and elements of SVG.
-const KNOWN: [&str; 1] = ["files: profile::svg"];
-
 type Module = Vec<String>;
 
 /// The imports from one module of a folder to another.
@@ -247,7 +243,6 @@ fn modules_of_a_folder_do_not_import_each_other_in_a_circle() {
         let inner = fs::read_dir(root.join(half)).unwrap();
         crates.extend(inner.map(|entry| entry.unwrap().path()));
     }
-    let mut found = Vec::new();
     let mut ties = String::new();
     for folder in crates.iter().filter(|folder| folder.join("src").is_dir()) {
         let mut all = Vec::new();
@@ -259,19 +254,11 @@ fn modules_of_a_folder_do_not_import_each_other_in_a_circle() {
             true => "revmap".into(),
             false => folder.file_name().unwrap().to_string_lossy(),
         };
-        for [folder, modules, tie] in Crate::new(texts).circles() {
-            found.push(format!("{name}: {folder}"));
-            if !KNOWN.contains(&found[found.len() - 1].as_str()) {
-                ties += &format!("{name}: {modules}\n  {tie}\n");
-            }
+        for [_, modules, tie] in Crate::new(texts).circles() {
+            ties += &format!("{name}: {modules}\n  {tie}\n");
         }
     }
     assert!(ties.is_empty(), "circles of imports:\n{ties}");
-    let healed: Vec<_> = KNOWN
-        .iter()
-        .filter(|known| !found.iter().any(|f| f == *known))
-        .collect();
-    assert!(healed.is_empty(), "these are no longer circles: {healed:?}");
 }
 
 /// The circles of planted sources.

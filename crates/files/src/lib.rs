@@ -48,7 +48,6 @@ mod pixels;
 mod profile;
 pub mod raster;
 pub mod scene;
-mod text;
 mod trace;
 
 pub use atomic_file::{
@@ -63,13 +62,13 @@ pub use openexr::{read_exr, write_exr};
 pub use outline::{WrittenOutline, write_outline};
 pub use picture::{Picture, write_png};
 pub use profile::{
-    ProfileAxis, ProfileOptions, ProfileRead, Smooth, css_color, profile, profile_from_bytes,
-    show_outline,
+    ProfileAxis, ProfileOptions, ProfileRead, Smooth, profile, profile_from_bytes, show_outline,
 };
 pub use scene::{SceneFile, scene, warnings};
 pub use trace::trace;
 
 use revmap::error::{Error, ErrorKind};
+use revmap::frame::linear_from_srgb;
 use std::io::Read as _;
 
 /// A picture as the bytes of a PNG.
@@ -105,6 +104,20 @@ fn read_bytes(path: &std::path::Path) -> std::io::Result<Vec<u8>> {
 fn ending(path: &std::path::Path) -> String {
     let ending = path.extension().unwrap_or_default();
     ending.to_string_lossy().to_lowercase()
+}
+
+/// Reads a colour of CSS, such as `orange`, `#e0a030` or `rgb(224 160 48 / 50%)`, as linear red,
+/// green and blue, not premultiplied, and alpha. `None` for other text.
+///
+/// ```
+/// assert_eq!(revmap_files::css_color("lime"), Some([0.0, 1.0, 0.0, 1.0]));
+/// assert_eq!(revmap_files::css_color("greenish"), None);
+/// ```
+#[must_use]
+pub fn css_color(text: &str) -> Option<[f32; 4]> {
+    let [r, g, b, alpha] = revmap_drawing::css_color(text)?;
+    let [r, g, b] = [r, g, b].map(|v| linear_from_srgb(v.into()) as f32);
+    Some([r, g, b, alpha])
 }
 
 /// A failure of a file.

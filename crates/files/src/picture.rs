@@ -82,22 +82,38 @@ impl Picture {
     /// [`ErrorKind::File`](revmap::error::ErrorKind::File) if they cannot be written, or if there
     /// are not `width * height` pixels.
     pub fn encode_png(&self, writer: impl Write) -> Result<()> {
-        let write = || -> std::result::Result<(), png::EncodingError> {
-            let mut encoder = png::Encoder::new(writer, self.width, self.height);
-            encoder.set_color(png::ColorType::Rgba);
-            encoder.set_depth(png::BitDepth::Eight);
+        let size = [self.width, self.height];
+        let kind = (png::ColorType::Rgba, png::BitDepth::Eight);
+        encode(writer, size, kind, self.rgba.as_flattened(), |encoder| {
             encoder.set_compression(png::Compression::Fast);
             encoder.set_filter(png::Filter::Adaptive);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(self.rgba.as_flattened())?;
-            writer.finish()
-        };
-        write().map_err(|e| {
-            let full = matches!(&e, png::EncodingError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
-            let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
-            file_fault(format!("cannot be written: {why}"))
+            Ok(())
         })
     }
+}
+
+/// Writes the bytes of a PNG, by an encoder that `set` changes.
+pub(crate) fn encode<'a, W: Write + 'a>(
+    writer: W,
+    [width, height]: [u32; 2],
+    (color, depth): (png::ColorType, png::BitDepth),
+    data: &[u8],
+    set: impl FnOnce(&mut png::Encoder<'a, W>) -> std::result::Result<(), png::EncodingError>,
+) -> Result<()> {
+    let write = || -> std::result::Result<(), png::EncodingError> {
+        let mut encoder = png::Encoder::new(writer, width, height);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        set(&mut encoder)?;
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(data)?;
+        writer.finish()
+    };
+    write().map_err(|e| {
+        let full = matches!(&e, png::EncodingError::IoError(io) if io.kind() == std::io::ErrorKind::StorageFull);
+        let why = if full { "the disk is full; free some space".into() } else { e.to_string() };
+        file_fault(format!("cannot be written: {why}"))
+    })
 }
 
 /// Linear values at which one code turns into the next. They give exact rounding to the nearest

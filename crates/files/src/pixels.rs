@@ -4,9 +4,10 @@ use crate::file_fault;
 use crate::jpeg_end;
 use image::metadata::Orientation;
 use rayon::prelude::*;
-use revmap::error::Result;
+use revmap::error::{Error, Result};
 use revmap::host_memory;
 use revmap::maps::MAX_SIDE;
+use revmap_drawing::luminance;
 use std::io::Cursor;
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::JpegDecoder;
@@ -61,15 +62,28 @@ impl Pixels {
     /// The picture as its EXIF data turns it. Data that cannot be read turns nothing.
     fn upright(self, exif: Option<&[u8]>) -> Result<Self> {
         let tiff = exif.map(|exif| exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
-        let turn = match tiff.and_then(Orientation::from_exif_chunk) {
-            None | Some(Orientation::NoTransforms) => return Ok(self),
-            Some(orientation) => Turn::of(orientation),
+        let turn = tiff.and_then(Orientation::from_exif_chunk);
+        let Some(turn) = turn.filter(|turn| *turn != Orientation::NoTransforms) else {
+            return Ok(self);
         };
-        let (size, channels) = ([self.width, self.height], self.channels);
-        let [width, height] = turn.size(size);
+        // The tag's values, from 1: four ways without columns as rows, then four with.
+        let number = turn.to_exif() - 1;
+        let (swapped, mirrored) = (number >= 4, matches!(number, 1 | 2 | 5 | 6));
+        let flipped = matches!(number, 2 | 3 | 6 | 7);
+        let (width, height) = match swapped {
+            true => (self.height, self.width),
+            false => (self.width, self.height),
+        };
+        let (w, h) = (width as usize, height as usize);
+        let place = |k: usize| {
+            let x = if mirrored { w - 1 - k % w } else { k % w };
+            let y = if flipped { h - 1 - k / w } else { k / w };
+            if swapped { x * h + y } else { y * w + x }
+        };
+        let channels = self.channels;
         let samples = match self.samples {
-            Samples::Byte(v) => Samples::Byte(turn.applied(size, channels, &v)?),
-            Samples::Word(v) => Samples::Word(turn.applied(size, channels, &v)?),
+            Samples::Byte(v) => Samples::Byte(turned(&v, channels, place)?),
+            Samples::Word(v) => Samples::Word(turned(&v, channels, place)?),
         };
         Ok(Self {
             width,
@@ -85,54 +99,17 @@ impl Pixels {
     }
 }
 
-/// A way to turn stored pixels into the upright picture.
-#[derive(Clone, Copy)]
-struct Turn {
-    /// Columns and rows change places, before the mirrors.
-    swapped: bool,
-    /// Left and right change places.
-    mirrored: bool,
-    /// Top and bottom change places.
-    flipped: bool,
-}
-
-impl Turn {
-    fn of(orientation: Orientation) -> Self {
-        // The tag's values, from 1: four ways without columns as rows, then four with.
-        let number = orientation.to_exif() - 1;
-        Self {
-            swapped: number >= 4,
-            mirrored: matches!(number, 1 | 2 | 5 | 6),
-            flipped: matches!(number, 2 | 3 | 6 | 7),
-        }
+/// Samples, `channels` a pixel, of pixels that are stored at these places.
+fn turned<T: Copy>(
+    stored: &[T],
+    channels: usize,
+    place: impl Fn(usize) -> usize,
+) -> Result<Vec<T>> {
+    let mut turned = host_memory::reserved(stored.len(), "the pixels of an upright picture")?;
+    for k in 0..stored.len() / channels {
+        turned.extend_from_slice(&stored[place(k) * channels..][..channels]);
     }
-
-    /// Width and height of the upright picture.
-    fn size(self, [width, height]: [u32; 2]) -> [u32; 2] {
-        match self.swapped {
-            true => [height, width],
-            false => [width, height],
-        }
-    }
-
-    /// The upright picture's samples, `channels` a pixel, from the stored ones.
-    fn applied<T: Copy>(self, size: [u32; 2], channels: usize, stored: &[T]) -> Result<Vec<T>> {
-        let [width, height] = self.size(size).map(|n| n as usize);
-        let from = |k: usize, count: usize, reversed: bool| match reversed {
-            true => count - 1 - k,
-            false => k,
-        };
-        let mut turned = host_memory::reserved(stored.len(), "the pixels of an upright picture")?;
-        for y in 0..height {
-            for x in 0..width {
-                let (x, y) = (from(x, width, self.mirrored), from(y, height, self.flipped));
-                let (column, row) = if self.swapped { (y, x) } else { (x, y) };
-                let pixel = row * size[0] as usize + column;
-                turned.extend(stored.iter().skip(pixel * channels).take(channels));
-            }
-        }
-        Ok(turned)
-    }
+    Ok(turned)
 }
 
 fn mapped<S: Copy + Into<f32> + Sync, T: Clone + Default + Send>(
@@ -154,12 +131,6 @@ fn mapped<S: Copy + Into<f32> + Sync, T: Clone + Default + Send>(
     let both = out.par_iter_mut().zip(pixels);
     both.for_each(|(out, p)| *out = to(rgba(p)));
     Ok(out)
-}
-
-/// Luminance of an sRGB colour in its own values: the weights of Rec. 709, which sRGB shares.
-pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    // Grey comes out exactly as it went in.
-    g + 0.2126 * (r - g) + 0.0722 * (b - g)
 }
 
 /// The first bytes of a PNG.
@@ -190,7 +161,7 @@ pub(crate) fn decode(bytes: &[u8], kinds: &str) -> Result<Pixels> {
     if bytes.starts_with(PNG) {
         let reader = Png::open(bytes).map_err(|e| broken(e.to_string()))?;
         checked(reader.size())?;
-        return reader.pixels()?.map_err(|e| broken(e.to_string()));
+        return reader.pixels(broken);
     }
     if bytes.starts_with(JPEG) {
         let mut reader = jpeg(bytes).map_err(|e| broken(e.to_string()))?;
@@ -260,15 +231,13 @@ impl<'a> Png<'a> {
         self.0.info().size()
     }
 
-    /// The decoder's fault is within; the outer one is that of memory.
-    pub fn pixels(mut self) -> Result<std::result::Result<Pixels, png::DecodingError>> {
+    /// The pixels, or what `broken` makes of the decoder's words.
+    pub fn pixels(mut self, broken: impl Fn(String) -> Error) -> Result<Pixels> {
         // A size that overflows is that of a picture that does not fit into memory.
         let size = self.0.output_buffer_size().unwrap_or(usize::MAX);
         let mut bytes = host_memory::filled(size, 0, PICTURE)?;
-        let frame = match self.0.next_frame(&mut bytes) {
-            Ok(frame) => frame,
-            Err(fault) => return Ok(Err(fault)),
-        };
+        let frame = self.0.next_frame(&mut bytes);
+        let frame = frame.map_err(|e| broken(e.to_string()))?;
         bytes.truncate(frame.buffer_size());
         let samples = if frame.bit_depth == png::BitDepth::Sixteen {
             let words = bytes.as_chunks().0.iter();
@@ -278,9 +247,7 @@ impl<'a> Png<'a> {
             Samples::Byte(bytes)
         };
         // EXIF data may follow the pixels.
-        if let Err(fault) = self.0.finish() {
-            return Ok(Err(fault));
-        }
+        self.0.finish().map_err(|e| broken(e.to_string()))?;
         let pixels = Pixels {
             width: frame.width,
             height: frame.height,
@@ -288,7 +255,7 @@ impl<'a> Png<'a> {
             samples,
         };
         let exif = self.0.info().exif_metadata.as_deref();
-        pixels.upright(exif).map(Ok)
+        pixels.upright(exif)
     }
 }
 

@@ -4,11 +4,13 @@
 //! Numbers are written so that reading them restores every bit.
 
 use super::MAP_SOURCES;
-use crate::file_fault;
+use crate::picture::encode;
+use crate::{file_fault, write_atomically};
 use revmap::error::{Error, Result};
 use revmap::maps::{Bounds, MapSource, ShapeMap};
 use std::collections::HashMap;
 use std::io::Cursor;
+use std::path::Path;
 
 /// The keyword of the text chunk or attribute.
 pub(crate) const KEYWORD: &str = "revmap";
@@ -67,6 +69,21 @@ impl Header {
             z_max: self.number("z_max")?,
         })
     }
+}
+
+/// Writes a map as a PNG with a header.
+pub(super) fn write_png_map(
+    path: &Path,
+    size: [u32; 2],
+    kind: (png::ColorType, png::BitDepth),
+    header: String,
+    data: &[u8],
+) -> Result<()> {
+    write_atomically(path, |writer| {
+        encode(writer, size, kind, data, |encoder| {
+            encoder.add_text_chunk(KEYWORD.to_owned(), header)
+        })
+    })
 }
 
 fn lacks(key: &str) -> Error {

@@ -4,17 +4,12 @@ pub(crate) mod header;
 mod shape_map;
 mod source;
 mod texture;
-mod transform;
 
 pub use shape_map::{shape_map, write_shape_map};
 pub use source::{BINARY, COVERAGE, MAP_SOURCES};
 pub use texture::{color_map, displacement_map, write_displacement_map};
 
-use crate::file_fault;
-use header::KEYWORD;
-use revmap::error::Result;
 use revmap::maps::Projection;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The projection in a file's name before its extension, in upper or lower case.
@@ -48,27 +43,6 @@ pub fn mark_projection(path: impl AsRef<Path>, projection: Projection) -> PathBu
         }
         _ => path.to_path_buf(),
     }
-}
-
-/// A PNG with a header in its text.
-fn encode_png(
-    writer: impl Write,
-    [width, height]: [u32; 2],
-    color: png::ColorType,
-    depth: png::BitDepth,
-    header: &str,
-    data: &[u8],
-) -> Result<()> {
-    let write = || -> std::result::Result<(), png::EncodingError> {
-        let mut encoder = png::Encoder::new(writer, width, height);
-        encoder.set_color(color);
-        encoder.set_depth(depth);
-        encoder.add_text_chunk(KEYWORD.to_owned(), header.to_owned())?;
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(data)?;
-        writer.finish()
-    };
-    write().map_err(|e| file_fault(format!("the map cannot be written as PNG ({e})")))
 }
 
 #[cfg(test)]

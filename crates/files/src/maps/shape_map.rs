@@ -1,10 +1,9 @@
 //! Shape maps as image files, for viewing and for loading again.
 
-use super::encode_png;
-use super::header::{Header, KEYWORD, shape_header};
+use super::header::{Header, KEYWORD, shape_header, write_png_map};
 use super::source::{BINARY, binary_distances};
 use crate::openexr::{first_layer, layer, layer_sizes, write_layer};
-use crate::pixels::{Pixels, Png, Samples};
+use crate::pixels::{Png, Samples};
 use crate::{ending, file_fault, raster, read_bytes, write_atomically};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{FlatSamples, LayerAttributes, Text};
@@ -69,16 +68,9 @@ pub fn shape_map(path: impl AsRef<Path>) -> Result<ShapeMap> {
 
 fn write_png(map: &ShapeMap, path: &Path) -> Result<()> {
     let encoded = map.encode(MapFormat::Rgba8)?;
-    write_atomically(path, |writer| {
-        encode_png(
-            writer,
-            [map.columns, map.rows],
-            png::ColorType::Rgba,
-            png::BitDepth::Eight,
-            &shape_header(map, encoded.scale),
-            &encoded.bytes,
-        )
-    })
+    let kind = (png::ColorType::Rgba, png::BitDepth::Eight);
+    let header = shape_header(map, encoded.scale);
+    write_png_map(path, [map.columns, map.rows], kind, header, &encoded.bytes)
 }
 
 fn write_exr(map: &ShapeMap, path: &Path) -> Result<()> {
@@ -143,14 +135,9 @@ fn from_png(bytes: &[u8]) -> Result<ShapeMap> {
         .map_err(|e| file_fault(format!("is no map that can be read ({e}); bake it again")))?;
     let (columns, rows) = reader.size();
     checked_size(columns as usize, rows as usize)?;
-    let bytes = match reader.pixels()? {
-        Ok(Pixels {
-            channels: 4,
-            samples: Samples::Byte(bytes),
-            ..
-        }) => bytes,
-        Ok(_) => return Err(no_map()),
-        Err(e) => return Err(damaged(e.to_string())),
+    let pixels = reader.pixels(damaged)?;
+    let (4, Samples::Byte(bytes)) = (pixels.channels, pixels.samples) else {
+        return Err(no_map());
     };
     let form = bytes.chunks_exact(4).map(|t| t[3] > 127);
     let form: Vec<bool> = host_memory::collected(form, MAP)?;

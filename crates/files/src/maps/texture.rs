@@ -1,9 +1,8 @@
 //! Colour maps and displacement maps from pictures.
 
-use super::encode_png;
-use super::header::Header;
+use super::header::{Header, write_png_map};
 use crate::pixels::decode;
-use crate::{ending, file_fault, read_bytes, write_atomically};
+use crate::{ending, file_fault, read_bytes};
 use revmap::error::{Error, Result};
 use revmap::host_memory;
 use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
@@ -78,16 +77,10 @@ pub fn write_displacement_map(map: &DisplacementMap, path: impl AsRef<Path>) -> 
         let texels = level.texels.iter();
         let data = texels.map(|&[u, v]| [code(u), code(v), u16::MAX].map(u16::to_be_bytes));
         let data = host_memory::collected(data, "a displacement map as PNG")?;
-        write_atomically(path, |writer| {
-            encode_png(
-                writer,
-                [level.width, level.height],
-                png::ColorType::Rgb,
-                png::BitDepth::Sixteen,
-                &format!("kind=displacement scale={scale}"),
-                data.as_flattened().as_flattened(),
-            )
-        })
+        let kind = (png::ColorType::Rgb, png::BitDepth::Sixteen);
+        let header = format!("kind=displacement scale={scale}");
+        let bytes = data.as_flattened().as_flattened();
+        write_png_map(path, [level.width, level.height], kind, header, bytes)
     };
     write().map_err(|e: Error| e.in_file(path))
 }

@@ -1,31 +1,27 @@
 //! Profiles from drawings and pictures.
+//!
+//! A warning belongs to what it needs to know:
+//!
+//! | about | made in |
+//! |---|---|
+//! | a feature that is drawn otherwise, by its line | [`revmap_drawing`] |
+//! | gradients, thin strokes, edges of the page | `drawing` |
+//! | tones, noise and transparency | `options`, `picture` |
+//! | what a silhouette seems to be, its axis, its gaps | `seeming`, for drawings, pictures and polygons |
+//! | the points of a polygon, and the box that cuts it | `scene::polygon` |
+//! | a whole scene | [`scene::warnings`](crate::warnings) |
 
-mod canvas;
-mod dark;
 mod drawing;
-mod ends;
-mod fair;
-mod form;
-mod gaps;
-mod image;
-mod layer;
-mod marks;
 mod noise;
 mod options;
-mod paint;
-mod photo;
-mod svg;
-mod thin_lines;
-mod thin_strokes;
-mod tile;
-mod transparency;
+mod picture;
+mod seeming;
 
-pub(crate) use canvas::FLATNESS;
-pub(crate) use gaps::hints as gap_hints;
+pub(crate) use drawing::canvas::FLATNESS;
 pub use noise::Smooth;
 pub use options::{ProfileAxis, ProfileOptions, ProfileRead};
-pub(crate) use photo::outline_over;
-pub use svg::css_color;
+pub(crate) use picture::outline_over;
+pub(crate) use seeming::gaps::hints as gap_hints;
 
 use crate::Picture;
 use crate::pixels::is_picture;
@@ -70,10 +66,10 @@ pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Re
 pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Profile> {
     let options = options.into();
     options.check()?;
-    if svg::is_markup(bytes) {
+    if revmap_drawing::is_markup(bytes) {
         drawing::profile(bytes, options.for_drawing()?, options.min_stroke)
     } else {
-        image::profile(bytes, &options)
+        picture::profile(bytes, &options)
     }
 }
 
@@ -108,5 +104,5 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
 
 /// Returns true if the bytes are those of a picture or a drawing.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
-    is_picture(bytes) || svg::is_narrow_markup(bytes)
+    is_picture(bytes) || revmap_drawing::is_narrow_markup(bytes)
 }

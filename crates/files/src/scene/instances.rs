@@ -29,7 +29,8 @@ pub(super) fn load(file: &Path) -> Result<Vec<Placement>> {
         .map_err(|e| file_fault(format!("cannot be read ({e}); give a CSV file")).in_file(file))?;
     let no_text = || file_fault("is no text in UTF-8; save it as CSV in UTF-8");
     decoded(&bytes)
-        .and_then(|text| parse(&text.ok_or_else(no_text)?))
+        .ok_or_else(no_text)
+        .and_then(|text| parse(&text))
         .map_err(|e| e.in_file(file))
 }
 

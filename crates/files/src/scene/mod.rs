@@ -19,7 +19,7 @@ pub use warnings::{blank, warnings};
 
 use crate::pixels::{foreign, is_picture};
 use crate::profile::is_profile;
-use crate::{Picture, ProfileOptions, ending, file_fault, read_bytes, text};
+use crate::{Picture, ProfileOptions, ending, file_fault, read_bytes};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
@@ -73,8 +73,7 @@ impl SceneFile {
             let other = "is neither a scene in TOML (UTF-8) nor a PNG, JPEG or SVG; convert it";
             file_fault(foreign(&bytes).unwrap_or_else(|| other.to_owned()))
         };
-        let text = decoded(&bytes).map_err(|e| e.in_file(file))?;
-        let text = text.ok_or_else(no_text);
+        let text = decoded(&bytes).ok_or_else(no_text);
         match text.and_then(|text| Self::parse(&text, folder)) {
             Ok(scene) if !scene.root.is_empty() || !is_named_profile(file) => Ok(Self {
                 file: Some(file.to_owned()),
@@ -253,18 +252,20 @@ fn is_named_profile(file: &Path) -> bool {
 }
 
 /// The text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one.
-fn decoded(bytes: &[u8]) -> Result<Option<Cow<'_, str>>> {
-    let wide = |units: &[u8], read| {
+fn decoded(bytes: &[u8]) -> Option<Cow<'_, str>> {
+    let wide = |units: &[u8], read: fn([u8; 2]) -> u16| {
         let (units, rest) = units.as_chunks();
-        let text = text::of_utf16(units, read)?;
-        Ok(text.filter(|_| rest.is_empty()).map(Cow::Owned))
+        let text = char::decode_utf16(units.iter().map(|unit| read(*unit)));
+        text.collect::<std::result::Result<String, _>>()
+            .ok()
+            .filter(|_| rest.is_empty())
     };
     match bytes {
-        [0xff, 0xfe, units @ ..] => wide(units, u16::from_le_bytes),
-        [0xfe, 0xff, units @ ..] => wide(units, u16::from_be_bytes),
+        [0xff, 0xfe, units @ ..] => wide(units, u16::from_le_bytes).map(Cow::Owned),
+        [0xfe, 0xff, units @ ..] => wide(units, u16::from_be_bytes).map(Cow::Owned),
         _ => {
             let plain = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-            Ok(std::str::from_utf8(plain).ok().map(Cow::Borrowed))
+            std::str::from_utf8(plain).ok().map(Cow::Borrowed)
         }
     }
 }

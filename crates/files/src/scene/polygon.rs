@@ -73,7 +73,7 @@ pub(super) fn open_wall(points: &[[f64; 2]]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{cut_off, open_wall};
+    use super::open_wall;
 
     #[test]
     fn an_open_wall_is_named_and_closed_sections_are_not() {
@@ -110,41 +110,5 @@ mod tests {
         }
         let again = [&coarse[..], &[coarse[0]]].concat();
         assert_eq!(open_wall(&again), None);
-    }
-
-    #[test]
-    fn points_that_are_cut_off_are_named_with_what_would_fit() {
-        for (points, radius, words) in [
-            (
-                [[50.0, -10.0], [65.0, 6.0], [44.5, 88.0]],
-                65.0,
-                "z goes from -10 to 88, the box from 0 to 1: give r / 98 and (z + 10) / 98, with scale = [98, 98, 98] and position = [0, 0, -10]",
-            ),
-            (
-                [[0.0, -0.5], [0.3, 0.5], [0.0, 0.5]],
-                0.5,
-                "give (z + 0.5) and position = [0, 0, -0.5]",
-            ),
-            (
-                [[0.0, 0.0], [20.0, 0.0], [0.0, 40.0]],
-                20.0,
-                "give r / 40 and z / 40, with scale = [40, 40, 40]",
-            ),
-            (
-                [[0.0, 2.0], [0.4, 2.0], [0.0, 2.5]],
-                0.5,
-                "give (z - 2) and position = [0, 0, 2]",
-            ),
-            (
-                [[0.0, 0.0], [0.8, 0.0], [0.0, 1.0]],
-                0.5,
-                "r goes to 0.8, the box to 0.5: give radius = 0.8",
-            ),
-        ] {
-            let text = cut_off(&points, radius).unwrap_or_default();
-            assert!(text.contains(words), "{text}");
-        }
-        let within = [[0.0, 0.0], [0.5 + 1e-9, -1e-9], [0.0, 1.0]];
-        assert_eq!(cut_off(&within, 0.5), None);
     }
 }

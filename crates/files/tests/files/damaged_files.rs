@@ -24,7 +24,11 @@ enum Fault {
 }
 
 /// Words that are difficult for parsers.
-const WORDS: &str = "nan inf -inf 1e308 -1e-320 1e999 0 -1 4294967296 18446744073709551616 \" ' [ ]] { \
+const WORDS: &str = "1e9 1e-9 1e38 % px em url(#a) url(#e0) none inherit var(--a) <use href='#a'/> id='a' <g> </g> \
+                     opacity='.5' transform='matrix(1e9,0,0,1e-9,0,0)' transform='scale(0)' clip-path='url(#c)' \
+                     stroke-dasharray='1e-9' stroke-width='1e9' d='M0 0A1 1e9 0 1 1 5 5' A0 C viewBox='0 0 1e9 1' \
+                     marker-mid='url(#m)' vector-effect='non-scaling-stroke' :nth-child(-n) @media ; fill='#fff' \
+                     stroke='#000' nan inf -inf 1e308 -1e-320 1e999 0 -1 4294967296 18446744073709551616 \" ' [ ]] { \
                      = , \u{0} \u{feff} é ../../x";
 
 fn faults() -> impl Strategy<Value = Vec<Fault>> {
@@ -108,6 +112,8 @@ static SOUND: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     write_exr(&frame, at("frame.exr")).unwrap();
     folder
 });
+
+static DRAWINGS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(crate::drawings::seeds);
 
 const SVG: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 60" width="40" height="60">
 <defs><linearGradient id="g"><stop offset="0" stop-color="#000"/></linearGradient></defs>
@@ -301,6 +307,15 @@ proptest! {
         let (name, reader) = READERS[which];
         let sound = std::fs::read(SOUND.path().join(name)).unwrap();
         let _ = read(name, reader, &damaged(&sound, &faults));
+    }
+
+    #[test]
+    fn drawings_with_faults_are_drawn_or_refused(which in 0usize..1 << 16, faults in faults()) {
+        let bytes = damaged(&DRAWINGS[which % DRAWINGS.len()], &faults);
+        let begin = Instant::now();
+        let axis = [ProfileAxis::Left, ProfileAxis::Center][which % 2];
+        let _ = revmap_files::profile_from_bytes(&bytes, axis);
+        prop_assert!(begin.elapsed() < 6 * MOST_TIME, "{}", String::from_utf8_lossy(&bytes));
     }
 
     #[test]

@@ -11,8 +11,6 @@ mod map_accuracy;
 mod meshes;
 mod outlines;
 mod profiles;
-#[path = "../../../../tests/common/random.rs"]
-mod random;
 mod scenes;
 mod seeming;
 mod shape_maps;
@@ -28,4 +26,12 @@ fn holds(text: impl std::fmt::Display, words: &str) {
 fn asset(name: &str) -> std::path::PathBuf {
     let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets");
     std::path::Path::new(assets).join(name)
+}
+
+/// A picture as the bytes of a PNG.
+fn png(picture: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let picture = picture.into();
+    picture.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
 }

@@ -61,6 +61,16 @@ fn float(bytes: &[u8], at: usize) -> f64 {
     f64::from(f32::from_bits(word(bytes, at)))
 }
 
+/// The document and the buffer of a file.
+pub fn glb(path: &Path) -> (Value, Vec<u8>) {
+    let bytes = std::fs::read(path).unwrap();
+    let head = (&bytes[..4], word(&bytes, 4), word(&bytes, 8) as usize);
+    assert_eq!(head, (b"glTF".as_slice(), 2, bytes.len()));
+    let text = 20 + word(&bytes, 12) as usize;
+    let document = serde_json::from_slice(&bytes[20..text]).unwrap();
+    (document, bytes[text + 8..].to_vec())
+}
+
 fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
@@ -177,14 +187,8 @@ fn obj_shares_places_and_stands_upright() {
 #[test]
 fn glb_has_nodes_materials_and_one_picture() {
     let (_folder, path, _, meshes) = written("a.glb");
-    let bytes = std::fs::read(path).unwrap();
-    assert_eq!(
-        (&bytes[..4], word(&bytes, 4), word(&bytes, 8) as usize),
-        (b"glTF".as_slice(), 2, bytes.len())
-    );
-    let text = word(&bytes, 12) as usize;
-    let document: Value = serde_json::from_slice(&bytes[20..20 + text]).unwrap();
-    let buffer = &bytes[28 + text..];
+    let (document, buffer) = glb(&path);
+    let buffer = buffer.as_slice();
     assert_eq!(document["buffers"][0]["byteLength"], buffer.len());
     // Four copies below one that turns z up to y up.
     let nodes = document["nodes"].as_array().unwrap();

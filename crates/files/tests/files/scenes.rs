@@ -1,30 +1,14 @@
 //! The scenes that come with the program, and bare profiles in place of scenes.
 
-use revmap::scene::Scene;
 use revmap_files::ProfileAxis;
-use std::path::PathBuf;
-
-fn folder() -> PathBuf {
-    crate::asset("scenes")
-}
-
-fn scenes() -> Vec<(String, Scene)> {
-    let entries = std::fs::read_dir(folder()).unwrap();
-    let mut files: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
-    files.retain(|file| file.extension().is_some_and(|e| e == "toml"));
-    files.sort();
-    let load = |file: PathBuf| {
-        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
-        let scene = revmap_files::scene(&file).unwrap_or_else(|e| panic!("{e}"));
-        (name, scene)
-    };
-    files.into_iter().map(load).collect()
-}
 
 /// Pictures of every solid, whole and half, bring no warning about their form.
 #[test]
 fn pictures_of_their_solids_look_as_intended() {
-    for (name, scene) in scenes() {
+    let entries = std::fs::read_dir(crate::asset("scenes")).unwrap();
+    let files = entries.map(|entry| entry.unwrap().path());
+    for file in files.filter(|file| file.extension() == Some("toml".as_ref())) {
+        let scene = revmap_files::scene(&file).unwrap_or_else(|e| panic!("{e}"));
         for profile in scene.objects.iter().map(|o| &o.profile) {
             let (rows, margin) = (240, 6);
             let columns = (profile.radius * f64::from(rows)).ceil() as u32 + margin;
@@ -46,12 +30,8 @@ fn pictures_of_their_solids_look_as_intended() {
             });
             let half = image::GrayImage::from_fn(columns, rows, shade);
             for (picture, axis) in [(whole, ProfileAxis::Center), (half, ProfileAxis::Left)] {
-                let mut bytes = std::io::Cursor::new(Vec::new());
-                picture
-                    .write_to(&mut bytes, image::ImageFormat::Png)
-                    .unwrap();
-                let read = revmap_files::profile_from_bytes(bytes.get_ref(), axis).unwrap();
-                assert_eq!(read.warnings, [""; 0], "{name}, {axis:?}");
+                let read = revmap_files::profile_from_bytes(&crate::png(picture), axis).unwrap();
+                assert_eq!(read.warnings, [""; 0], "{}, {axis:?}", file.display());
             }
         }
     }

@@ -3,9 +3,8 @@
 #![allow(clippy::unwrap_used)]
 use super::super::keys::OBJECT;
 use super::super::reader::{CAMERA, LIGHT};
-use super::super::{scene, warnings};
+use super::super::warnings;
 use super::*;
-use crate::{ProfileAxis, profile_from_bytes};
 use revmap::error::Result;
 use revmap::scene::Scene;
 
@@ -187,66 +186,4 @@ fn a_proposed_box_holds_the_points() {
         let fitted = points.map(|[r, z]| [r / by, (z - low) / by]);
         assert_eq!(of(&fitted, &more), [""; 0], "{found}");
     }
-}
-
-/// A picture of `solid` and `ground` with a ball about a place of the width.
-fn ball(solid: u8, ground: u8, at: f64) -> Vec<u8> {
-    crate::png_bytes(image::GrayImage::from_fn(200, 120, |x, y| {
-        let from = (f64::from(x) - 200.0 * at).hypot(f64::from(y) - 60.0);
-        image::Luma([if from < 40.0 { solid } else { ground }])
-    }))
-}
-
-/// What is said of a picture or drawing, as a warning or a refusal.
-fn said(bytes: &[u8], lines: &str) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("p"), bytes).unwrap();
-    let file = folder.path().join("s.toml");
-    let object = format!("profile = \"p\"\n{lines}");
-    std::fs::write(&file, text("object", "").replace(CONE, &object)).unwrap();
-    let found = scene(&file).map(|scene| scene.objects[0].profile.warnings.join("\n"));
-    found.unwrap_or_else(|e| e.to_string())
-}
-
-#[test]
-fn a_proposed_key_of_a_profile_mends_it() {
-    let half = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-8z";
-    let drawn = |at: f64, side: i32| {
-        format!(
-            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='{half}' \
-             transform='translate({at}) scale({side} 1) translate(-50)'/></svg>"
-        )
-        .into_bytes()
-    };
-    for bytes in [
-        ball(255, 0, 0.5),
-        ball(10, 250, 0.3),
-        ball(10, 250, 0.75),
-        drawn(30.0, 1),
-        drawn(0.0, 1),
-        drawn(85.0, 1),
-    ] {
-        let before = said(&bytes, "");
-        let keys = ["profile_axis", "profile_threshold", "profile_invert"];
-        let lines = keys
-            .map(|key| assigned(&before, key).map_or(String::new(), |v| format!("{key} = {v}\n")));
-        assert!(!lines.concat().is_empty(), "{before}");
-        let after = said(&bytes, &lines.concat());
-        let cut = after.contains("cut by the right edge");
-        assert!(after.is_empty() || cut, "{before}: {after}");
-    }
-    // Beside the page there is no axis.
-    for (at, side) in [(-5.0, 1), (108.0, -1), (104.0, 1)] {
-        let found = said(&drawn(at, side), "");
-        assert!(
-            !found.contains("axis = -") && !found.contains("axis = 1"),
-            "{found}"
-        );
-    }
-    assert!(
-        profile_from_bytes(&drawn(50.0, 1), ProfileAxis::Center)
-            .unwrap()
-            .warnings
-            .is_empty()
-    );
 }
