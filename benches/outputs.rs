@@ -7,23 +7,22 @@ mod rounds;
 use ash::vk;
 use revmap::gpu::{Output, PassFormats, SlopeBias};
 use revmap::settings::{Plane, PlaneList, Planes, SearchSettings};
-use rounds::host::{Attachments, borrow, dynamic, once, open_unchecked, renderer_of};
+use rounds::host::{Canvas, borrow, dynamic, once, open_unchecked, renderer_of};
 use rounds::{Case, OPTIONS, bishop, compare};
 
 /// Formats as an engine would take them.
-const fn format(plane: Plane) -> (vk::Format, usize) {
+const fn format(plane: Plane) -> vk::Format {
     match plane {
-        Plane::Color => (vk::Format::R16G16B16A16_SFLOAT, 8),
-        Plane::BaseColor => (vk::Format::R8G8B8A8_SRGB, 4),
-        Plane::Normal => (vk::Format::R16G16B16A16_SFLOAT, 8),
-        Plane::OctahedralNormal | Plane::Motion => (vk::Format::R16G16_SFLOAT, 4),
-        Plane::Material => (vk::Format::R8G8_UNORM, 2),
-        Plane::Identity => (vk::Format::R32G32_UINT, 8),
+        Plane::Color | Plane::Normal => vk::Format::R16G16B16A16_SFLOAT,
+        Plane::BaseColor => vk::Format::R8G8B8A8_SRGB,
+        Plane::OctahedralNormal | Plane::Motion => vk::Format::R16G16_SFLOAT,
+        Plane::Material => vk::Format::R8G8_UNORM,
+        Plane::Identity => vk::Format::R32G32_UINT,
     }
 }
 
 /// The planes of a pass, its colours, and its name.
-fn listed(planes: Planes, slope_bias: SlopeBias) -> (Vec<(vk::Format, usize)>, String) {
+fn listed(planes: Planes, slope_bias: SlopeBias) -> (Vec<vk::Format>, String) {
     let list = match planes {
         Planes::List(list) => list.planes().to_vec(),
         Planes::Depth { .. } => Vec::new(),
@@ -71,28 +70,25 @@ fn main() {
     passes.push((depth, none));
     passes.push((depth, SlopeBias::new(1.5, 1e-3).unwrap()));
     let made = passes.into_iter().map(|(planes, slope_bias)| {
-        let (formats, name) = listed(planes, slope_bias);
-        let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
+        let (colors, name) = listed(planes, slope_bias);
         let output = Output::Pass(PassFormats {
             slope_bias,
             ..PassFormats::new(dynamic(&colors), planes)
         });
+        let canvas = Canvas::new(&host, OPTIONS, &output);
         let renderer = renderer_of(&device, output, &SearchSettings::exact(), 1, &scene);
-        let into = Attachments::new(&host, OPTIONS, &formats).unwrap();
-        ((name, renderer), (into, formats.len()))
+        ((name, renderer), canvas)
     });
-    let (mut cases, targets): (Vec<Case>, Vec<_>) = made.unzip();
+    let (mut cases, canvases): (Vec<Case>, Vec<_>) = made.unzip();
     println!("{}, 800x600", device.report().name);
     compare("", &mut cases, |n, (_, renderer)| {
-        let (into, colors) = &targets[n];
-        let clears = vec![vk::ClearColorValue { uint32: [0; 4] }; *colors];
         once(&host, |cmd| {
             // SAFETY: `cmd` is recording; the frame before is done; the pass has the output's
             // formats.
             unsafe {
                 let frame = renderer.prepare(cmd, 0, &view.with_last(&view)).unwrap();
                 let record = || renderer.record(cmd, &frame).unwrap();
-                into.draw(cmd, &clears, false, record);
+                canvases[n].record(cmd, record);
             }
         });
     });

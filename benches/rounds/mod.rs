@@ -10,13 +10,7 @@ use revmap::gpu::{Renderer, View};
 use revmap::scene::{Camera, Scene};
 use std::time::Instant;
 
-pub const OPTIONS: Options = Options {
-    width: 800,
-    height: 600,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
-};
+pub const OPTIONS: Options = Options::new(800, 600);
 const ROUNDS: usize = 41;
 
 /// A renderer and its name.

@@ -20,13 +20,7 @@ use revmap::gpu::{Device, ObjectId, Renderer, View};
 use revmap::scene::{Material, Placement};
 use revmap::settings::{PlaneList, Planes, SearchSettings};
 
-const OPTIONS: Options = Options {
-    width: 640,
-    height: 400,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
-};
+const OPTIONS: Options = Options::new(640, 400);
 /// Frames of the movement.
 const FRAMES: u32 = 24;
 /// Frames of the truth.
@@ -118,8 +112,8 @@ struct Engine<'a> {
 
 impl<'a> Engine<'a> {
     fn new(host: &'a Host, device: &Device) -> Fallible<Self> {
-        let planes = PlaneList::new(&passes::PLANES.map(|(plane, ..)| plane))?;
-        let formats = passes::PLANES.map(|(_, format, _)| format);
+        let planes = PlaneList::new(&passes::PLANES.map(|(plane, _)| plane))?;
+        let formats = passes::PLANES.map(|(_, format)| format);
         let output = lend::pass(&OPTIONS, &formats, Planes::List(planes));
         let mut renderer = Renderer::new(device, output, &SearchSettings::default(), 1)?;
         let mut solids = Vec::new();

@@ -1,31 +1,23 @@
 //! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
 
 use super::host::memory::{HostBuffer, HostImage, barrier};
-use super::host::{Attachments, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, module};
+use super::host::{
+    Attachments, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, commands, module,
+};
 use ash::vk;
 use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
 use revmap::settings::Plane;
 
-/// The planes of the G-buffer, their formats, and the bytes of a pixel.
-pub const PLANES: [(Plane, vk::Format, usize); 5] = [
-    (Plane::BaseColor, vk::Format::R8G8B8A8_SRGB, 4),
-    (Plane::OctahedralNormal, vk::Format::R16G16_SFLOAT, 4),
-    (Plane::Material, vk::Format::R8G8_UNORM, 2),
-    (Plane::Motion, vk::Format::R16G16_SFLOAT, 4),
-    (Plane::Identity, vk::Format::R32G32_UINT, 8),
+/// The planes of the G-buffer, and their formats.
+pub const PLANES: [(Plane, vk::Format); 5] = [
+    (Plane::BaseColor, vk::Format::R8G8B8A8_SRGB),
+    (Plane::OctahedralNormal, vk::Format::R16G16_SFLOAT),
+    (Plane::Material, vk::Format::R8G8_UNORM),
+    (Plane::Motion, vk::Format::R16G16_SFLOAT),
+    (Plane::Identity, vk::Format::R32G32_UINT),
 ];
 const PICTURE: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 type Layout = vk::ImageLayout;
-
-/// The clear value of a plane: no object, or nothing.
-fn clear((plane, ..): (Plane, vk::Format, usize)) -> vk::ClearColorValue {
-    match plane {
-        Plane::Identity => vk::ClearColorValue {
-            uint32: [u32::MAX; 4],
-        },
-        _ => vk::ClearColorValue { float32: [0.0; 4] },
-    }
-}
 
 /// Inputs of light.comp.
 pub struct Lights {
@@ -86,8 +78,6 @@ pub struct Passes<'a> {
     mesh: MeshPipeline<'a>,
     light: vk::Pipeline,
     resolve: vk::Pipeline,
-    pool: vk::CommandPool,
-    commands: vk::CommandBuffer,
     frames: usize,
     host: &'a Host,
 }
@@ -96,7 +86,7 @@ impl<'a> Passes<'a> {
     pub fn new(host: &'a Host, options: Options) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
         let stored = || HostImage::new(host, &options, PICTURE, U::STORAGE);
-        let formats = PLANES.map(|(_, format, _)| format);
+        let formats = PLANES.map(|(_, format)| format);
         let bytes = 16 * (options.width * options.height) as usize;
         let null = vk::Pipeline::null();
         let shaders = MeshShaders {
@@ -105,11 +95,7 @@ impl<'a> Passes<'a> {
             sets: &[],
         };
         let mut passes = Self {
-            drawn: Attachments::new(
-                host,
-                options,
-                &PLANES.map(|(_, format, bytes)| (format, bytes)),
-            )?,
+            drawn: Attachments::new(host, options, &formats)?,
             lit: stored()?,
             pictures: [stored()?, stored()?],
             read: HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST)?,
@@ -122,8 +108,6 @@ impl<'a> Passes<'a> {
             mesh: MeshPipeline::new(host, &shaders, &options, vk::RenderPass::null(), &formats)?,
             light: null,
             resolve: null,
-            pool: vk::CommandPool::null(),
-            commands: vk::CommandBuffer::null(),
             frames: 0,
             host,
         };
@@ -132,14 +116,6 @@ impl<'a> Passes<'a> {
             passes.make_sets()?;
             passes.light = passes.compute(include_bytes!("light.comp.spv"))?;
             passes.resolve = passes.compute(include_bytes!("resolve.comp.spv"))?;
-            let info = vk::CommandPoolCreateInfo::default()
-                .queue_family_index(host.family)
-                .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
-            passes.pool = host.device.create_command_pool(&info, None)?;
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(passes.pool)
-                .command_buffer_count(1);
-            passes.commands = host.device.allocate_command_buffers(&info)?[0];
         }
         Ok(passes)
     }
@@ -244,7 +220,7 @@ impl<'a> Passes<'a> {
         lights: &Lights,
         resolve: &Resolve,
     ) -> Fallible<()> {
-        let (raw, cmd, turn) = (&self.host.device, self.commands, self.frames % 2);
+        let (raw, turn) = (&self.host.device, self.frames % 2);
         self.frames += 1;
         let Blend {
             weight,
@@ -264,10 +240,9 @@ impl<'a> Passes<'a> {
             second: [number(clips), 0.0, 0.0, 0.0],
         };
         // SAFETY: the last frame was waited for; everything named lives as long as `self`.
-        unsafe {
-            raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
+        commands(self.host, true, |cmd| unsafe {
             let prepared = before(cmd)?;
-            self.drawn.draw(cmd, &PLANES.map(clear), false, || {
+            self.drawn.draw(cmd, &self.drawn.clears(), false, || {
                 self.mesh.draw(cmd, clip_from_world, Vec3::Z, meshes);
                 within(cmd, &prepared)
             })?;
@@ -299,8 +274,8 @@ impl<'a> Passes<'a> {
                 );
                 barrier(self.host, cmd, &[]);
             }
-            self.submit()
-        }
+            Ok(())
+        })?
     }
 
     unsafe fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
@@ -314,32 +289,18 @@ impl<'a> Passes<'a> {
         };
     }
 
-    unsafe fn submit(&self) -> Fallible<()> {
-        let buffers = [self.commands];
-        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        let raw = &self.host.device;
-        // SAFETY: the commands are recording, outside of a pass.
-        unsafe {
-            raw.end_command_buffer(self.commands)?;
-            raw.queue_submit(self.host.queue, &submits, vk::Fence::null())?;
-            Ok(raw.queue_wait_idle(self.host.queue)?)
-        }
-    }
-
     /// The last picture, linear.
     pub fn read(&self) -> Fallible<Vec<Vec4>> {
-        let (raw, cmd) = (&self.host.device, self.commands);
+        let raw = &self.host.device;
         let image = &self.pictures[self.frames % 2];
         // SAFETY: the last frame was waited for.
-        unsafe {
-            raw.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
+        commands(self.host, true, |cmd| unsafe {
             let region = [image.region(&self.options)];
             let copied = Layout::TRANSFER_SRC_OPTIMAL;
             barrier(self.host, cmd, &[image.barrier(Layout::GENERAL, copied)]);
             raw.cmd_copy_image_to_buffer(cmd, image.raw, copied, self.read.raw, &region);
             barrier(self.host, cmd, &[image.barrier(copied, Layout::GENERAL)]);
-            self.submit()?;
-        }
+        })?;
         let colors: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&self.read.bytes());
         Ok(colors.into_iter().map(Vec4::from).collect())
     }
@@ -350,7 +311,6 @@ impl Drop for Passes<'_> {
         let raw = &self.host.device;
         // SAFETY: every submission was waited for; null handles may be destroyed.
         unsafe {
-            raw.destroy_command_pool(self.pool, None);
             for pipeline in [self.light, self.resolve] {
                 raw.destroy_pipeline(pipeline, None);
             }

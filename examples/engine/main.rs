@@ -24,11 +24,8 @@ fn main() -> Fallible<()> {
     // SAFETY: the host outlives the device.
     let device = unsafe { lend::lend(&host) }?;
     let options = Options {
-        width: 960,
-        height: 600,
-        dynamic: true,
-        samples: 1,
         reversed: true,
+        ..Options::new(960, 600)
     };
     let mut stage = Stage::new(&host, options)?;
     let middle = Vec3::new(0.25, 0.0, 0.45);

@@ -15,7 +15,7 @@ use ash::vk;
 use glam::{DQuat, DVec3, Vec3};
 use host::set::UniformSet;
 use host::{Fallible, Host, Mesh, MeshShaders, Options, Stage, lend, solids};
-use revmap::gpu::{Device, HostShading, Renderer};
+use revmap::gpu::{Device, Renderer};
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
@@ -26,11 +26,8 @@ use std::sync::Arc;
 pub const SHADING: &[u8] = include_bytes!("shade.shading");
 
 const OPTIONS: Options = Options {
-    width: 640,
-    height: 400,
-    dynamic: true,
-    samples: 1,
     reversed: true,
+    ..Options::new(640, 400)
 };
 const EYE: DVec3 = DVec3::new(3.1, 0.9, 1.5);
 const BALL: DVec3 = DVec3::new(0.55, 0.75, 0.3);
@@ -77,14 +74,10 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
 /// A renderer that shades by the host's function.
 fn renderer(device: &Device, lights: &UniformSet) -> Fallible<Renderer> {
     let output = lend::pass(&OPTIONS, &[host::COLOR], Planes::Color);
-    let shading = HostShading {
-        shading: Arc::new(Shading::from_bytes(SHADING)?),
-        set_layout: lights.layout,
-    };
-    let settings = SearchSettings::default();
+    let (search, slots) = (SearchSettings::default(), host::FRAMES);
+    let shading = Arc::new(Shading::from_bytes(SHADING)?);
     // SAFETY: the layout has the binding that `light.glsl` declares, and outlives the renderer.
-    let made = unsafe { Renderer::with_shading(device, output, &settings, host::FRAMES, &shading) };
-    Ok(made?)
+    Ok(unsafe { lend::shaded(device, output, &search, slots, &shading, lights.layout) }?)
 }
 
 /// Chessmen, and a row of pawns; every other pawn has rings.

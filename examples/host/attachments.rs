@@ -7,8 +7,20 @@ use ash::vk;
 
 /// An image and the bytes that it is copied to.
 struct Attachment<'a> {
+    format: vk::Format,
     image: HostImage<'a>,
     read: HostBuffer<'a>,
+}
+
+/// Bytes of a pixel.
+fn bytes_of(format: vk::Format) -> usize {
+    use vk::Format as F;
+    match format {
+        F::R8G8_UNORM => 2,
+        F::R16G16B16A16_SFLOAT | F::R32G32_SFLOAT | F::R32G32_UINT => 8,
+        F::R32G32B32A32_SFLOAT => 16,
+        _ => 4,
+    }
 }
 
 /// Colour attachments and a depth.
@@ -26,30 +38,30 @@ pub struct Attachments<'a> {
 }
 
 impl<'a> Attachments<'a> {
-    /// Attachments of these formats, and how many bytes a pixel of each has. A render pass has one,
-    /// of [`COLOR`].
-    pub fn new(
-        host: &'a Host,
-        options: Options,
-        formats: &[(vk::Format, usize)],
-    ) -> Fallible<Self> {
+    /// Attachments of these formats. A render pass has one, of [`COLOR`].
+    pub fn new(host: &'a Host, options: Options, formats: &[vk::Format]) -> Fallible<Self> {
         let pixels = (options.width * options.height) as usize;
-        let of = |(format, bytes), samples| {
+        let of = |format, samples| {
             let more = match samples {
                 1 => vk::ImageUsageFlags::SAMPLED,
                 _ => vk::ImageUsageFlags::empty(),
             };
             Ok(Attachment {
+                format,
                 image: HostImage::of(host, &options, format, samples, more)?,
-                read: HostBuffer::new(host, bytes * pixels, vk::BufferUsageFlags::TRANSFER_DST)?,
+                read: HostBuffer::new(
+                    host,
+                    bytes_of(format) * pixels,
+                    vk::BufferUsageFlags::TRANSFER_DST,
+                )?,
             })
         };
-        let several = || of((COLOR, 4), options.samples).map(|color| color.image);
+        let several = || of(COLOR, options.samples).map(|color| color.image);
         let colors = formats.iter().map(|format| of(*format, 1));
         let mut made = Self {
             colors: colors.collect::<Fallible<_>>()?,
             multisampled: (options.samples > 1).then(several).transpose()?,
-            depth: of((DEPTH, 4), options.samples)?,
+            depth: of(DEPTH, options.samples)?,
             options,
             pass: vk::RenderPass::null(),
             framebuffer: vk::Framebuffer::null(),
@@ -69,6 +81,17 @@ impl<'a> Attachments<'a> {
     /// The images of the colours and of the depth.
     pub fn images(&self) -> impl Iterator<Item = &HostImage<'a>> {
         self.all().map(|attachment| &attachment.image)
+    }
+
+    /// What colours are cleared to: no object in identities, else nothing.
+    pub fn clears(&self) -> Vec<vk::ClearColorValue> {
+        let of = |color: &Attachment| match color.format {
+            vk::Format::R32G32_UINT => vk::ClearColorValue {
+                uint32: [u32::MAX; 4],
+            },
+            _ => vk::ClearColorValue { float32: [0.0; 4] },
+        };
+        self.colors.iter().map(of).collect()
     }
 
     /// Makes a render pass of one colour, and its framebuffer.
@@ -243,14 +266,17 @@ impl<'a> Attachments<'a> {
         }
     }
 
-    /// The bytes of a colour attachment, once the commands have run.
-    pub fn color(&self, number: usize) -> Vec<u8> {
-        self.colors[number].read.bytes()
+    /// The bytes of each colour attachment, once the commands have run.
+    pub fn colors(&self) -> impl Iterator<Item = Vec<u8>> {
+        self.colors.iter().map(|color| color.read.bytes())
     }
 
-    /// The depths of one sample, once the commands have run.
+    /// The depths, once the commands have run; none of several samples.
     pub fn depths(&self) -> Vec<f32> {
-        bytemuck::pod_collect_to_vec(&self.depth.read.bytes())
+        match self.options.samples {
+            1 => bytemuck::pod_collect_to_vec(&self.depth.read.bytes()),
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -5,11 +5,13 @@ use super::{DEPTH, Fallible, Host, Mesh, Options, Stage};
 use ash::vk;
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
-    DepthOrder, Device, HostDevice, Output, PassFormats, PassKind, Renderer, Requirements,
-    VALIDATION_VARIABLE, View, Viewport,
+    DepthOrder, Device, HostDevice, HostShading, Output, PassFormats, PassKind, Renderer,
+    Requirements, VALIDATION_VARIABLE, View, Viewport,
 };
-use revmap::settings::Planes;
+use revmap::settings::{Planes, SearchSettings};
+use revmap::shading::Shading;
 use std::cell::RefCell;
+use std::sync::Arc;
 
 /// The arguments of an example: the folder of its pictures, `out` by default, and whether the
 /// environment switches validation on.
@@ -90,6 +92,26 @@ pub fn viewport(options: &Options) -> Viewport {
 /// The view of a whole picture by a host's matrices.
 pub fn view([view, projection]: [DMat4; 2], options: &Options) -> revmap::Result<View> {
     View::from_matrices(view, projection, viewport(options), order(options))
+}
+
+/// A renderer that shades by a host's function, with a layout of the host's set.
+///
+/// # Safety
+/// The layout has the bindings that the function reads, and outlives the renderer.
+pub unsafe fn shaded(
+    device: &Device,
+    output: Output,
+    search: &SearchSettings,
+    slots: usize,
+    shading: &Arc<Shading>,
+    set_layout: vk::DescriptorSetLayout,
+) -> revmap::Result<Renderer> {
+    let host = HostShading {
+        shading: shading.clone(),
+        set_layout,
+    };
+    // SAFETY: as the caller promised.
+    unsafe { Renderer::with_shading(device, output, search, slots, &host) }
 }
 
 /// Draws meshes, then solids.

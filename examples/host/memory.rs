@@ -25,8 +25,8 @@ pub struct HostBuffer<'a> {
     pub raw: vk::Buffer,
     memory: vk::DeviceMemory,
     mapped: *mut u8,
-    bytes: usize,
-    host: &'a Host,
+    pub size: usize,
+    pub host: &'a Host,
 }
 
 impl<'a> HostBuffer<'a> {
@@ -47,7 +47,7 @@ impl<'a> HostBuffer<'a> {
                 raw,
                 memory,
                 mapped: mapped.cast(),
-                bytes,
+                size: bytes,
                 host,
             })
         }
@@ -68,7 +68,7 @@ impl<'a> HostBuffer<'a> {
 
     pub fn bytes(&self) -> Vec<u8> {
         // SAFETY: the device has written it and is done.
-        unsafe { std::slice::from_raw_parts(self.mapped, self.bytes).to_vec() }
+        unsafe { std::slice::from_raw_parts(self.mapped, self.size).to_vec() }
     }
 }
 

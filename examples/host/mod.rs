@@ -3,6 +3,7 @@
 #![allow(dead_code, unused_imports)] // each example takes what it needs
 
 pub mod attachments;
+pub mod commands;
 pub mod lend;
 pub mod memory;
 mod mesh;
@@ -11,6 +12,7 @@ pub mod solids;
 mod stage;
 
 pub use attachments::Attachments;
+pub use commands::{Commands, commands};
 pub use mesh::{Mesh, MeshPipeline, MeshShaders, module};
 pub use stage::Stage;
 
@@ -36,6 +38,17 @@ pub struct Options {
 }
 
 impl Options {
+    /// Dynamic rendering of one sample, depth 0 near.
+    pub const fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            dynamic: true,
+            samples: 1,
+            reversed: false,
+        }
+    }
+
     pub fn extent(&self) -> vk::Extent2D {
         vk::Extent2D {
             width: self.width,
@@ -203,28 +216,51 @@ impl Drop for Host {
     }
 }
 
-/// A host's matrices: looking along -z from `eye` to `target`, z up in the world, clip space with
-/// Vulkan's y downwards. Reversed depth reaches to infinity.
-pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMat4; 2] {
+/// From the world to a view along -z from `eye` to `target`.
+pub fn look(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let forward = (target - eye).normalize();
-    let right = forward.cross(DVec3::Z).normalize();
+    let right = forward.cross(up).normalize();
     let up = right.cross(forward);
     let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    let view = DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose();
-    let (near, far) = (0.1, 50.0);
+    DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
+}
+
+/// A lens of parallel rays or of rays from the eye, clip space with Vulkan's y downwards. `scales`:
+/// of x and y. Reversed depth may reach to infinity.
+pub fn lens([x, y]: [f64; 2], parallel: bool, reversed: bool, [near, far]: [f64; 2]) -> DMat4 {
+    let deep = far - near;
+    let (z, w) = match (parallel, reversed) {
+        (true, true) => (1.0 / deep, far / deep),
+        (true, false) => (-1.0 / deep, -near / deep),
+        (false, true) if far.is_infinite() => (0.0, near),
+        (false, true) => (near / deep, near * far / deep),
+        (false, false) => (-far / deep, -near * far / deep),
+    };
+    let [of_z, of_w] = if parallel { [0.0, 1.0] } else { [-1.0, 0.0] };
+    DMat4::from_cols(
+        DVec4::X * x,
+        DVec4::Y * -y,
+        DVec4::new(0.0, 0.0, z, of_z),
+        DVec4::new(0.0, 0.0, w, of_w),
+    )
+}
+
+/// Scales of a lens of 40 degrees.
+pub fn scales(options: &Options) -> [f64; 2] {
     let focal = 1.0 / 20f64.to_radians().tan();
     let aspect = f64::from(options.width) / f64::from(options.height);
-    let (z, w) = match options.reversed {
-        true => (0.0, near),
-        false => (far / (near - far), near * far / (near - far)),
+    [focal / aspect, focal]
+}
+
+/// A host's matrices, z up in the world. Reversed depth reaches to infinity.
+pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMat4; 2] {
+    let far = if options.reversed {
+        f64::INFINITY
+    } else {
+        50.0
     };
-    let projection = DMat4::from_cols(
-        DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -focal, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, z, -1.0),
-        DVec4::new(0.0, 0.0, w, 0.0),
-    );
-    [view, projection]
+    let lens = lens(scales(options), false, options.reversed, [0.1, far]);
+    [look(eye, target, DVec3::Z), lens]
 }
 
 /// Writes sRGB bytes as a PNG.

@@ -1,7 +1,7 @@
 //! A picture that is drawn with two frames in flight.
 
 use super::mesh::{Mesh, MeshPipeline, MeshShaders};
-use super::{Attachments, COLOR, FRAMES, Fallible, Host, Options};
+use super::{Attachments, COLOR, Commands, FRAMES, Fallible, Host, Options};
 use ash::vk;
 use glam::{DMat4, Vec3};
 
@@ -18,7 +18,7 @@ pub struct Stage<'a> {
     pub options: Options,
     pub into: Attachments<'a>,
     pub meshes: MeshPipeline<'a>,
-    pool: vk::CommandPool,
+    commands: Commands<'a>,
     frames: Vec<InFlight>,
     next: usize,
     host: &'a Host,
@@ -35,27 +35,20 @@ impl<'a> Stage<'a> {
         shaders: &MeshShaders<'_>,
     ) -> Fallible<Self> {
         let device = &host.device;
-        let into = Attachments::new(host, options, &[(COLOR, 4)])?;
+        let into = Attachments::new(host, options, &[COLOR])?;
         // SAFETY: plain creations, destroyed in Drop.
         unsafe {
-            let pool = vk::CommandPoolCreateInfo::default()
-                .queue_family_index(host.family)
-                .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
-            let pool = device.create_command_pool(&pool, None)?;
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(pool)
-                .command_buffer_count(FRAMES as u32);
+            let commands = Commands::new(host, vk::CommandBufferLevel::PRIMARY, FRAMES)?;
             let signaled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
             let mut frames = Vec::new();
-            for commands in device.allocate_command_buffers(&info)? {
-                let fence = device.create_fence(&signaled, None)?;
-                frames.push((commands, fence));
+            for cmd in &commands.raw {
+                frames.push((*cmd, device.create_fence(&signaled, None)?));
             }
             Ok(Self {
                 meshes: MeshPipeline::new(host, shaders, &options, into.pass, &[COLOR])?,
                 options,
                 into,
-                pool,
+                commands,
                 frames,
                 next: 0,
                 host,
@@ -117,7 +110,10 @@ impl<'a> Stage<'a> {
             self.submit((cmd, fence))?;
         }
         self.wait()?;
-        Ok((self.into.color(0), self.into.depths()))
+        Ok((
+            self.into.colors().next().unwrap_or_default(),
+            self.into.depths(),
+        ))
     }
 
     /// Waits until the device is done with all frames.
@@ -136,7 +132,6 @@ impl Drop for Stage<'_> {
             for (_, fence) in &self.frames {
                 device.destroy_fence(*fence, None);
             }
-            device.destroy_command_pool(self.pool, None);
         }
     }
 }

@@ -19,7 +19,7 @@ pub use host::differing;
 use host::set::UniformSet;
 use host::{Fallible, Host, MeshShaders, Options, Stage, lend};
 use map::SunMap;
-use revmap::gpu::{Device, HostShading, ObjectId, PreparedFrame, Renderer, View};
+use revmap::gpu::{Device, ObjectId, PreparedFrame, Renderer, View};
 use revmap::scene::Object;
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
@@ -30,11 +30,8 @@ use std::sync::Arc;
 pub const SHADING: &[u8] = include_bytes!("shade.shading");
 /// Options of the picture.
 pub const OPTIONS: Options = Options {
-    width: 640,
-    height: 400,
-    dynamic: true,
-    samples: 1,
     reversed: true,
+    ..Options::new(640, 400)
 };
 /// Frames in which the pawns move; the last is the picture.
 pub const COUNT: u32 = 4;
@@ -126,13 +123,9 @@ fn renderers(device: &Device, set: &UniformSet, case: Case) -> Fallible<[Solids;
         objects.pop();
     }
     let output = lend::pass(&OPTIONS, &[host::COLOR], Planes::Color);
-    let shading = HostShading {
-        shading: Arc::new(Shading::from_bytes(SHADING)?),
-        set_layout: set.layout,
-    };
+    let (slots, shading) = (host::FRAMES, Arc::new(Shading::from_bytes(SHADING)?));
     // SAFETY: the layout has the bindings that `sun.glsl` declares, and outlives the renderer.
-    let seen =
-        unsafe { Renderer::with_shading(device, output, &settings, host::FRAMES, &shading) }?;
+    let seen = unsafe { lend::shaded(device, output, &settings, slots, &shading, set.layout) }?;
     let seen = Solids::new(seen, &objects)?;
     let parallel = Planes::Depth { parallel: true };
     let output = lend::pass(&map::OPTIONS, &[], parallel);

@@ -21,13 +21,7 @@ pub const TEXEL: f64 = 2.0 * HALF / SIZE as f64;
 const BIAS: f64 = 0.5 * TEXEL / (2.0 * DISTANCE);
 
 /// Options of its pass.
-pub const OPTIONS: Options = Options {
-    width: SIZE,
-    height: SIZE,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
-};
+pub const OPTIONS: Options = Options::new(SIZE, SIZE);
 /// The layout in which shaders read the map.
 const READ: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 

@@ -39,6 +39,17 @@ static SOLIDS: LazyLock<(Arc<OffsetSurface>, [Object; 2])> = LazyLock::new(|| {
     (surface, [one, several])
 });
 
+const WHOLE: [f64; 4] = [0.0, 0.0, 64.0, 48.0];
+
+fn port([x, y, width, height]: [f64; 4]) -> Viewport {
+    Viewport {
+        x,
+        y,
+        width,
+        height,
+    }
+}
+
 /// The view from 6 units away, of 90 degrees in perspective. `up`: 1 if `y` points downwards.
 fn view_of(viewport: Viewport, parallel: bool, order: DepthOrder) -> Result<View> {
     let up = viewport.height.signum();
@@ -163,7 +174,7 @@ proptest! {
     ) {
         let order = if reversed { DepthOrder::Reversed } else { DepthOrder::Normal };
         let numbers = [x, y, width, height];
-        match view_of(Viewport { x, y, width, height }, parallel, order) {
+        match view_of(port(numbers), parallel, order) {
             Ok(view) => {
                 let finite = numbers.iter().all(|number| number.is_finite());
                 prop_assert!(finite && width > 0.0 && height != 0.0);
@@ -186,16 +197,9 @@ fn numbers_that_are_not_finite_are_named() {
     let keys = ["x", "y", "width", "height"];
     for (n, key) in keys.into_iter().enumerate() {
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let mut all = [0.0, 0.0, 64.0, 48.0];
+            let mut all = WHOLE;
             all[n] = odd;
-            let [x, y, width, height] = all;
-            let viewport = Viewport {
-                x,
-                y,
-                width,
-                height,
-            };
-            let error = view_of(viewport, false, DepthOrder::Normal).unwrap_err();
+            let error = view_of(port(all), false, DepthOrder::Normal).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Content);
             let named = error.to_string().contains(&format!("viewport.{key} is"));
             assert!(named, "{error}");
@@ -217,12 +221,8 @@ fn a_viewport_slides_out_to_each_side() {
             [1e9, 1e9],
         ] {
             for height in [48.0, -48.0] {
-                let viewport = Viewport {
-                    x,
-                    y: if height < 0.0 { y - height } else { y },
-                    width: 64.0,
-                    height,
-                };
+                let below = if height < 0.0 { y - height } else { y };
+                let viewport = port([x, below, 64.0, height]);
                 check(&view_of(viewport, parallel, DepthOrder::Normal).unwrap());
             }
         }
@@ -232,19 +232,13 @@ fn a_viewport_slides_out_to_each_side() {
 /// Depths follow the range of the viewport and the bias in any order, and invert.
 #[test]
 fn depths_are_in_the_range_of_the_viewport() {
-    let viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: 64.0,
-        height: 48.0,
-    };
     for (parallel, order) in [
         (false, DepthOrder::Normal),
         (false, DepthOrder::Reversed),
         (true, DepthOrder::Normal),
         (true, DepthOrder::Reversed),
     ] {
-        let plain = view_of(viewport, parallel, order).unwrap();
+        let plain = view_of(port(WHOLE), parallel, order).unwrap();
         let one = plain
             .with_depth_range([0.2, 0.7])
             .unwrap()
@@ -306,13 +300,7 @@ fn view_of_range(of: Range, parallel: bool, order: DepthOrder) -> Result<View> {
         DVec4::new(z, 0.0, 0.0, w),
         bottom,
     );
-    let viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: 64.0,
-        height: 48.0,
-    };
-    View::from_matrices(DMat4::IDENTITY, lens.transpose(), viewport, order)
+    View::from_matrices(DMat4::IDENTITY, lens.transpose(), port(WHOLE), order)
 }
 
 /// A projection whose depth runs against the order of the pass is refused, whatever its rays, its far

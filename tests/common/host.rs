@@ -1,16 +1,20 @@
 //! The host of `examples/host` for tests, opened with the validation layers and lent to the library.
 #![allow(unsafe_code, missing_docs, dead_code, clippy::unwrap_used)] // each crate of tests takes what it needs
 
+#[path = "canvas.rs"]
+pub mod canvas;
 #[path = "../../examples/host/mod.rs"]
 mod engine;
 
 use ash::vk;
 #[allow(unused_imports)] // each crate of tests takes what it needs
+pub use canvas::{Canvas, Drawn, Picture};
+#[allow(unused_imports)]
 pub use engine::{lend::*, memory::*, set::UniformSet, *};
 use glam::{DMat4, Vec3};
 use revmap::gpu::{
-    ComputeTarget, Device, HostDevice, HostPass, ObjectId, Output, PassFormats, PassKind, Renderer,
-    Requirements, View,
+    ComputeTarget, DepthOrder, Device, HostDevice, HostPass, ObjectId, Output, PassFormats,
+    PassKind, PreparedFrame, Renderer, Requirements, View,
 };
 use revmap::scene::Scene;
 use revmap::settings::{Planes, SearchSettings};
@@ -171,67 +175,6 @@ pub fn frame(
     engine::lend::frame(stage, renderer, view, (clip, Vec3::Z), meshes).unwrap();
 }
 
-/// Draws a frame of the first slot into attachments, with the set of the host's shading, and waits.
-pub fn draw_into(
-    host: &Host,
-    into: &Attachments,
-    clears: &[vk::ClearColorValue],
-    renderer: &mut Renderer,
-    view: &View,
-    set: Option<&UniformSet>,
-) {
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording; no frame is in flight; the pass has the output's formats, and
-        // the layout has the set.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, view).unwrap();
-            if let Some(set) = set {
-                let (point, layout) = (vk::PipelineBindPoint::GRAPHICS, renderer.pipeline_layout());
-                set.bind(cmd, point, layout.unwrap(), 3);
-            }
-            let record = || renderer.record(cmd, &frame).unwrap();
-            into.draw(cmd, clears, false, record);
-            into.copy(cmd);
-        }
-    });
-}
-
-/// A buffer of two words a pixel as the target of compute.
-pub fn target(words: &HostBuffer) -> ComputeTarget {
-    ComputeTarget {
-        words: words.raw,
-        images: Vec::new(),
-        depths: true,
-    }
-}
-
-/// Draws a frame of the first slot in compute over words of depth and colour, two a pixel, and
-/// returns them.
-pub fn draw_words(
-    host: &Host,
-    words: &[u32],
-    renderer: &mut Renderer,
-    view: &View,
-    set: Option<&UniformSet>,
-) -> Vec<u32> {
-    let buffer = HostBuffer::of(host, words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
-    // SAFETY: the buffer has two words per pixel, and no later frame is drawn into it.
-    unsafe { renderer.set_compute_target(target(&buffer)) }.unwrap();
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, view).unwrap();
-            if let Some(set) = set {
-                let (point, layout) = (vk::PipelineBindPoint::COMPUTE, renderer.pipeline_layout());
-                set.bind(cmd, point, layout.unwrap(), 3);
-            }
-            renderer.record_compute(cmd, &frame).unwrap();
-            barrier(host, cmd, &[]);
-        }
-    });
-    bytemuck::pod_collect_to_vec(&buffer.bytes())
-}
-
 /// A texture of one level, and a sampler that repeats around the axis, as the library's does.
 pub struct Texture<'a> {
     pub sampler: vk::Sampler,
@@ -243,13 +186,7 @@ impl<'a> Texture<'a> {
     /// A square texture.
     pub fn new(host: &'a Host, format: vk::Format, texels: &[[u8; 4]]) -> Self {
         let side = texels.len().isqrt() as u32;
-        let size = Options {
-            width: side,
-            height: side,
-            dynamic: true,
-            samples: 1,
-            reversed: false,
-        };
+        let size = Options::new(side, side);
         type Usage = vk::ImageUsageFlags;
         let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
         let memory = HostImage::new(host, &size, format, usage).unwrap();
@@ -292,39 +229,11 @@ impl Drop for Texture<'_> {
 }
 
 /// Records commands, submits them and waits.
-pub fn once(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
-    commands(host, true, record);
+pub fn once<T>(host: &Host, record: impl FnOnce(vk::CommandBuffer) -> T) -> T {
+    commands(host, true, record).unwrap()
 }
 
 /// Records commands and drops them.
-pub fn never(host: &Host, record: impl FnOnce(vk::CommandBuffer)) {
-    commands(host, false, record);
-}
-
-/// Records commands. With `submits` submits them and waits.
-pub fn commands(host: &Host, submits: bool, record: impl FnOnce(vk::CommandBuffer)) {
-    let device = &host.device;
-    // SAFETY: everything is created here, waited for, then destroyed.
-    unsafe {
-        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
-        let pool = device.create_command_pool(&pool, None).unwrap();
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(pool)
-            .command_buffer_count(1);
-        let cmd = device.allocate_command_buffers(&info).unwrap()[0];
-        device
-            .begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())
-            .unwrap();
-        record(cmd);
-        device.end_command_buffer(cmd).unwrap();
-        if submits {
-            let all = [cmd];
-            let submit = vk::SubmitInfo::default().command_buffers(&all);
-            device
-                .queue_submit(host.queue, &[submit], vk::Fence::null())
-                .unwrap();
-            device.queue_wait_idle(host.queue).unwrap();
-        }
-        device.destroy_command_pool(pool, None);
-    }
+pub fn never<T>(host: &Host, record: impl FnOnce(vk::CommandBuffer) -> T) -> T {
+    commands(host, false, record).unwrap()
 }

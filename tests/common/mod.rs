@@ -8,6 +8,7 @@ pub mod host;
 pub mod outlines;
 pub mod passing;
 pub mod prelude;
+pub mod random;
 mod scenes;
 pub mod shapes;
 pub mod ways;

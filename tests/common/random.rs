@@ -52,4 +52,47 @@ impl Random {
         }
         last
     }
+    /// Corners of a polygon by its kind: half a star with both ends on the axis (0), a star off the
+    /// axis, which is a ring (1), discs, cones and cylinders on top of each other (2), or any,
+    /// whose edges may cross (3).
+    pub fn polygon(&mut self, kind: u64, count: usize) -> Vec<[f64; 2]> {
+        let last = count as f64;
+        match kind {
+            0 => (0..=count)
+                .map(|k| on_half_turn(k, count, self.between(0.15, 0.48)))
+                .collect(),
+            1 => (0..count)
+                .map(|k| {
+                    let angle = std::f64::consts::TAU * k as f64 / last;
+                    let radius = self.between(0.05, 0.22);
+                    [0.26 + radius * angle.cos(), 0.5 + radius * angle.sin()]
+                })
+                .collect(),
+            2 => {
+                let mut points = vec![[0.0, 0.04]];
+                for k in 0..count {
+                    let z = 0.04 + 0.9 * k as f64 / last;
+                    let (low, high) = (self.between(0.08, 0.46), self.between(0.08, 0.46));
+                    points.push([low, z]);
+                    points.push([if self.chance(0.5) { low } else { high }, z + 0.9 / last]);
+                }
+                points.push([0.0, 0.94]);
+                points
+            }
+            _ => (0..count.min(6))
+                .map(|_| [self.between(0.0, 0.48), self.between(0.02, 0.98)])
+                .collect(),
+        }
+    }
+}
+
+/// Point `k` of `count` and one more on a half turn about the middle of the box, `radius` away.
+pub fn on_half_turn(k: usize, count: usize, radius: f64) -> [f64; 2] {
+    let (sin, cos) = (std::f64::consts::PI * (k as f64 / count as f64 - 0.5)).sin_cos();
+    let r = if k.is_multiple_of(count) {
+        0.0
+    } else {
+        radius * cos
+    };
+    [r, 0.5 + radius * sin]
 }

@@ -2,7 +2,7 @@
 
 #![allow(dead_code)] // the reference takes all, the library some
 
-use super::random::Random;
+use super::random::{Random, on_half_turn};
 use glam::DVec2;
 use revmap::profile::Outline;
 
@@ -22,19 +22,9 @@ pub(crate) fn cone(r: f64, low: f64, high: f64) -> Outline {
     outline([(0.0, low), (r, low), (0.0, high)])
 }
 
-/// Points at the angles of `n` segments from the lower pole of the axis to the upper one.
-fn half_turn(n: usize, mut radius: impl FnMut() -> f64) -> Outline {
-    outline((0..=n).map(|k| {
-        let (sin, cos) = (std::f64::consts::PI * (k as f64 / n as f64 - 0.5)).sin_cos();
-        let radius = radius();
-        let r = if k % n == 0 { 0.0 } else { radius * cos };
-        (r, 0.5 + radius * sin)
-    }))
-}
-
 /// A ball of `n` segments from pole to pole.
 pub(crate) fn ball(radius: f64, n: usize) -> Outline {
-    half_turn(n, || radius)
+    outline((0..=n).map(|k| on_half_turn(k, n, radius).into()))
 }
 
 /// A torus: ring radius 0.3, tube radius 0.12, 40 segments.
@@ -76,29 +66,6 @@ pub(crate) fn hollow() -> Outline {
 /// `seed`.
 pub(crate) fn random(seed: u64) -> Outline {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1);
-    let mut next = move || random.next();
-    let n = 3 + (next() * 9.0) as usize;
-    match seed % 3 {
-        // Half a star: both ends on the axis.
-        0 => half_turn(n, || 0.15 + 0.33 * next()),
-        // A whole star off the axis: a ring.
-        1 => outline((0..n).map(|k| {
-            let angle = std::f64::consts::TAU * k as f64 / n as f64;
-            let radius = 0.05 + 0.17 * next();
-            (0.26 + radius * angle.cos(), 0.5 + radius * angle.sin())
-        })),
-        // Discs, cones and cylinders on top of each other: horizontal and vertical edges.
-        _ => {
-            let mut points = vec![(0.0, 0.04)];
-            let (mut z, step) = (0.04, 0.9 / n as f64);
-            for _ in 0..n {
-                let (low, high) = (0.08 + 0.38 * next(), 0.08 + 0.38 * next());
-                points.push((low, z));
-                z += step;
-                points.push((if next() < 0.5 { low } else { high }, z));
-            }
-            points.push((0.0, z));
-            outline(points)
-        }
-    }
+    let count = 3 + random.below(9);
+    outline(random.polygon(seed % 3, count).into_iter().map(Into::into))
 }

@@ -28,6 +28,21 @@ pub fn scene_of(profile: Profile, eye: DVec3) -> Scene {
     scene
 }
 
+/// All shapes in a circle, turned and stretched, some within others.
+#[allow(dead_code)] // each crate of tests takes what it needs
+pub fn circle_of_shapes(all: impl IntoIterator<Item = (&'static str, Profile)>) -> Scene {
+    let camera = Camera::new(DVec3::new(2.6, 1.9, 1.7), DVec3::new(0.0, 0.0, 0.3));
+    let mut scene = Scene::new(camera);
+    for (n, (name, profile)) in all.into_iter().enumerate() {
+        let turn = n as f64 * 0.8;
+        let at = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
+        let mut object = Object::new(name, Arc::new(profile));
+        object.placement = placement(at, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
+        scene.objects.push(object);
+    }
+    scene
+}
+
 /// The position of a camera that looks at the middle of a box of height 1 from `distance`,
 /// `elevation` degrees up.
 pub fn eye(elevation: f64, distance: f64) -> DVec3 {

@@ -7,7 +7,6 @@ mod common;
 mod antialias;
 mod cast;
 mod contours;
-mod hull_gaps;
 mod hull_rays;
 mod imports;
 mod surface;

@@ -36,22 +36,15 @@ fn scenes() -> Vec<(&'static str, Scene)> {
             scene_of(shapes::sphere(), DVec3::new(0.1, 0.05, 0.4)),
         ),
     ];
-    let mut crowd = Scene::new(Camera::new(
-        DVec3::new(2.6, 1.9, 1.7),
-        DVec3::new(0.0, 0.0, 0.3),
-    ));
+    let mut crowd = circle_of_shapes(shapes::all());
     crowd.background = [0.1, 0.2, 0.3, 1.0];
-    for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
-        let mut object = Object::new(name, Arc::new(profile));
+    for (n, object) in crowd.objects.iter_mut().enumerate() {
         let turn = n as f64 * 0.8;
         object.color = [0.2 + 0.1 * n as f32, 0.9 - 0.1 * n as f32, 0.5];
-        let at = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
-        object.placement = placement(at, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
         // Copies that pass through one another.
         let at = [0.3 - 0.1 * turn, 0.2, 0.2];
         let copy = placement(at, [turn, 0.0, 0.4], [0.5, 0.5, 0.9]);
         object.instances = vec![object.placement, copy].into();
-        crowd.objects.push(object);
     }
     all.push(("crowd", crowd));
     all

@@ -268,25 +268,20 @@ pub fn planted_instance(
     unsafe { ash::Instance::load_with(load, handle) }
 }
 
-/// Features removed from a physical device.
+/// Changes of what a physical device reports.
 #[derive(Clone, Copy, Default)]
 pub struct Mask {
-    pub version: bool,
-    pub stores: bool,
-    pub anisotropy: bool,
-    pub timestamps: bool,
-    pub compute: bool,
-    /// Components between vertex and fragment shader beyond 64, the minimum in Vulkan.
-    pub varyings: bool,
-    /// More than one sample per pixel.
-    pub samples: bool,
+    /// The least limits of Vulkan 1.2, with a change.
+    pub limits: Option<fn(&mut vk::PhysicalDeviceLimits)>,
+    pub properties: Option<fn(&mut vk::PhysicalDeviceProperties)>,
+    pub features: Option<fn(&mut vk::PhysicalDeviceFeatures)>,
+    pub families: Option<fn(&mut vk::QueueFamilyProperties)>,
+    /// True if a pixel has one sample at most.
+    pub one_sample: bool,
+    /// A format without any use.
     pub format: Option<vk::Format>,
     /// Another number of invocations in a subgroup; 0 keeps the device's own.
     pub subgroup: u32,
-    /// Bytes of the largest storage buffer, if not 0.
-    pub storage: u32,
-    /// The least limits of Vulkan 1.2, with a change.
-    pub limits: Option<fn(&mut vk::PhysicalDeviceLimits)>,
 }
 
 static MASK: LazyLock<Mutex<Mask>> = LazyLock::new(Mutex::default);
@@ -335,24 +330,16 @@ above! { queries;
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceProperties
     ), |real| {
         real(physical, out);
-        let mask = mask();
-        let limits = &mut (*out).limits;
-        if mask.version {
-            (*out).api_version = vk::API_VERSION_1_1;
-        }
+        let (mask, out) = (mask(), &mut *out);
         if let Some(change) = mask.limits {
-            *limits = least_limits();
-            change(limits);
+            out.limits = least_limits();
+            change(&mut out.limits);
         }
-        if mask.samples {
-            limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
+        if mask.one_sample {
+            out.limits.framebuffer_color_sample_counts = vk::SampleCountFlags::TYPE_1;
         }
-        if mask.varyings {
-            limits.max_fragment_input_components = 64;
-            limits.max_vertex_output_components = 64;
-        }
-        if mask.storage > 0 {
-            limits.max_storage_buffer_range = mask.storage;
+        if let Some(change) = mask.properties {
+            change(out);
         }
     }
     "vkGetPhysicalDeviceProperties2" properties2: PFN_vkGetPhysicalDeviceProperties2(
@@ -373,36 +360,24 @@ above! { queries;
         physical: vk::PhysicalDevice, out: *mut vk::PhysicalDeviceFeatures
     ), |real| {
         real(physical, out);
-        let mask = mask();
-        if mask.stores {
-            (*out).fragment_stores_and_atomics = vk::FALSE;
-        }
-        if mask.anisotropy {
-            (*out).sampler_anisotropy = vk::FALSE;
+        if let Some(change) = mask().features {
+            change(&mut *out);
         }
     }
     "vkGetPhysicalDeviceQueueFamilyProperties" families: PFN_vkGetPhysicalDeviceQueueFamilyProperties(
         physical: vk::PhysicalDevice, count: *mut u32, out: *mut vk::QueueFamilyProperties
     ), |real| {
         real(physical, count, out);
-        let mask = mask();
         // `out` has room for `count`, or is null.
-        let room = if out.is_null() { 0 } else { *count as usize };
-        for n in 0..room {
-            if mask.timestamps {
-                (*out.add(n)).timestamp_valid_bits = 0;
-            }
-            if mask.compute {
-                (*out.add(n)).queue_flags &= !vk::QueueFlags::COMPUTE;
-            }
+        if let Some(change) = mask().families && !out.is_null() {
+            (0..*count as usize).for_each(|n| change(&mut *out.add(n)));
         }
     }
     "vkGetPhysicalDeviceFormatProperties" formats: PFN_vkGetPhysicalDeviceFormatProperties(
         physical: vk::PhysicalDevice, format: vk::Format, out: *mut vk::FormatProperties
     ), |real| {
         real(physical, format, out);
-        let mask = mask();
-        if mask.format == Some(format) {
+        if mask().format == Some(format) {
             *out = vk::FormatProperties::default();
         }
     }
@@ -411,8 +386,7 @@ above! { queries;
         usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags, out: *mut vk::ImageFormatProperties
     ) -> vk::Result, |real| {
         let said = real(physical, format, kind, tiling, usage, flags, out);
-        let mask = mask();
-        if mask.samples {
+        if mask().one_sample {
             (*out).sample_counts = vk::SampleCountFlags::TYPE_1;
         }
         said

@@ -2,21 +2,12 @@
 //! the part that they share, whatever draws them.
 #![allow(unsafe_code)]
 
-use crate::common::host::{self, borrow, open, order, viewport};
-use crate::common::ways::STAGES;
-use crate::common::{
-    device, draw, drawn_by, eye, from_boxes, offset, placement, reference, shapes,
-};
+use crate::common::host::{self, opened};
+use crate::common::prelude::*;
+use crate::common::random::Random;
 use crate::embedding::{self, options};
-use crate::random::Random;
 use crate::speckles::{Picture, speckles};
-use glam::{DQuat, DVec3};
-use revmap::gpu::{DrawPath, View};
-use revmap::profile::Profile;
-use revmap::scene::{Camera, Object, Placement, Scene, Shadow};
-use revmap::settings::{Settings, Solver, Tolerance};
 use revmap_searches::SECANT;
-use std::sync::Arc;
 
 pub const SIZE: (u32, u32) = (240, 180);
 
@@ -137,11 +128,6 @@ fn behind_a_ball(mut scene: Scene) -> Scene {
     scene
 }
 
-pub fn changed(mut scene: Scene, change: impl FnOnce(&mut Scene)) -> Scene {
-    change(&mut scene);
-    scene
-}
-
 /// Settings that draw by cells or lists of patches, by boxes, and by what is chosen.
 fn ways(settings: Settings) -> [Settings; 3] {
     let cells = Settings {
@@ -167,7 +153,7 @@ fn check(name: &str, scene: &Scene, solver: Solver, least: usize, failures: &mut
 
 #[test]
 fn the_first_copy_is_seen_in_both_stages() {
-    let at_eye = |eye: [f64; 3]| changed(plates(), |scene| scene.camera.eye = eye.into());
+    let at_eye = |eye: [f64; 3]| plates().with(|scene| scene.camera.eye = eye.into());
     let far_off = DVec3::new(1234.5, -3456.7, 98.7);
     let scenes = [
         ("a plate before its inlay", inlay(0), 600),
@@ -176,22 +162,18 @@ fn the_first_copy_is_seen_in_both_stages() {
         ("plates", plates(), 3000),
         (
             "replicas",
-            changed(plates(), |s| s.objects[0].repeat = [2, 2, 1]),
+            plates().with(|s| s.objects[0].repeat = [2, 2, 1]),
             3000,
         ),
         (
             "an offset",
-            changed(plates(), |scene| {
+            plates().with(|scene| {
                 scene.objects[0].offset = offset(0.02, 0.0, 1.0);
                 scene.objects[0].placement.position.z -= 0.02;
             }),
             3000,
         ),
-        (
-            "shadows",
-            changed(plates(), |s| s.shadow = Shadow::Hard),
-            3000,
-        ),
+        ("shadows", plates().with(|s| s.shadow = Shadow::Hard), 3000),
         ("tilted copies", tilted(copies()), 4000),
         ("tilted plates", tilted(plates()), 3000),
         (
@@ -203,7 +185,7 @@ fn the_first_copy_is_seen_in_both_stages() {
         ("a near eye", at_eye([0.3, 0.1, 0.45]), 2000),
         (
             "a wide lens",
-            changed(at_eye([0.6, 0.4, 0.6]), |s| s.camera.fov_y = 120.0),
+            at_eye([0.6, 0.4, 0.6]).with(|s| s.camera.fov_y = 120.0),
             1000,
         ),
         ("a far eye", from_afar(plates(), 100.0), 2500),
@@ -238,7 +220,7 @@ fn the_first_copy_is_seen_by_other_searches() {
             ("inlay", inlay(1)),
             ("copies", tilted(copies())),
             ("plates", plates()),
-            ("shadows", changed(plates(), |s| s.shadow = Shadow::Hard)),
+            ("shadows", plates().with(|s| s.shadow = Shadow::Hard)),
         ] {
             check(name, &scene, solver, 500, &mut failures);
         }
@@ -365,12 +347,13 @@ fn the_reference_sees_the_first_copy() {
 /// A host's views of both orders of depths, without a far plane and with one.
 #[test]
 fn a_host_sees_the_first_copy() {
-    let host = open();
-    let device = borrow(&host);
+    let (host, device) = opened();
     for scene in [inlay(0), tilted(plates()), copies(), wide_plates(1.0, 9.0)] {
         for reversed in [false, true] {
-            let options = embedding_options(reversed);
-            let view = view_of(&scene, reversed);
+            let options = options().with(|o| o.reversed = reversed);
+            let camera = &scene.camera;
+            let both = host::view_and_projection(camera.eye, camera.target, &options);
+            let view = host::view(both, &options).unwrap();
             let drawn = |scene: &Scene| {
                 let (bytes, depths) = embedding::drawn(&host, &device, options, scene, &view);
                 let far = if reversed { 0.0 } else { 1.0 };
@@ -394,23 +377,4 @@ fn a_host_sees_the_first_copy() {
             );
         }
     }
-}
-
-fn embedding_options(reversed: bool) -> host::Options {
-    host::Options {
-        reversed,
-        ..options()
-    }
-}
-
-fn view_of(scene: &Scene, reversed: bool) -> View {
-    let options = embedding_options(reversed);
-    let camera = &scene.camera;
-    let [view, mut lens] = host::view_and_projection(camera.eye, camera.target, &options);
-    let (near, far) = (0.1, 50.0);
-    (lens.z_axis.z, lens.w_axis.z) = match reversed {
-        true => (0.0, near),
-        false => (far / (near - far), near * far / (near - far)),
-    };
-    View::from_matrices(view, lens, viewport(&options), order(&options)).unwrap()
 }

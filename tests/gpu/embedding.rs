@@ -2,24 +2,16 @@
 //! that of `examples/host`, with the validation layers' synchronization checks.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    self, Attachments, Host, Mesh, Options, Stage, UniformSet, frame, opened, order, viewport,
-};
+use crate::common::host::{self, Drawn, Host, Mesh, Options, Picture, Stage, frame, opened};
 use crate::common::prelude::*;
 
 pub const BACKGROUND: [f32; 4] = [0.2, 0.25, 0.3, 1.0];
 
 pub fn options() -> Options {
-    Options {
-        width: 240,
-        height: 180,
-        dynamic: true,
-        samples: 1,
-        reversed: false,
-    }
+    Options::new(240, 180)
 }
 
-pub fn renderer(device: &Device, stage: &Stage) -> Renderer {
+fn renderer(device: &Device, stage: &Stage) -> Renderer {
     host::renderer(device, stage, &SearchSettings::exact(), host::FRAMES)
 }
 
@@ -90,37 +82,7 @@ pub fn every_way() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-/// Bytes of colours, if a picture has any, and depths.
-pub type Picture = (Vec<u8>, Vec<f32>);
-
-/// The first frame of a renderer in a pass of these attachments, or in compute over far pixels.
-pub fn first_frame(
-    host: &Host,
-    options: Options,
-    formats: Option<&[(vk::Format, usize)]>,
-    (renderer, view): (&mut Renderer, &View),
-    set: Option<&UniformSet>,
-) -> Picture {
-    let Some(formats) = formats else {
-        let words = host::draw_words(host, &far_words(&options), renderer, view, set);
-        let (depths, colors) = words.split_at(words.len() / 2);
-        let depths = depths.iter().map(|bits| f32::from_bits(*bits));
-        return (bytemuck::cast_slice(colors).to_vec(), depths.collect());
-    };
-    let into = Attachments::new(host, options, formats).unwrap();
-    let clears = vec![vk::ClearColorValue::default(); formats.len()];
-    host::draw_into(host, &into, &clears, renderer, view, set);
-    let color = formats.first().map(|_| into.color(0));
-    (color.unwrap_or_default(), into.depths())
-}
-
-/// Words of depths, all far, then of colours, all 0.
-pub fn far_words(options: &Options) -> Vec<u32> {
-    let pixels = (options.width * options.height) as usize;
-    [vec![1f32.to_bits(); pixels], vec![0; pixels]].concat()
-}
-
-/// The host's picture of this scene only, from the off-screen camera.
+/// The host's picture of this scene only, in a pass of colours by the exact search.
 pub fn drawn(
     host: &Host,
     device: &Device,
@@ -128,25 +90,11 @@ pub fn drawn(
     scene: &Scene,
     view: &View,
 ) -> Picture {
-    drawn_by(host, device, options, scene, view, &SearchSettings::exact())
-}
-
-/// The same by other settings.
-pub fn drawn_by(
-    host: &Host,
-    device: &Device,
-    options: Options,
-    scene: &Scene,
-    view: &View,
-    settings: &SearchSettings,
-) -> Picture {
-    let mut stage = Stage::new(host, options).unwrap();
-    let mut renderer = host::renderer(device, &stage, settings, host::FRAMES);
-    host::add(&mut renderer, scene);
-    for _ in 0..3 {
-        frame(&mut stage, &mut renderer, view, DMat4::IDENTITY, &[]);
-    }
-    stage.read().unwrap()
+    let output = host::pass(&options, &[host::COLOR], Planes::Color);
+    let by = (output, &SearchSettings::exact());
+    Drawn::new(host, device, options, by, scene)
+        .seen(view)
+        .picture()
 }
 
 #[test]
@@ -158,15 +106,22 @@ fn alone_it_draws_the_off_screen_frame() {
     let wanted = revmap_files::Picture::of(&next_frame(&mut offscreen));
     let wanted = wanted.unwrap().rgba.concat();
     let view = *offscreen.view();
+    let drawn = |options: Options| {
+        let mut stage = Stage::new(&host, options).unwrap();
+        let mut renderer = renderer(&device, &stage);
+        host::add(&mut renderer, &scene);
+        for _ in 0..3 {
+            frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
+        }
+        stage.read().unwrap().0
+    };
     for dynamic in [true, false] {
         let options = options().with(|o| o.dynamic = dynamic);
-        let one = drawn(&host, &device, options, &scene, &view).0;
+        let one = drawn(options);
         assert!(one == wanted, "dynamic {dynamic}: pixels differ");
         // All four samples use the ray through the pixel's centre, so pixels away from silhouettes
         // are equal.
-        let samples = 4;
-        let options = Options { samples, ..options };
-        let four = drawn(&host, &device, options, &scene, &view).0;
+        let four = drawn(options.with(|o| o.samples = 4));
         let differ = (0..wanted.len() / 4)
             .filter(|n| one[4 * n..4 * n + 4] != four[4 * n..4 * n + 4])
             .count();
@@ -209,8 +164,7 @@ fn meshes_meet_solids_where_they_should() {
         renderer.add(object.clone()).unwrap();
         let sphere = Mesh::sphere(&host, 256, middle.as_vec3(), radius as f32, Vec3::Z).unwrap();
         let [view, projection] = host::view_and_projection(from, to, &options);
-        let port = viewport(&options);
-        let seen = View::from_matrices(view, projection, port, order(&options)).unwrap();
+        let seen = host::view([view, projection], &options).unwrap();
         for _ in 0..2 {
             let meshes = std::slice::from_ref(&sphere);
             frame(&mut stage, &mut renderer, &seen, projection * view, meshes);

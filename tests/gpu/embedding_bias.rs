@@ -1,17 +1,16 @@
 //! Biases of depths, for shadow maps: constant, and by the slope of the surface.
 
-use crate::common::host::{borrow, color_pass, open, opened, viewport};
+use crate::common::host::{self, opened};
 use crate::common::prelude::*;
 use crate::embedding::{matrices, options, three};
-use crate::embedding_outputs::{by_proxies_of, depth_only, depths, parallel, seen};
+use crate::embedding_outputs::{WIDE, by_proxies_of, depth_only, depths};
 
 /// A bias shifts the depth of every hit, and nothing else.
 #[test]
 fn a_bias_shifts_depths() {
     let (host, device) = opened();
     let scene = three();
-    let [view, projection] = matrices(&scene);
-    let light = seen(view, projection);
+    let light = host::view(matrices(&scene), &options()).unwrap();
     let exact = SearchSettings::exact();
     let [plain, shifted] = [light, light.with_depth_bias(1e-3)]
         .map(|light| depths(&host, &device, &scene, &light, &exact, &depth_only(false)).0);
@@ -48,33 +47,24 @@ fn compare_slopes(plain: &[f32], biased: &[f32], factor: f32, limit: f32) -> [us
     [compared, wrong, limited]
 }
 
-/// Turns depths round: `z` becomes `w - z`.
-const REVERSE: DMat4 = DMat4::from_cols(
-    DVec4::X,
-    DVec4::Y,
-    DVec4::new(0.0, 0.0, -1.0, 0.0),
-    DVec4::new(0.0, 0.0, 1.0, 1.0),
-);
-
 /// A bias for slopes moves depths away from the eye by the slope of the tangent plane: by cells and
 /// by boxes, along rays from an eye and parallel ones, in both orders of depth.
 #[test]
 fn a_bias_follows_slopes() {
     let (host, device) = opened();
     let scene = three();
-    let [view, perspective] = matrices(&scene);
+    let [look, _] = matrices(&scene);
     let factor = 1.5;
-    for (is_parallel, projection, limit) in [(false, perspective, 2e-4), (true, parallel(), 4e-3)] {
+    let narrow = host::scales(&options());
+    for (is_parallel, scales, range, limit) in [
+        (false, narrow, [0.1, 50.0], 2e-4),
+        (true, WIDE, [0.5, 6.0], 4e-3),
+    ] {
         for least in [0, u32::MAX] {
-            let order = match least {
-                0 => DepthOrder::Reversed,
-                _ => DepthOrder::Normal,
-            };
-            let seen_by = match order {
-                DepthOrder::Normal => projection,
-                DepthOrder::Reversed => REVERSE * projection,
-            };
-            let light = View::from_matrices(view, seen_by, viewport(&options()), order).unwrap();
+            let options = options().with(|o| o.reversed = least == 0);
+            let order = host::order(&options);
+            let lens = host::lens(scales, is_parallel, options.reversed, range);
+            let light = host::view([look, lens], &options).unwrap();
             let settings = by_proxies_of(least);
             let pass = depth_only(is_parallel).with(|p| p.depth = order);
             let sloped = PassFormats {
@@ -101,26 +91,4 @@ fn a_bias_follows_slopes() {
             assert!(planted > compared / 2, "{planted} of {compared}");
         }
     }
-}
-
-/// A bias that is no number, or of planes that have none, is refused.
-#[test]
-fn wrong_slope_biases_are_refused() {
-    for (factor, limit) in [
-        (-1.0, 1.0),
-        (f32::NAN, 1.0),
-        (1.0, f32::INFINITY),
-        (1.0, 0.0),
-    ] {
-        let refused = SlopeBias::new(factor, limit).unwrap_err();
-        assert_eq!(refused.kind, ErrorKind::Usage, "{refused}");
-    }
-    let host = open();
-    let output = Output::Pass(PassFormats {
-        slope_bias: SlopeBias::new(1.0, 1.0).unwrap(),
-        ..color_pass()
-    });
-    let refused = Renderer::new(&borrow(&host), output, &SearchSettings::exact(), 1);
-    let refused = refused.err().unwrap().to_string();
-    assert!(refused.contains("Planes::Depth"), "{refused}");
 }

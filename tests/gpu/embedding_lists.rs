@@ -2,81 +2,55 @@
 //! into the last frame.
 #![allow(unsafe_code)]
 
-use crate::common::host::{
-    Attachments, Host, Options, borrow, dynamic, open, opened, view_of, viewport,
-};
+use crate::common::host::{self, Drawn, Host, Options, dynamic, opened};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
 use revmap::cast::RayCaster;
 
 type F = vk::Format;
 
-/// Every plane with a format of 32 bits a channel, and the number of channels.
-const PLANES: [(Plane, vk::Format, usize); 7] = [
-    (Plane::Material, F::R32G32_SFLOAT, 2),
-    (Plane::Identity, F::R32G32_UINT, 2),
-    (Plane::Motion, F::R32G32_SFLOAT, 2),
-    (Plane::Color, F::R32G32B32A32_SFLOAT, 4),
-    (Plane::Normal, F::R32G32B32A32_SFLOAT, 4),
-    (Plane::OctahedralNormal, F::R32G32_SFLOAT, 2),
-    (Plane::BaseColor, F::R32G32B32A32_SFLOAT, 4),
+/// Every plane, with a format of 32 bits a channel.
+const PLANES: [(Plane, vk::Format); 7] = [
+    (Plane::Material, F::R32G32_SFLOAT),
+    (Plane::Identity, F::R32G32_UINT),
+    (Plane::Motion, F::R32G32_SFLOAT),
+    (Plane::Color, F::R32G32B32A32_SFLOAT),
+    (Plane::Normal, F::R32G32B32A32_SFLOAT),
+    (Plane::OctahedralNormal, F::R32G32_SFLOAT),
+    (Plane::BaseColor, F::R32G32B32A32_SFLOAT),
 ];
-
-fn listed(planes: &[Plane]) -> (Output, Vec<(vk::Format, usize)>) {
-    let of = |plane: &Plane| *PLANES.iter().find(|(p, ..)| p == plane).unwrap();
-    let formats: Vec<_> = planes.iter().map(|p| (of(p).1, 4 * of(p).2)).collect();
-    let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
-    let list = Planes::List(PlaneList::new(planes).unwrap());
-    (
-        Output::Pass(PassFormats::new(dynamic(&colors), list)),
-        formats,
-    )
-}
-
 /// A renderer of a list of planes, and what it draws into.
 struct Lists<'a> {
-    renderer: Renderer,
-    ids: Vec<ObjectId>,
-    into: Attachments<'a>,
+    drawn: Drawn<'a>,
     planes: Vec<Plane>,
-    host: &'a Host,
 }
 
 impl<'a> Lists<'a> {
     fn new(
-        host: &'a Host,
-        device: &Device,
+        (host, device): (&'a Host, &Device),
         planes: &[Plane],
         scene: &Scene,
         settings: &SearchSettings,
     ) -> Self {
-        let (output, formats) = listed(planes);
-        let mut renderer = Renderer::new(device, output, settings, 1).unwrap();
+        let format = |plane: &Plane| PLANES.iter().find(|(p, _)| p == plane).unwrap().1;
+        let formats: Vec<_> = planes.iter().map(format).collect();
+        let list = Planes::List(PlaneList::new(planes).unwrap());
+        let output = Output::Pass(PassFormats::new(dynamic(&formats), list));
         Self {
-            ids: host::add(&mut renderer, scene),
-            renderer,
-            into: Attachments::new(host, options(), &formats).unwrap(),
+            drawn: Drawn::new(host, device, options(), (output, settings), scene),
             planes: planes.to_vec(),
-            host,
         }
     }
 
     fn draw(&mut self, view: &View) {
-        let clear = |plane: &Plane| match plane {
-            Plane::Identity => vk::ClearColorValue {
-                uint32: [u32::MAX; 4],
-            },
-            _ => vk::ClearColorValue { float32: [0.0; 4] },
-        };
-        let clears: Vec<_> = self.planes.iter().map(clear).collect();
-        let (into, renderer) = (&self.into, &mut self.renderer);
-        host::draw_into(self.host, into, &clears, renderer, view, None);
+        self.drawn.view = *view;
+        self.drawn.picture();
     }
 
     /// The words of a plane, `N` a pixel.
     fn read<const N: usize>(&self, plane: Plane) -> Vec<[u32; N]> {
         let number = self.planes.iter().position(|p| *p == plane).unwrap();
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.into.color(number));
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.drawn.canvas.planes()[number]);
         words.as_chunks().0.to_vec()
     }
 
@@ -98,31 +72,25 @@ fn scene() -> Scene {
     scene
 }
 
-fn all_planes(scene: &Scene, solver: Solver) -> Frame {
-    let settings = sized(options().width, options().height).with(|s| s.solver = solver);
-    draw(scene, &settings)
-}
-
 /// Copies of an object have its number, whatever their levels.
 #[test]
 fn levels_of_copies_keep_the_identity() {
-    let (host, mut scene) = (open(), three());
-    let device = borrow(&host);
+    let ((host, device), mut scene) = (opened(), three());
     let copy = |n: u32| Placement {
         position: DVec3::new(f64::from(n % 10) - 4.5, -4.0 * f64::from(n / 10), 0.0),
         ..Placement::default()
     };
     scene.objects[1].instances = (0..100).map(copy).collect();
     let settings = SearchSettings::exact().with(|s| s.tolerance = Tolerance::DEFAULT);
-    let mut lists = Lists::new(&host, &device, &[Plane::Identity], &scene, &settings);
-    lists.draw(&view_of(&scene, &options()));
-    let numbers: HashSet<u32> = lists.ids.iter().map(|id| id.number()).collect();
+    let mut lists = Lists::new((&host, &device), &[Plane::Identity], &scene, &settings);
+    lists.drawn.picture();
+    let numbers: HashSet<u32> = lists.drawn.ids.iter().map(|id| id.number()).collect();
     let drawn = lists.read::<2>(Plane::Identity);
-    let levels = lists.renderer.copy_levels().concat();
+    let levels = lists.drawn.renderer.copy_levels().concat();
     let mut drawn_levels = HashSet::new();
     for [object, copy] in drawn.into_iter().filter(|pixel| *pixel != [u32::MAX; 2]) {
         assert!(numbers.contains(&object), "object {object}");
-        if object == lists.ids[1].number() {
+        if object == lists.drawn.ids[1].number() {
             drawn_levels.insert(levels[copy as usize]);
         }
     }
@@ -138,14 +106,14 @@ fn far(a: &[f32], b: &[f32]) -> f32 {
 /// its own identity.
 #[test]
 fn planes_of_a_list_are_those_of_a_frame() {
-    let (host, scene) = (open(), scene());
-    let device = borrow(&host);
+    let ((host, device), scene) = (opened(), scene());
     for solver in [Solver::Exact, Solver::Quadric, Solver::Live] {
-        let frame = all_planes(&scene, solver);
+        let size = (options().width, options().height);
+        let frame = draw(&scene, &drawn_by(size, STAGES[0], solver));
         let settings = SearchSettings::exact().with(|s| s.solver = solver);
         let planes = PLANES.map(|p| p.0);
-        let mut lists = Lists::new(&host, &device, &planes, &scene, &settings);
-        lists.draw(&view_of(&scene, &options()));
+        let mut lists = Lists::new((&host, &device), &planes, &scene, &settings);
+        lists.drawn.picture();
         let identity = lists.read::<2>(Plane::Identity);
         let [colors, base] = [Plane::Color, Plane::BaseColor].map(|p| lists.floats::<4>(p));
         let normals = lists.floats::<4>(Plane::Normal);
@@ -174,7 +142,7 @@ fn planes_of_a_list_are_those_of_a_frame() {
                 false => DVec3::new(x, y, z),
             };
             let unfolded = unfolded.normalize().as_vec3().to_array();
-            let glass = identity[n][0] == lists.ids[2].number();
+            let glass = identity[n][0] == lists.drawn.ids[2].number();
             let wanted = if glass { [0.75, 1.0] } else { [0.4925, 0.0] };
             let apart = [
                 far(&colors[n], &frame.color[n]),
@@ -188,7 +156,8 @@ fn planes_of_a_list_are_those_of_a_frame() {
         println!("{solver}: {hits} hits, {wrong} wrong, {off} missed or ghosts");
         assert!(hits > 3000 && wrong <= hits / 500 && off <= 8, "{solver}");
         let wanted = [(0, 0), (1, 0), (1, 1), (2, 0)];
-        let wanted = wanted.map(|(object, copy): (usize, u32)| [lists.ids[object].number(), copy]);
+        let wanted =
+            wanted.map(|(object, copy): (usize, u32)| [lists.drawn.ids[object].number(), copy]);
         assert_eq!(seen, wanted.into_iter().collect(), "{solver}");
     }
 }
@@ -197,20 +166,17 @@ fn planes_of_a_list_are_those_of_a_frame() {
 /// change nothing. With shadows, too.
 #[test]
 fn a_plane_does_not_depend_on_the_others() {
-    let (host, mut scene) = (open(), scene());
-    let device = borrow(&host);
-    for shadow in [revmap::scene::Shadow::Off, revmap::scene::Shadow::Hard] {
+    let ((host, device), mut scene) = (opened(), scene());
+    for shadow in [Shadow::Off, Shadow::Hard] {
         scene.shadow = shadow;
-        let view = view_of(&scene, &options());
         let planes = PLANES.map(|p| p.0);
         let exact = SearchSettings::exact();
-        let mut all = Lists::new(&host, &device, &planes, &scene, &exact);
-        all.draw(&view);
+        let mut all = Lists::new((&host, &device), &planes, &scene, &exact);
+        let (_, depths) = all.drawn.picture();
         for plane in planes {
-            let mut alone = Lists::new(&host, &device, &[plane], &scene, &exact);
-            alone.draw(&view);
+            let mut alone = Lists::new((&host, &device), &[plane], &scene, &exact);
+            assert!(alone.drawn.picture().1 == depths, "{plane:?}");
             assert!(alone.read::<2>(plane) == all.read::<2>(plane), "{plane:?}");
-            assert!(alone.into.depths() == all.into.depths(), "{plane:?}");
         }
     }
 }
@@ -224,11 +190,8 @@ fn jittered(eye: DVec3, jitter: DVec2) -> (View, DMat4) {
     let shift = DMat4::from_translation(DVec3::new(shift.x, shift.y, 0.0));
     // A translation of clip space by a multiple of w.
     let projection = shift * projection;
-    let made = View::from_matrices(view, projection, viewport(&options), DepthOrder::Normal);
-    (
-        made.unwrap().with_jitter(jitter.to_array()),
-        projection * view,
-    )
+    let made = host::view([view, projection], &options).unwrap();
+    (made.with_jitter(jitter.to_array()), projection * view)
 }
 
 /// The ray through a position in the picture.
@@ -288,22 +251,22 @@ fn check_motion(shadow: Shadow) {
     scene.lights = vec![Light::default().with(|l| l.direction = DVec3::new(-1.0, -0.1, -0.1))];
     let before = scene.clone();
     let planes = [Plane::Motion, Plane::Identity];
-    let mut lists = Lists::new(&host, &device, &planes, &scene, &SearchSettings::exact());
+    let mut lists = Lists::new((&host, &device), &planes, &scene, &SearchSettings::exact());
     let eye = crate::common::eye(25.0, 3.0);
     let (first, first_clip) = jittered(eye, DVec2::new(0.25, -0.375));
     lists.draw(&first);
     // Without a last frame nothing moves but the jitter, which motion leaves out.
     let still = lists.floats::<2>(Plane::Motion);
     assert!(still.iter().all(|m| m.iter().all(|v| v.abs() < 1e-3)));
-    lists.renderer.end_frame();
+    lists.drawn.renderer.end_frame();
 
     let turn = DQuat::from_rotation_z(0.2) * DQuat::from_rotation_y(0.1);
     scene.objects[0].placement.rotation = turn;
     scene.objects[1].placement.position.x += 0.1;
     scene.objects[2].offset.extend = 0.05;
     scene.objects[3].offset.extend = 0.02;
-    for (id, object) in lists.ids.iter().zip(&scene.objects) {
-        lists.renderer.set(*id, object.clone()).unwrap();
+    for (id, object) in lists.drawn.ids.iter().zip(&scene.objects) {
+        lists.drawn.renderer.set(*id, object.clone()).unwrap();
     }
     let (second, second_clip) =
         jittered(eye + DVec3::new(0.05, 0.1, -0.02), DVec2::new(-0.25, 0.125));
@@ -350,43 +313,8 @@ fn check_motion(shadow: Shadow) {
     }
 
     // The frame after stands still again.
-    lists.renderer.end_frame();
+    lists.drawn.renderer.end_frame();
     lists.draw(&second.with_last(&second));
     let still = lists.floats::<2>(Plane::Motion);
     assert!(still.iter().all(|m| m.iter().all(|v| v.abs() < 1e-3)));
-}
-
-/// Lists that a device or a plane does not take are refused by kind and key.
-#[test]
-fn misfitting_lists_are_refused() {
-    let (_host, device) = opened();
-    let twice = PlaneList::new(&[Plane::Color, Plane::Color]);
-    assert_eq!(twice.unwrap_err().kind, ErrorKind::Usage);
-    let refused = |plane, format, settings: &SearchSettings| {
-        let list = Planes::List(PlaneList::new(&[plane]).unwrap());
-        let output = Output::Pass(PassFormats::new(dynamic(&[format]), list));
-        let error = Renderer::new(&device, output, settings, 1).err().unwrap();
-        (error.kind, error.key)
-    };
-    let exact = SearchSettings::exact();
-    let usage = |key: &str| (ErrorKind::Usage, Some(key.to_owned()));
-    for (plane, format) in [
-        (Plane::Identity, F::R32G32_SFLOAT),
-        (Plane::Identity, F::R32_UINT),
-        (Plane::Motion, F::R8G8_UNORM),
-        (Plane::Motion, F::R16_SFLOAT),
-        (Plane::Normal, F::R16G16_SFLOAT),
-        (Plane::Normal, F::R8G8B8A8_UNORM),
-        (Plane::Color, F::R8G8B8A8_UINT),
-    ] {
-        assert_eq!(refused(plane, format, &exact), usage("color"), "{plane:?}");
-    }
-    let rgba8 = exact.with(|s| (s.solver, s.map_format) = (Solver::Live, MapFormat::Rgba8));
-    let color = F::R32G32B32A32_SFLOAT;
-    assert_eq!(refused(Plane::Color, color, &rgba8), usage("map_format"));
-    let circle = exact.with(|s| s.solver = revmap_searches::CIRCLE);
-    assert_eq!(refused(Plane::Color, color, &circle), usage("planes"));
-    let list = Planes::List(PlaneList::new(&[Plane::Color]).unwrap());
-    let compute = Renderer::new(&device, Output::Compute(list), &exact, 1);
-    assert_eq!(compute.err().unwrap().key.as_deref(), Some("planes"));
 }

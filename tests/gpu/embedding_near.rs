@@ -1,36 +1,26 @@
 //! A host's near plane cuts solids as it cuts meshes: rays begin in it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, Options, opened, order, viewport};
+use crate::common::host::{self, Drawn, Host, Options, opened};
 use crate::common::prelude::*;
-use crate::embedding::{every_way, first_frame, options};
-use crate::embedding_outputs::{by_proxies_of, depth_only};
+use crate::embedding::{every_way, options};
+use crate::embedding_outputs::{WIDE, by_proxies_of, depth_only};
 use rayon::prelude::*;
 use revmap::cast::RayCaster;
 
-/// The matrices of a scene's camera with this near plane, for reversed depths without a far plane, or
-/// for usual ones.
+/// The matrices of a scene's camera with this near plane, for reversed depths, without a far plane
+/// where rays are not parallel, or for usual ones.
 fn matrices(scene: &Scene, near: f64, options: &Options, parallel: bool) -> [DMat4; 2] {
-    let [view, mut lens] =
-        host::view_and_projection(scene.camera.eye, scene.camera.target, options);
-    let far = 50.0;
-    let (z, w) = match (parallel, options.reversed) {
-        (true, true) => (1.0 / (far - near), far / (far - near)),
-        (true, false) => (-1.0 / (far - near), -near / (far - near)),
-        (false, true) => (0.0, near),
-        (false, false) => (far / (near - far), near * far / (near - far)),
+    let look = host::look(scene.camera.eye, scene.camera.target, DVec3::Z);
+    let endless = options.reversed && !parallel;
+    let far = if endless { f64::INFINITY } else { 50.0 };
+    let scales = if parallel {
+        WIDE
+    } else {
+        host::scales(options)
     };
-    (lens.z_axis.z, lens.w_axis.z) = (z, w);
-    if parallel {
-        let wide = DVec4::new(1.0 / 0.8, -1.0 / 0.6, 1.0, 1.0);
-        lens = DMat4::from_cols(
-            DVec4::X * wide.x,
-            DVec4::Y * wide.y,
-            DVec4::Z * z,
-            DVec4::new(0.0, 0.0, w, 1.0),
-        );
-    }
-    [view, lens]
+    let lens = host::lens(scales, parallel, options.reversed, [near, far]);
+    [look, lens]
 }
 
 /// The depth along the view of what each pixel shows, by rays from the near plane.
@@ -52,7 +42,7 @@ fn wanted(scene: &Scene, [view, lens]: [DMat4; 2], near: f64, options: &Options)
     (0..width * height).into_par_iter().map(pixel).collect()
 }
 
-/// Depths of a scene in a pass of colours, in a pass of depths alone, and in compute.
+/// Depths of a scene in a pass of depths alone, in a pass of colours, and in compute.
 fn depths(
     (host, device): (&Host, &Device),
     scene: &Scene,
@@ -61,29 +51,24 @@ fn depths(
     options: &Options,
     parallel: bool,
 ) -> Vec<(&'static str, Vec<f32>, Vec<DrawPath>)> {
-    let alone = depth_only(parallel).with(|p| p.depth = order(options));
-    let color = host::color_pass().with(|p| p.depth = order(options));
-    let mut passes = vec![("depth", alone, &[][..])];
-    if !parallel {
-        passes.push(("color", color, &[(host::COLOR, 4)]));
-    }
-    if settings.solver == Solver::Live && !parallel {
-        passes.remove(0);
-    }
-    let mut all = Vec::new();
-    for (name, pass, formats) in passes {
-        let mut renderer = host::renderer_of(device, Output::Pass(pass), settings, 1, scene);
-        let drawn = (&mut renderer, view);
-        let (_, depths) = first_frame(host, *options, Some(formats), drawn, None);
-        all.push((name, depths, renderer.draw_paths()));
-    }
-    if !parallel && !options.reversed {
-        let output = Output::Compute(Planes::Color);
-        let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-        let (_, depths) = first_frame(host, *options, None, (&mut renderer, view), None);
-        all.push(("compute", depths, renderer.draw_paths()));
-    }
-    all
+    let of = |pass: PassFormats| Output::Pass(pass.with(|p| p.depth = host::order(options)));
+    let is_live = settings.solver == Solver::Live;
+    let all = [
+        ("depth", of(depth_only(parallel)), !is_live),
+        ("color", of(host::color_pass()), !parallel),
+        (
+            "compute",
+            Output::Compute(Planes::Color),
+            !parallel && !options.reversed,
+        ),
+    ];
+    let taken = all.into_iter().filter(|(.., takes)| *takes);
+    let drawn = taken.map(|(name, output, _)| {
+        let drawn = Drawn::new(host, device, *options, (output, settings), scene);
+        let mut drawn = drawn.seen(view);
+        (name, drawn.picture().1, drawn.renderer.draw_paths())
+    });
+    drawn.collect()
 }
 
 /// What is before the near plane is not drawn, and what the plane cuts shows its inner side, by every
@@ -113,9 +98,7 @@ fn the_near_plane_cuts_solids() {
         }) {
             let options = options().with(|o| o.reversed = reversed);
             let both = matrices(scene, near, &options, parallel);
-            let [look, lens] = both;
-            let view = View::from_matrices(look, lens, viewport(&options), order(&options));
-            let view = view.unwrap();
+            let view = host::view(both, &options).unwrap();
             let truth = wanted(scene, both, near, &options);
             for settings in &searches {
                 if parallel && settings.solver == Solver::Live {

@@ -2,26 +2,17 @@
 //! and compute into its own buffer.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, dynamic, opened, viewport};
+use crate::common::host::{self, Canvas, Drawn, Host, HostBuffer, barrier, dynamic, once, opened};
 use crate::common::prelude::*;
-use crate::embedding::{
-    BACKGROUND, drawn_by, every_way, first_frame, matrices, options, three, upright,
-};
+use crate::embedding::{BACKGROUND, every_way, matrices, options, three, upright};
 use revmap_files::Picture;
 
-/// A view by these matrices, for the host's pictures.
-pub fn seen(view: DMat4, projection: DMat4) -> View {
-    View::from_matrices(view, projection, viewport(&options()), DepthOrder::Normal).unwrap()
-}
-
-/// A pass without colour attachments.
-fn depth_pass(planes: Planes) -> PassFormats {
-    PassFormats::new(dynamic(&[]), planes)
-}
+/// Scales of the tests' lenses of parallel rays.
+pub const WIDE: [f64; 2] = [1.0 / 0.8, 1.0 / 0.6];
 
 /// A shadow map of a light, with parallel rays or not.
 pub fn depth_only(parallel: bool) -> PassFormats {
-    depth_pass(Planes::Depth { parallel })
+    PassFormats::new(dynamic(&[]), Planes::Depth { parallel })
 }
 
 /// The exact search, by cells of at least so many pixels.
@@ -38,11 +29,9 @@ pub fn depths(
     settings: &SearchSettings,
     pass: &PassFormats,
 ) -> (Vec<f32>, Vec<DrawPath>) {
-    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
-    let output = Output::Pass(pass.clone());
-    let mut renderer = host::renderer_of(device, output, settings, 1, scene);
-    let (_, depths) = first_frame(host, options, Some(&[]), (&mut renderer, view), None);
-    (depths, renderer.draw_paths())
+    let by = (Output::Pass(pass.clone()), settings);
+    let mut drawn = Drawn::new(host, device, options(), by, scene).seen(view);
+    (drawn.picture().1, drawn.renderer.draw_paths())
 }
 
 /// The depth of a light's view along parallel rays is the analytic depth.
@@ -55,7 +44,7 @@ fn depth_along_parallel_rays_is_analytic() {
     let from = DVec3::new(2.0, 1.0, 2.5);
     let view = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
     let projection = parallel();
-    let light = seen(view, projection);
+    let light = host::view([view, projection], &options()).unwrap();
     let (found, _) = depths(&host, &device, &one, &light, &exact, &depth_only(true));
     let back = (projection * view).inverse();
     let (width, height) = (options().width as usize, options().height as usize);
@@ -85,12 +74,18 @@ fn depth_alone_has_equal_bits_by_every_path() {
     let (host, device) = opened();
     let mut paths = HashSet::new();
     for (name, scene) in &every_way() {
-        let [view, projection] = matrices(scene);
-        let light = seen(view, projection);
+        let light = host::view(matrices(scene), &options()).unwrap();
         for least in [0, u32::MAX] {
             let settings = by_proxies_of(least);
             let (alone, own) = depths(&host, &device, scene, &light, &settings, &depth_only(false));
-            let (_, beside) = drawn_by(&host, &device, options(), scene, &light, &settings);
+            let (beside, _) = depths(
+                &host,
+                &device,
+                scene,
+                &light,
+                &settings,
+                &host::color_pass(),
+            );
             let pairs = || alone.iter().zip(&beside);
             let hits = pairs().filter(|(d, _)| **d < 1.0).count();
             let apart = pairs().filter(|(a, b)| a.to_bits() != b.to_bits()).count();
@@ -105,13 +100,7 @@ fn depth_alone_has_equal_bits_by_every_path() {
 
 /// A projection of parallel rays.
 pub fn parallel() -> DMat4 {
-    let (near, far) = (0.5, 6.0);
-    DMat4::from_cols(
-        DVec4::new(1.0 / 0.8, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -1.0 / 0.6, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, -1.0 / (far - near), 0.0),
-        DVec4::new(0.0, 0.0, -near / (far - near), 1.0),
-    )
+    host::lens(WIDE, true, false, [0.5, 6.0])
 }
 
 /// Depth-only passes over solids cut by their box give the same depth by cells as by boxes.
@@ -132,7 +121,7 @@ fn depth_alone_of_what_the_box_cuts() {
             let [view, projection] =
                 host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options());
             for (is_parallel, projection) in [(false, projection), (true, parallel())] {
-                let light = seen(view, projection);
+                let light = host::view([view, projection], &options()).unwrap();
                 let pass = depth_only(is_parallel);
                 let of =
                     |least| depths(&host, &device, &scene, &light, &by_proxies_of(least), &pass);
@@ -168,15 +157,28 @@ fn compute_writes_to_a_hosts_buffer() {
     let nearer = 0x0102_0304u32;
     // The left half is empty; the right half already holds a nearer depth.
     let is_empty = |n: usize| n % (width as usize) < width as usize / 2;
-    let mut words: Vec<u32> = (0..pixels)
-        .map(|n| if is_empty(n) { 1f32.to_bits() } else { 0 })
-        .collect();
     let background = ComputeTarget::color_word(BACKGROUND);
-    words.extend((0..pixels).map(|n| if is_empty(n) { background } else { nearer }));
-    let output = Output::Compute(Planes::Color);
-    let exact = SearchSettings::exact();
+    let word = |n: usize| match (n < pixels, is_empty(n % pixels)) {
+        (true, true) => 1f32.to_bits(),
+        (true, false) => 0,
+        (false, true) => background,
+        (false, false) => nearer,
+    };
+    let words: Vec<u32> = (0..2 * pixels).map(word).collect();
+    let words = HostBuffer::of(&host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
+    let words = Canvas::Words(words);
+    let (output, exact) = (Output::Compute(Planes::Color), SearchSettings::exact());
     let mut renderer = host::renderer_of(&device, output, &exact, 1, &scene);
-    let found = host::draw_words(&host, &words, &mut renderer, offscreen.view(), None);
+    words.lend(&mut renderer, true);
+    once(&host, |cmd| {
+        // SAFETY: `cmd` is recording outside of a pass; the buffer has two words per pixel.
+        unsafe {
+            let frame = renderer.prepare(cmd, 0, offscreen.view()).unwrap();
+            renderer.record_compute(cmd, &frame).unwrap();
+            barrier(&host, cmd, &[]);
+        }
+    });
+    let found: Vec<u32> = bytemuck::pod_collect_to_vec(&words.planes()[0]);
     let mut drawn = 0;
     for n in 0..pixels {
         let (depth, color) = (f32::from_bits(found[n]), found[pixels + n]);
@@ -188,18 +190,4 @@ fn compute_writes_to_a_hosts_buffer() {
         }
     }
     assert!(drawn > 2000, "{drawn}");
-}
-
-/// A depth-only renderer refuses compute and searches without an exact depth.
-#[test]
-fn depth_alone_takes_exact_searches() {
-    let device = crate::common::device();
-    let planes = Planes::Depth { parallel: false };
-    let circle = SearchSettings::exact().with(|s| s.solver = CIRCLE);
-    let refused = |output, settings: &SearchSettings| {
-        let error = Renderer::new(device, output, settings, 1).err().unwrap();
-        assert!(error.to_string().contains("depth alone"), "{error}");
-    };
-    refused(Output::Pass(depth_pass(planes)), &circle);
-    refused(Output::Compute(planes), &SearchSettings::exact());
 }

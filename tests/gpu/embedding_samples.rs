@@ -2,7 +2,7 @@
 //! and leaves no sample of a solid to what is behind it.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Stage, borrow, open};
+use crate::common::host::{self, Drawn, opened};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
 use revmap::frame::linear_from_srgb;
@@ -12,8 +12,9 @@ use revmap_offscreen::samples::averaged;
 /// Pixels of a degree of the visual field, as FLIP's default.
 const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// Solids, copies and pixels of one copy.
+/// Solids, copies and pixels of one copy, before what a canvas is cleared to.
 fn scenes() -> Vec<(&'static str, Scene)> {
+    let three = || three().with(|s| s.background = [0.0, 0.0, 0.0, 1.0]);
     let mut small = three();
     let spot = |n: u32| {
         let (x, y) = (f64::from(n / 20), f64::from(n % 20));
@@ -26,21 +27,16 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 
 /// The host's picture by four samples.
 fn picture(host: &host::Host, device: &Device, scene: &Scene, sample_rays: bool) -> Frame {
-    let samples = 4;
-    let options = options().with(|o| o.samples = samples);
-    let mut stage = Stage::new(host, options).unwrap();
+    let options = options();
     let output = Output::Pass(PassFormats {
-        samples,
+        samples: 4,
         sample_rays,
         ..host::color_pass()
     });
-    let search = SearchSettings::exact();
-    let mut renderer = host::renderer_of(device, output, &search, host::FRAMES, scene);
-    let view = host::view_of(scene, &options);
-    host::frame(&mut stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
+    let by = (output, &SearchSettings::exact());
+    let (bytes, _) = Drawn::new(host, device, options, by, scene).picture();
     let mut frame = Frame::new(options.width, options.height, [0.0; 4]).unwrap();
     let linear = |byte: u8| linear_from_srgb(f64::from(byte) / 255.0) as f32;
-    let bytes = stage.read().unwrap().0;
     for (color, rgba) in frame.color.iter_mut().zip(bytes.as_chunks::<4>().0) {
         *color = [linear(rgba[0]), linear(rgba[1]), linear(rgba[2]), 1.0];
     }
@@ -106,8 +102,7 @@ fn steps_stay_in_their_pixel() {
 /// far off.
 #[test]
 fn rays_through_samples_smooth_silhouettes() {
-    let host = open();
-    let own = borrow(&host);
+    let (host, own) = opened();
     for (name, scene) in scenes() {
         let truth = rays(&scene, 64);
         let [one, each] = [false, true].map(|rays| picture(&host, &own, &scene, rays));

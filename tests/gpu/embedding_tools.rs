@@ -1,59 +1,50 @@
 //! Tools for hosts: labels of a frame's commands, two renderers recorded on two threads.
 #![allow(unsafe_code)]
 
+use crate::calls::{above, planted_instance};
 use crate::common::host::{
-    Attachments, Host, Stage, add, borrow_through, draw_into, once, open, opened, view_of,
+    self, Attachments, Commands, Drawn, Host, borrow_through, once, open, opened, view_of,
 };
 use crate::common::prelude::*;
-use crate::embedding::{options, renderer, three};
+use crate::embedding::{drawn, options, three};
 use std::ffi::{CStr, c_char};
 use std::sync::Mutex;
 
-static LABELS: Mutex<Vec<String>> = Mutex::new(Vec::new());
-static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+/// Labels that began, and names.
+static TEXTS: Mutex<[Vec<String>; 2]> = Mutex::new([Vec::new(), Vec::new()]);
 static DEPTH: Mutex<i32> = Mutex::new(0);
 
-unsafe extern "system" fn begin(_: vk::CommandBuffer, info: *const vk::DebugUtilsLabelEXT<'_>) {
-    // SAFETY: the caller's label.
-    let label = unsafe { CStr::from_ptr((*info).p_label_name) };
-    LABELS
-        .lock()
-        .unwrap()
-        .push(label.to_string_lossy().into_owned());
-    *DEPTH.lock().unwrap() += 1;
+fn keep(kind: usize, text: &CStr) {
+    TEXTS.lock().unwrap()[kind].push(text.to_string_lossy().into_owned());
 }
 
-unsafe extern "system" fn end(_: vk::CommandBuffer) {
-    *DEPTH.lock().unwrap() -= 1;
+above! { labels;
+    "vkCmdBeginDebugUtilsLabelEXT" begin: PFN_vkCmdBeginDebugUtilsLabelEXT(
+        _cmd: vk::CommandBuffer, info: *const vk::DebugUtilsLabelEXT<'_>
+    ), |_real| {
+        keep(0, CStr::from_ptr((*info).p_label_name));
+        *DEPTH.lock().unwrap() += 1;
+    }
+    "vkCmdEndDebugUtilsLabelEXT" end: PFN_vkCmdEndDebugUtilsLabelEXT(
+        _cmd: vk::CommandBuffer
+    ), |_real| {
+        *DEPTH.lock().unwrap() -= 1;
+    }
+    "vkSetDebugUtilsObjectNameEXT" name: PFN_vkSetDebugUtilsObjectNameEXT(
+        _device: vk::Device, info: *const vk::DebugUtilsObjectNameInfoEXT<'_>
+    ) -> vk::Result, |_real| {
+        keep(1, CStr::from_ptr((*info).p_object_name));
+        vk::Result::SUCCESS
+    }
 }
 
-unsafe extern "system" fn name(
-    _: vk::Device,
-    info: *const vk::DebugUtilsObjectNameInfoEXT<'_>,
-) -> vk::Result {
-    // SAFETY: the caller's name.
-    let name = unsafe { CStr::from_ptr((*info).p_object_name) };
-    NAMES
-        .lock()
-        .unwrap()
-        .push(name.to_string_lossy().into_owned());
-    vk::Result::SUCCESS
-}
-
-/// The functions of labels.
-unsafe extern "system" fn device_function(
-    _: vk::Device,
-    wanted: *const c_char,
-) -> vk::PFN_vkVoidFunction {
-    // SAFETY: the caller's name, and functions of the signatures that it stands for.
-    unsafe {
-        let pointer = match CStr::from_ptr(wanted).to_str() {
-            Ok("vkCmdBeginDebugUtilsLabelEXT") => begin as *const (),
-            Ok("vkCmdEndDebugUtilsLabelEXT") => end as *const (),
-            Ok("vkSetDebugUtilsObjectNameEXT") => name as *const (),
-            _ => return None,
-        };
-        std::mem::transmute::<*const (), vk::PFN_vkVoidFunction>(pointer)
+above! { queries;
+    "vkGetDeviceProcAddr" function: PFN_vkGetDeviceProcAddr(
+        device: vk::Device, wanted: *const c_char
+    ) -> vk::PFN_vkVoidFunction, |real| {
+        let own = real(device, wanted);
+        let planted = labels(CStr::from_ptr(wanted), own.map_or(0, |f| f as usize));
+        planted.map_or(own, |f| std::mem::transmute(f))
     }
 }
 
@@ -61,31 +52,17 @@ unsafe extern "system" fn device_function(
 #[test]
 fn commands_have_labels_where_a_host_enables_them() {
     let host = open();
-    let entry = &host.entry;
-    let handle = host.instance.handle();
-    let load = |wanted: &CStr| match wanted.to_bytes() {
-        b"vkGetDeviceProcAddr" => device_function as *const _,
-        // SAFETY: the instance is live.
-        _ => unsafe { entry.get_instance_proc_addr(handle, wanted.as_ptr()) }
-            .map_or(std::ptr::null(), |f| f as *const _),
-    };
-    // SAFETY: each function has the signature of its name.
-    let instance = unsafe { ash::Instance::load_with(load, handle) };
+    let instance = planted_instance(&host.entry, &host.instance, queries);
     let device = borrow_through(&host, &instance, &host.device).unwrap();
     let (options, scene) = (options(), three());
-    let view = view_of(&scene, &options);
-    let mut stage = Stage::new(&host, options).unwrap();
+    let by = (Output::Pass(host::color_pass()), &SearchSettings::exact());
     for enabled in [false, true] {
         if enabled {
             // SAFETY: the functions above are those of the extension.
             unsafe { device.enable_debug_labels() };
         }
-        let mut made = renderer(&device, &stage);
-        add(&mut made, &scene);
-        host::frame(&mut stage, &mut made, &view, DMat4::IDENTITY, &[]);
-        stage.wait().unwrap();
-        let labels = std::mem::take(&mut *LABELS.lock().unwrap());
-        let names = std::mem::take(&mut *NAMES.lock().unwrap());
+        Drawn::new(&host, &device, options, by.clone(), &scene).picture();
+        let [labels, names] = std::mem::take(&mut *TEXTS.lock().unwrap());
         println!("{labels:?} {names:?}");
         assert_eq!(labels.is_empty(), !enabled);
         assert_eq!(names.is_empty(), !enabled);
@@ -95,56 +72,23 @@ fn commands_have_labels_where_a_host_enables_them() {
     }
 }
 
-/// A secondary command buffer and the pool that only its thread uses.
-struct Secondary<'a> {
-    pool: vk::CommandPool,
-    commands: vk::CommandBuffer,
-    host: &'a Host,
-}
-
-impl<'a> Secondary<'a> {
-    fn new(host: &'a Host) -> Self {
-        let info = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
-        // SAFETY: plain creations, destroyed in Drop.
-        unsafe {
-            let pool = host.device.create_command_pool(&info, None).unwrap();
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(pool)
-                .level(vk::CommandBufferLevel::SECONDARY)
-                .command_buffer_count(1);
-            Self {
-                commands: host.device.allocate_command_buffers(&info).unwrap()[0],
-                pool,
-                host,
-            }
-        }
-    }
-
-    fn record(&self, renderer: &Renderer, frame: &PreparedFrame) {
-        let colors = [host::COLOR];
-        let mut pass = vk::CommandBufferInheritanceRenderingInfo::default()
-            .color_attachment_formats(&colors)
-            .depth_attachment_format(host::DEPTH)
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let inherited = vk::CommandBufferInheritanceInfo::default().push_next(&mut pass);
-        let info = vk::CommandBufferBeginInfo::default()
-            .flags(vk::CommandBufferUsageFlags::RENDER_PASS_CONTINUE)
-            .inheritance_info(&inherited);
-        let raw = &self.host.device;
-        // SAFETY: the commands are this thread's; the frame was prepared.
-        unsafe {
-            raw.begin_command_buffer(self.commands, &info).unwrap();
-            host::attachments::set_viewport(self.host, self.commands, &options());
-            renderer.record(self.commands, frame).unwrap();
-            raw.end_command_buffer(self.commands).unwrap();
-        }
-    }
-}
-
-impl Drop for Secondary<'_> {
-    fn drop(&mut self) {
-        // SAFETY: the commands have run.
-        unsafe { self.host.device.destroy_command_pool(self.pool, None) };
+/// Records a frame into secondary commands, whose pool only this thread uses.
+fn record(host: &Host, cmd: vk::CommandBuffer, renderer: &Renderer, frame: &PreparedFrame) {
+    let colors = [host::COLOR];
+    let mut pass = vk::CommandBufferInheritanceRenderingInfo::default()
+        .color_attachment_formats(&colors)
+        .depth_attachment_format(host::DEPTH)
+        .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+    let inherited = vk::CommandBufferInheritanceInfo::default().push_next(&mut pass);
+    let info = vk::CommandBufferBeginInfo::default()
+        .flags(vk::CommandBufferUsageFlags::RENDER_PASS_CONTINUE)
+        .inheritance_info(&inherited);
+    // SAFETY: the commands are this thread's; the frame was prepared.
+    unsafe {
+        host.device.begin_command_buffer(cmd, &info).unwrap();
+        host::attachments::set_viewport(host, cmd, &options());
+        renderer.record(cmd, frame).unwrap();
+        host.device.end_command_buffer(cmd).unwrap();
     }
 }
 
@@ -155,34 +99,33 @@ fn two_threads_record_two_renderers() {
     let (host, device) = opened();
     let (options, scene) = (options(), three());
     let view = view_of(&scene, &options);
-    let mut parts = [scene.clone(), scene.clone()];
+    let wanted = drawn(&host, &device, options, &scene, &view);
+    let found = Attachments::new(&host, options, &[host::COLOR]).unwrap();
+    let mut parts = [scene.clone(), scene];
     parts[0].objects.truncate(1);
     parts[1].objects.remove(0);
-    let made = |scene: &Scene| {
+    let mut both = parts.each_ref().map(|scene| {
         let output = Output::Pass(host::color_pass());
         host::renderer_of(&device, output, &SearchSettings::exact(), 1, scene)
-    };
-    let clears = [vk::ClearColorValue { float32: [0.0; 4] }];
-    let into = || Attachments::new(&host, options, &[(host::COLOR, 4)]).unwrap();
-    let (wanted, mut alone) = (into(), made(&scene));
-    draw_into(&host, &wanted, &clears, &mut alone, &view, None);
-    let (found, mut both) = (into(), parts.each_ref().map(made));
-    let secondary = [Secondary::new(&host), Secondary::new(&host)];
+    });
+    let level = vk::CommandBufferLevel::SECONDARY;
+    let secondary = [(); 2].map(|()| Commands::new(&host, level, 1).unwrap());
     once(&host, |cmd| {
         // SAFETY: `cmd` is recording outside of a pass; each renderer records into commands of its own.
         unsafe {
             let frames = both.each_mut().map(|r| r.prepare(cmd, 0, &view).unwrap());
             std::thread::scope(|scope| {
-                for ((renderer, frame), into) in both.iter().zip(&frames).zip(&secondary) {
-                    scope.spawn(|| into.record(renderer, frame));
+                for ((renderer, frame), own) in both.iter().zip(&frames).zip(&secondary) {
+                    let (host, cmd): (&Host, _) = (&host, own.raw[0]);
+                    scope.spawn(move || record(host, cmd, renderer, frame));
                 }
             });
-            let commands = secondary.each_ref().map(|s| s.commands);
+            let commands = secondary.each_ref().map(|own| own.raw[0]);
             let execute = || host.device.cmd_execute_commands(cmd, &commands);
-            found.draw(cmd, &clears, true, execute);
+            found.draw(cmd, &found.clears(), true, execute);
             found.copy(cmd);
         }
     });
-    assert!(found.color(0).iter().any(|byte| *byte != 0));
-    assert!(found.color(0) == wanted.color(0) && found.depths() == wanted.depths());
+    assert!(wanted.0.iter().any(|byte| *byte != 0));
+    assert!(found.colors().next() == Some(wanted.0) && found.depths() == wanted.1);
 }

@@ -1,5 +1,5 @@
 //! The environment: in both stages the colours are the reference's. Without an environment, and by a
-//! function of the host, nothing of it is seen.
+//! function of the host, nothing of it is seen. The random host (`tests/soak`) changes it.
 
 use crate::common::prelude::*;
 
@@ -127,28 +127,6 @@ fn every_value_is_seen() {
         let drawn = draw(&base.clone().with(change), &settings);
         let [seen, right] = [&truth, &changed].map(|other| apart(other, &drawn).1);
         assert!(seen > 0.02 && right < 1e-3, "{name}: {seen} and {right}");
-    }
-}
-
-/// The sky comes, changes and goes while a renderer draws.
-#[test]
-fn a_renderer_follows_the_sky() {
-    let bright = with_sky(scene_of(shapes::glass(), eye(20.0, 1.7)), |_| {});
-    let plain = bright.clone().with(|s| s.environment = None);
-    let dim = bright.clone().with(|s| {
-        let (up, down) = ([0.1; 3], [0.05; 3]);
-        s.environment = Some(Environment { up, down });
-    });
-    for stage in STAGES {
-        let settings = sized(160, 120).with(|s| s.stage = stage);
-        let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
-        for scene in [&plain, &bright, &dim, &plain] {
-            let wanted = draw(scene, &settings);
-            assert_eq!(
-                updated(&mut renderer, scene).first_difference(&wanted),
-                None
-            );
-        }
     }
 }
 

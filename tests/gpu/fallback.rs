@@ -96,19 +96,24 @@ fn what_has_no_surface_is_drawn_from_the_map() {
 fn surfaces_of_another_search_are_not_planned() {
     let mut scene = scene_of(shapes::vase(), eye(20.0, 2.2));
     scene.shadow = Shadow::Hard;
-    let settings = drawn_by((200, 150), DrawStage::Compute, Solver::DEFAULT);
-    let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
-    renderer.draw().unwrap();
-    assert!(renderer.renderer().object_costs()[0].table_bytes > 0);
-    let mut other = Object::new("crossing", Arc::new(shapes::crossing()));
-    other.placement.position.x = -1.0;
-    scene.objects.push(other);
-    renderer.update(&scene).unwrap();
-    renderer.draw().unwrap();
-    let costs = renderer.renderer().object_costs();
-    assert_eq!(
-        (costs[0].table_bytes, costs[0].patches),
-        (0, 0),
-        "{costs:?}"
-    );
+    for stage in STAGES {
+        let settings = drawn_by((200, 150), stage, Solver::DEFAULT);
+        let mut scene = scene.clone();
+        let mut renderer = Offscreen::new(device(), &scene, &settings).unwrap();
+        renderer.draw().unwrap();
+        assert!(renderer.renderer().object_costs()[0].table_bytes > 0);
+        let mut other = Object::new("crossing", Arc::new(shapes::crossing()));
+        other.placement.position.x = -1.0;
+        scene.objects.push(other);
+        renderer.update(&scene).unwrap();
+        renderer.draw().unwrap();
+        let costs = renderer.renderer().object_costs();
+        let cost = (costs[0].table_bytes, costs[0].patches);
+        assert_eq!(cost, (0, 0), "{costs:?}");
+        // Once it is removed, the others are drawn as if it had never been there.
+        scene.objects.pop();
+        let found = updated(&mut renderer, &scene);
+        assert_eq!(found.first_difference(&draw(&scene, &settings)), None);
+    }
+    device().check().unwrap();
 }

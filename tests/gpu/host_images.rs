@@ -2,9 +2,9 @@
 //! host (`tests/soak`) changes them between frames in flight.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, Mesh, Stage, Texture, frame, opened};
+use crate::common::host::{self, Drawn, Host, Texture, opened};
 use crate::common::prelude::*;
-use crate::embedding::{options, renderer, three};
+use crate::embedding::{options, three};
 
 const SIZE: u32 = 8;
 
@@ -30,20 +30,11 @@ fn drawn(
     object: &Object,
     change: impl FnOnce(&mut Renderer, ObjectId),
 ) -> Vec<u8> {
-    let scene = close();
-    let mut stage = Stage::new(host, options()).unwrap();
-    let mut made = renderer(device, &stage);
-    made.set_lighting(&scene.lighting()).unwrap();
-    let id = made.add(object.clone()).unwrap();
-    change(&mut made, id);
-    next(&mut stage, &mut made)
-}
-
-fn next(stage: &mut Stage, renderer: &mut Renderer) -> Vec<u8> {
-    let none: &[Mesh] = &[];
-    let view = host::view_of(&close(), &options());
-    frame(stage, renderer, &view, DMat4::IDENTITY, none);
-    stage.read().unwrap().0
+    let scene = close().with(|s| s.objects = vec![object.clone()]);
+    let by = (Output::Pass(host::color_pass()), &SearchSettings::exact());
+    let mut drawn = Drawn::new(host, device, options(), by, &scene);
+    change(&mut drawn.renderer, drawn.ids[0]);
+    drawn.picture().0
 }
 
 fn differ(a: &[u8], b: &[u8]) -> usize {
@@ -142,8 +133,9 @@ fn wrong_images_are_refused() {
     // SAFETY: null handles are refused before they are kept.
     let null = unsafe { HostImage::new(vk::ImageView::null(), vk::Sampler::null()) };
     assert_eq!(null.unwrap_err().kind, ErrorKind::Usage);
-    let stage = Stage::new(&host, options()).unwrap();
-    let [mut one, mut other] = [0, 1].map(|_| renderer(&device, &stage));
+    let exact = SearchSettings::exact();
+    let color = || Output::Pass(host::color_pass());
+    let [mut one, mut other] = [0, 1].map(|_| Renderer::new(&device, color(), &exact, 1).unwrap());
     let id = one.add(Object::new("vase", shapes::vase().into())).unwrap();
     let texture = Texture::new(&host, vk::Format::R8G8B8A8_SRGB, &colors(stripes));
     let error = other.set_color_image(id, Some(texture.image()));

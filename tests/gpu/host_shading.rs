@@ -2,9 +2,9 @@
 //! the planes of a frame, its set is the host's.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, UniformSet, add, dynamic, opened, view_of};
+use crate::common::host::{self, Drawn, Host, UniformSet, dynamic, opened};
 use crate::common::prelude::*;
-use crate::embedding::{first_frame, options, three};
+use crate::embedding::{options, three};
 use revmap::shading::Shading;
 
 /// The library's own light, from the host's set.
@@ -99,12 +99,19 @@ pub fn made(
     let Some((shading, set)) = by else {
         return Renderer::new(device, output, settings, 1).unwrap();
     };
-    let host = HostShading {
-        shading: shading.clone(),
-        set_layout: set.layout,
-    };
-    // SAFETY: the layout has what the function reads, and the test drops the renderer first.
-    unsafe { Renderer::with_shading(device, output, settings, 1, &host) }.unwrap()
+    shaded(device, output, settings, shading, set.layout).unwrap()
+}
+
+/// A renderer by the function.
+pub fn shaded(
+    device: &Device,
+    output: Output,
+    settings: &SearchSettings,
+    shading: &Arc<Shading>,
+    layout: vk::DescriptorSetLayout,
+) -> revmap::Result<Renderer> {
+    // SAFETY: the layout is live until the renderer is dropped; the faults of tests draw nothing.
+    unsafe { host::shaded(device, output, settings, 1, shading, layout) }
 }
 
 /// The picture of a scene in a stage, and the path of each object.
@@ -116,17 +123,14 @@ pub fn picture(
     stage: DrawStage,
     by: Option<(&Arc<Shading>, &UniformSet)>,
 ) -> (Vec<u8>, Vec<DrawPath>) {
-    let (view, set) = (view_of(scene, &options()), by.map(|by| by.1));
-    let color = [(vk::Format::R8G8B8A8_SRGB, 4)];
     let output = match stage {
-        DrawStage::Fragment => pass(Planes::Color, &[color[0].0]),
+        DrawStage::Fragment => pass(Planes::Color, &[host::COLOR]),
         DrawStage::Compute => Output::Compute(Planes::Color),
     };
-    let mut renderer = made(device, output, settings, by);
-    add(&mut renderer, scene);
-    let formats = (stage == DrawStage::Fragment).then_some(&color[..]);
-    let (drawn, _) = first_frame(host, options(), formats, (&mut renderer, &view), set);
-    (drawn, renderer.draw_paths())
+    let renderer = made(device, output.clone(), settings, by);
+    let mut drawn = Drawn::by(host, renderer, options(), &output, scene);
+    let (colors, _) = drawn.picture_by(by.map(|by| by.1));
+    (colors, drawn.renderer.draw_paths())
 }
 
 /// The number of bytes that differ by more than one, and of those that are drawn.
@@ -181,25 +185,20 @@ fn a_copy_of_our_function_gives_our_picture() {
 fn values_of_the_surface_are_the_planes_of_a_frame() {
     let (host, device) = opened();
     let scene = scene();
-    let view = view_of(&scene, &options());
     let frame = draw(&scene, &sized(options().width, options().height));
     let shading = shading(DrawStage::Fragment, VALUES);
     let listed = Planes::List(PlaneList::new(&[Plane::Color, Plane::Identity]).unwrap());
-    let formats = [
-        (vk::Format::R32G32B32A32_SFLOAT, 16),
-        (vk::Format::R32G32_UINT, 8),
-    ];
+    let formats = [vk::Format::R32G32B32A32_SFLOAT, vk::Format::R32G32_UINT];
     let mut ids = Vec::new();
     let mut values = |choice: f32, planes: Planes| -> Vec<[f32; 4]> {
         let set = UniformSet::of(&host, &[[choice, 0.0, 0.0, 0.0]]).unwrap();
         let formats = &formats[..if planes == Planes::Color { 1 } else { 2 }];
-        let colors: Vec<_> = formats.iter().map(|f| f.0).collect();
-        let output = pass(planes, &colors);
+        let output = pass(planes, formats);
         let by = Some((&shading, &set));
-        let mut renderer = made(&device, output, &SearchSettings::exact(), by);
-        ids = add(&mut renderer, &scene);
-        let drawn = (&mut renderer, &view);
-        let (bytes, _) = first_frame(&host, options(), Some(formats), drawn, Some(&set));
+        let renderer = made(&device, output.clone(), &SearchSettings::exact(), by);
+        let mut drawn = Drawn::by(&host, renderer, options(), &output, &scene);
+        ids.clone_from(&drawn.ids);
+        let (bytes, _) = drawn.picture_by(Some(&set));
         let words: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
         words.as_chunks().0.to_vec()
     };

@@ -3,10 +3,10 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{Checked, UniformSet, add, borrow, open, opened, view_of};
+use crate::common::host::{Checked, Drawn, UniformSet, add, borrow, open, opened};
 use crate::common::prelude::*;
-use crate::embedding::{first_frame, options};
-use crate::host_shading::{COPY, lights, made, pass, picture, scene, shading};
+use crate::embedding::options;
+use crate::host_shading::{COPY, lights, made, pass, picture, scene, shaded, shading};
 use crate::least_device::grant;
 use revmap::shading::Shading;
 
@@ -14,21 +14,6 @@ const SRGB: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
 fn colors() -> Output {
     pass(Planes::Color, &[SRGB])
-}
-
-fn shaded(
-    device: &Device,
-    output: Output,
-    settings: &SearchSettings,
-    shading: &Arc<Shading>,
-    set_layout: vk::DescriptorSetLayout,
-) -> revmap::Result<Renderer> {
-    let host = HostShading {
-        shading: shading.clone(),
-        set_layout,
-    };
-    // SAFETY: the layout is live until the renderer is dropped; the faults of tests draw nothing.
-    unsafe { Renderer::with_shading(device, output, settings, 1, &host) }
 }
 
 /// A function of `count` textures of the host's set.
@@ -162,32 +147,21 @@ fn pipelines_are_prewarmed_and_told_apart() {
     let set = UniformSet::of(&host, &lights(&scene)).unwrap();
     let red = "vec4 host_shade(Surface s) { return vec4(1.0, 0.0, 0.0, 1.0); }\n";
     let [copy, red] = [COPY, red].map(|text| shading(DrawStage::Fragment, text));
-    let view = view_of(&scene, &options());
     let exact = SearchSettings::exact();
     let mut shown = Vec::new();
-    let shown_by = |renderer: &mut Renderer| {
-        first_frame(
-            &host,
-            options(),
-            Some(&[(SRGB, 4)]),
-            (renderer, &view),
-            Some(&set),
-        )
-        .0
-    };
     for by in [&copy, &red] {
         let mut renderer = made(&device, colors(), &exact, Some((by, &set)));
         renderer.hide_until_compiled(true);
-        add(&mut renderer, &scene);
+        let mut drawn = Drawn::by(&host, renderer, options(), &colors(), &scene);
         let before = device.pipelines_compiled();
-        let hidden = shown_by(&mut renderer);
+        let (hidden, _) = drawn.picture_by(Some(&set));
         assert!(hidden.iter().all(|byte| *byte == 0), "drawn");
         assert_eq!(device.pipelines_compiled(), before);
-        let warm = renderer.prewarm().unwrap();
+        let warm = drawn.renderer.prewarm().unwrap();
         std::thread::scope(|scope| scope.spawn(|| warm.compile()).join().unwrap()).unwrap();
         let compiled = device.pipelines_compiled();
         assert!(compiled > before);
-        shown.push(shown_by(&mut renderer));
+        shown.push(drawn.picture_by(Some(&set)).0);
         assert_eq!(device.pipelines_compiled(), compiled, "compiled in a frame");
     }
     let ours = picture(&host, &device, &scene, &exact, DrawStage::Fragment, None).0;

@@ -3,8 +3,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-#[path = "../common/random.rs"]
-mod random;
 
 mod accuracy;
 mod agreement;
@@ -20,7 +18,6 @@ mod crowds;
 mod deferred_host;
 mod embedding;
 mod embedding_bias;
-mod embedding_crowds;
 mod embedding_lists;
 mod embedding_near;
 mod embedding_outputs;
@@ -40,11 +37,10 @@ mod host_shading_faults;
 mod hulls;
 mod least_device;
 mod limits;
+mod memory;
 mod memory_types;
 mod offsets;
 mod pipelines;
-#[allow(unsafe_code)]
-mod plans;
 mod prewarmed;
 mod proxy_hulls;
 mod ranges;
@@ -56,7 +52,6 @@ mod shadowed_host;
 mod shadows;
 mod short_edges;
 mod small_copies;
-mod small_device;
 mod speckles;
 mod spirv;
 mod submissions;

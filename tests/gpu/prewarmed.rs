@@ -2,17 +2,16 @@
 //! technique. General and special forms draw the same bits.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Host, borrow, never, open, opened, view_of};
+use crate::common::host::{Drawn, Host, borrow, never, open, opened, view_of};
 use crate::common::prelude::*;
+use crate::common::random::Random;
 use crate::embedding::{hundred, options, three};
-use crate::random::Random;
-use crate::unsubmitted::{Drawn, differ};
+use crate::unsubmitted::{by, differ};
 
 /// A renderer of which every general pipeline is compiled.
 struct Warm<'a> {
     drawn: Drawn<'a>,
     device: &'a Device,
-    host: &'a Host,
     compiled: u64,
     name: String,
 }
@@ -24,7 +23,7 @@ impl<'a> Warm<'a> {
         (stage, search): (DrawStage, &SearchSettings),
         scene: &Scene,
     ) -> Self {
-        let mut drawn = Drawn::by(host, device, stage, scene, search);
+        let mut drawn = by(host, device, stage, scene, search);
         drawn.renderer.prewarm().unwrap().compile().unwrap();
         drawn.renderer.hide_until_compiled(true);
         Self {
@@ -32,21 +31,13 @@ impl<'a> Warm<'a> {
             name: format!("{stage:?}, {}", search.solver),
             drawn,
             device,
-            host,
         }
     }
 
     /// Prepares a frame, which must compile nothing and hide nothing. Returns its statistics.
     #[track_caller]
     fn frame(&mut self, what: &str) -> FrameStatistics {
-        let (renderer, view) = (&mut self.drawn.renderer, &self.drawn.view);
-        let mut found = FrameStatistics::default();
-        never(self.host, |cmd| {
-            // SAFETY: `cmd` is recording, and no frame is in flight.
-            found = unsafe { renderer.prepare(cmd, 0, view) }
-                .unwrap()
-                .statistics();
-        });
+        let found = prepared(&mut self.drawn);
         assert_eq!(found.hidden, 0, "{}: {what}", self.name);
         let compiled = self.device.pipelines_compiled();
         assert_eq!(compiled, self.compiled, "{}: {what}", self.name);
@@ -64,6 +55,12 @@ impl<'a> Warm<'a> {
         self.drawn.view = view_of(scene, &options());
         self.frame(what)
     }
+}
+
+/// Statistics of a frame that is prepared and dropped.
+fn prepared(drawn: &mut Drawn) -> FrameStatistics {
+    let frame = never(drawn.host, |cmd| drawn.record(cmd, (0, 0), None));
+    frame.unwrap().statistics()
 }
 
 fn exact() -> SearchSettings {
@@ -179,20 +176,20 @@ fn general_and_special_forms_draw_the_same_bits() {
             for least in [0, 150] {
                 let search = exact().with(|s| s.proxy_min_pixels = least);
                 let device = borrow(&host); // without pipelines
-                let mut drawn = Drawn::by(&host, &device, stage, &scene, &search);
+                let mut drawn = by(&host, &device, stage, &scene, &search);
                 // Pipelines for three lights are general.
                 let mut lighting = scene.lighting();
                 lighting.lights = vec![Light::pair()[0]; 3];
                 drawn.renderer.set_lighting(&lighting).unwrap();
                 drawn.renderer.prewarm().unwrap().compile().unwrap();
                 drawn.renderer.set_lighting(&scene.lighting()).unwrap();
-                let general = drawn.picture(0);
+                let general = drawn.picture().0;
                 drawn.renderer.prewarm().unwrap().compile().unwrap();
-                worst = worst.max(differ(&general, &drawn.picture(0)));
+                worst = worst.max(differ(&general, &drawn.picture().0));
                 let special = drawn.renderer.special_forms();
                 taken += special.len();
                 special.compile().unwrap();
-                let found = drawn.picture(0);
+                let found = drawn.picture().0;
                 assert!(
                     drawn.renderer.special_forms().is_empty(),
                     "{name}, {stage:?}"
@@ -211,22 +208,11 @@ fn general_and_special_forms_draw_the_same_bits() {
 fn special_forms_are_taken_when_they_are_compiled() {
     let (host, device) = opened();
     let scene = vase();
-    let mut drawn = Drawn::by(&host, &device, DrawStage::Fragment, &scene, &exact());
+    let mut drawn = by(&host, &device, DrawStage::Fragment, &scene, &exact());
     drawn.renderer.hide_until_compiled(true);
-    let view: View = view_of(&scene, &options());
-    let prepared = |drawn: &mut Drawn| {
-        let mut found = FrameStatistics::default();
-        never(&host, |cmd| {
-            // SAFETY: `cmd` is recording, and no frame is in flight.
-            found = unsafe { drawn.renderer.prepare(cmd, 0, &view) }
-                .unwrap()
-                .statistics();
-        });
-        found
-    };
     assert!(prepared(&mut drawn).hidden > 0);
     // A renderer that hides no more compiles what it had hidden.
-    let mut shown = Drawn::by(&host, &device, DrawStage::Compute, &scene, &exact());
+    let mut shown = by(&host, &device, DrawStage::Compute, &scene, &exact());
     shown.renderer.hide_until_compiled(true);
     assert!(prepared(&mut shown).hidden > 0);
     shown.renderer.hide_until_compiled(false);
@@ -242,48 +228,40 @@ fn special_forms_are_taken_when_they_are_compiled() {
 
 /// A random change of the objects, lights or view, but of no technique.
 fn change(warm: &mut Warm, solid: &Object, random: &mut Random) {
-    let mut one_of = |count: usize| (random.next() * count as f64) as usize;
     let (ids, renderer) = (&mut warm.drawn.ids, &mut warm.drawn.renderer);
-    let id = ids[one_of(ids.len())];
+    let n = random.below(ids.len());
+    let id = ids[n];
     let place = |n: usize| placement([-0.9 * n as f64, 0.3, 0.0], [0.0; 3], [1.0; 3]);
-    match one_of(8) {
-        0 if ids.len() < 5 => ids.push(renderer.add(solid.clone()).unwrap()),
-        1 if ids.len() > 1 => {
-            ids.retain(|other| *other != id);
-            renderer.remove(id).unwrap();
-        }
-        2 => renderer
-            .set_mask(id, [0, 1, 3, u32::MAX][one_of(4)])
-            .unwrap(),
+    let done = match random.below(8) {
+        0 if ids.len() < 5 => renderer.add(solid.clone()).map(|new| ids.push(new)),
+        1 if ids.len() > 1 => renderer.remove(ids.remove(n)),
+        2 => renderer.set_mask(id, random.pick(&[0, 1, 3, u32::MAX])),
         3 => {
-            let [extend, bevel] = [[0.0, 0.0], [0.3, 0.0], [-0.02, 0.1], [0.05, 0.2]][one_of(4)];
-            let offset = Offset::default().with(|o| (o.extend, o.bevel) = (extend, bevel));
-            renderer.set_offset(id, offset).unwrap();
+            let (extend, bevel) = random.pick(&[(0.0, 0.0), (0.3, 0.0), (-0.02, 0.1), (0.05, 0.2)]);
+            renderer.set_offset(id, offset(extend, bevel, 1.0))
         }
         4 => {
-            let count = [0, 2, 9, 70][one_of(4)];
-            renderer
-                .set_instances(id, (0..count).map(place).collect::<Vec<_>>())
-                .unwrap();
+            let count = random.pick(&[0, 2, 9, 70]);
+            renderer.set_instances(id, (0..count).map(place).collect::<Vec<_>>())
         }
         5 => {
-            let lights = vec![Light::pair()[0]; one_of(5)];
-            renderer
-                .set_lighting(&Lighting::default().with(|l| l.lights = lights))
-                .unwrap();
+            let lights = vec![Light::pair()[0]; random.below(5)];
+            renderer.set_lighting(&Lighting::default().with(|l| l.lights = lights))
         }
         6 => {
-            let clip = [Clip::None, Clip::Box][one_of(2)];
+            let clip = random.pick(&[Clip::None, Clip::Box]);
             let object = renderer.object(id).unwrap().clone();
-            renderer.set(id, Object { clip, ..object }).unwrap();
+            renderer.set(id, Object { clip, ..object })
         }
         _ => {
-            let eye = [1.0, 0.02, 0.4, 6.0, 300.0][one_of(5)];
             let mut scene = three();
-            scene.camera.eye *= eye;
-            warm.drawn.view = view_of(&scene, &options()).with_mask([1, 2, u32::MAX][one_of(3)]);
+            scene.camera.eye *= random.pick(&[1.0, 0.02, 0.4, 6.0, 300.0]);
+            let mask = random.pick(&[1, 2, u32::MAX]);
+            warm.drawn.view = view_of(&scene, &options()).with_mask(mask);
+            Ok(())
         }
-    }
+    };
+    done.unwrap();
 }
 
 /// `REVMAP_FRAMES=50000` prepares as many frames of each stage.
@@ -297,7 +275,7 @@ fn random_changes_compile_nothing_and_hide_nothing() {
         let mut warm = Warm::new(&host, &device, (stage, &exact()), &vase());
         let mut shown = 0;
         for frame in 0..frames {
-            for _ in 0..=(random.next() * 3.0) as usize {
+            for _ in 0..=random.below(3) {
                 change(&mut warm, &solid, &mut random);
             }
             shown += warm.frame(&format!("frame {frame}")).objects;

@@ -8,16 +8,10 @@ use crate::common::ways::{WALKED, WRAPPED, draw_by};
 /// Several intersecting objects, some copied, in one depth buffer: hulls beside boxes.
 #[test]
 fn a_crowd_in_one_depth_buffer() {
-    let mut crowd = Scene::new(Camera::new(
-        DVec3::new(2.6, 1.9, 1.7),
-        DVec3::new(0.0, 0.0, 0.3),
-    ));
+    let mut crowd = circle_of_shapes(shapes::all());
     let mut ways = [Vec::new(), Vec::new()];
-    for (n, (name, profile)) in shapes::all().into_iter().enumerate() {
-        let mut object = Object::new(name, Arc::new(profile));
+    for (n, object) in crowd.objects.iter_mut().enumerate() {
         let turn = n as f64 * 0.8;
-        let place = [0.45 * turn.cos(), 0.45 * turn.sin(), 0.1 * turn];
-        object.placement = placement(place, [0.2 * turn, 0.1, turn], [0.8, 1.1, 0.7]);
         if n % 3 == 1 {
             let copy = placement([0.3, 0.2, 0.2], [turn, 0.0, 0.4], [0.5, 0.5, 0.9]);
             object.instances = vec![object.placement, copy].into();
@@ -35,7 +29,6 @@ fn a_crowd_in_one_depth_buffer() {
         if n % 3 == 2 {
             object.repeat = [2, 1, 1];
         }
-        crowd.objects.push(object);
         ways[0].push([DrawPath::Cells, DrawPath::Cells, DrawPath::Tiles][n % 3]);
         ways[1].push(DrawPath::Tiles);
     }

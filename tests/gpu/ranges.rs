@@ -2,44 +2,37 @@
 //! drawn, what does not is refused, and memory is used again.
 #![allow(unsafe_code)]
 
-use crate::calls::Layer;
-use crate::common::host::{Checked, HostBuffer, once, open, opened, renderer_of, target, view_of};
+use crate::calls::{Layer, Mask};
+use crate::common::host::{Checked, Drawn, Picture, once, open, opened, view_of};
 use crate::common::prelude::*;
-use crate::embedding::{far_words, options, three};
+use crate::embedding::{options, three};
 
 /// Bytes of the device's largest storage buffer.
 const STORAGE: u32 = 1 << 20;
+/// Makes it so.
+pub fn small_storage(mask: &mut Mask) {
+    mask.properties = Some(|p| p.limits.max_storage_buffer_range = STORAGE);
+}
+
 const MOST: usize = STORAGE as usize / INSTANCE_BYTES as usize;
 
 /// The layer, the host and the device of small buffers.
 fn small() -> (Layer, Checked, Device) {
     let (layer, host) = (Layer::take(), open());
-    let device = layer.poorer(&host, |m| m.storage = STORAGE).unwrap();
+    let device = layer.poorer(&host, small_storage).unwrap();
     (layer, host, device)
 }
 
-fn renderer(device: &Device, scene: &Scene) -> Renderer {
-    let output = Output::Compute(Planes::Color);
-    renderer_of(device, output, &SearchSettings::exact(), 1, scene)
+fn renderer<'a>(host: &'a Checked, device: &Device, scene: &Scene) -> Drawn<'a> {
+    let by = (Output::Compute(Planes::Color), &SearchSettings::exact());
+    let seen = view_of(&three(), &options());
+    Drawn::new(host, device, options(), by, scene).seen(&seen)
 }
 
-/// Words of a frame, and its statistics.
-fn draw(host: &Checked, renderer: &mut Renderer) -> revmap::Result<(Vec<u8>, FrameStatistics)> {
-    let words = far_words(&options());
-    let words = HostBuffer::of(host, &words, vk::BufferUsageFlags::STORAGE_BUFFER).unwrap();
-    // SAFETY: the buffer has two words per pixel, and the next frame gets another one.
-    unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
-    let view = view_of(&three(), &options());
-    let mut result = Ok(FrameStatistics::default());
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording outside of a pass; no frame is in flight.
-        result = unsafe { renderer.prepare(cmd, 0, &view) }.and_then(|frame| {
-            // SAFETY: the frame was just prepared.
-            unsafe { renderer.record_compute(cmd, &frame) }?;
-            Ok(frame.statistics())
-        });
-    });
-    Ok((words.bytes(), result?))
+/// A frame, and its statistics.
+fn draw(drawn: &mut Drawn) -> revmap::Result<(Picture, FrameStatistics)> {
+    let frame = once(drawn.host, |cmd| drawn.record(cmd, (0, 1), None))?;
+    Ok((drawn.canvas.read(), frame.statistics()))
 }
 
 /// Small copies beside the three solids.
@@ -60,28 +53,28 @@ fn crowd(count: usize) -> Object {
 #[test]
 fn a_renderer_recovers_from_too_many_copies() {
     let (_layer, host, device) = small();
-    let mut drawn = renderer(&device, &three());
-    let (wanted, before) = draw(&host, &mut drawn).unwrap();
+    let mut drawn = renderer(&host, &device, &three());
+    let (wanted, before) = draw(&mut drawn).unwrap();
     let refused = |result: revmap::Result<()>| {
         let error = result.unwrap_err();
         assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
         assert!(error.to_string().contains(&MOST.to_string()), "{error}");
     };
-    refused(drawn.add(crowd(MOST - 2)).map(|_| ()));
-    let id = drawn.add(crowd(9)).unwrap();
-    refused(drawn.set_instances(id, copies(MOST - 2)));
-    refused(drawn.set(id, crowd(4 * MOST)));
-    assert_eq!(drawn.object(id).unwrap().placements().len(), 9);
+    refused(drawn.renderer.add(crowd(MOST - 2)).map(|_| ()));
+    let id = drawn.renderer.add(crowd(9)).unwrap();
+    refused(drawn.renderer.set_instances(id, copies(MOST - 2)));
+    refused(drawn.renderer.set(id, crowd(4 * MOST)));
+    assert_eq!(drawn.renderer.object(id).unwrap().placements().len(), 9);
     // As many as there is room for, then the picture without them, in as little memory.
-    drawn.set_instances(id, copies(MOST - 3)).unwrap();
-    let (full, most) = draw(&host, &mut drawn).unwrap();
+    drawn.renderer.set_instances(id, copies(MOST - 3)).unwrap();
+    let (full, most) = draw(&mut drawn).unwrap();
     assert!(full != wanted && most.slot_bytes > 10 * before.slot_bytes);
-    drawn.set_instances(id, copies(9)).unwrap();
-    let mut fresh = renderer(&device, &three());
-    fresh.add(crowd(9)).unwrap();
-    assert!(draw(&host, &mut drawn).unwrap().0 == draw(&host, &mut fresh).unwrap().0);
-    drawn.remove(id).unwrap();
-    let (found, after) = draw(&host, &mut drawn).unwrap();
+    drawn.renderer.set_instances(id, copies(9)).unwrap();
+    let mut fresh = renderer(&host, &device, &three());
+    fresh.renderer.add(crowd(9)).unwrap();
+    assert!(draw(&mut drawn).unwrap().0 == draw(&mut fresh).unwrap().0);
+    drawn.renderer.remove(id).unwrap();
+    let (found, after) = draw(&mut drawn).unwrap();
     assert!(found == wanted);
     let [after, before] = [after, before].map(|frame| frame.slot_bytes);
     assert!(after < 8 * before, "{after}, {before}");
@@ -90,35 +83,37 @@ fn a_renderer_recovers_from_too_many_copies() {
 #[test]
 fn objects_are_added_beside_a_large_crowd() {
     let (_layer, host, device) = small();
-    let mut drawn = renderer(&device, &three());
-    drawn.add(crowd(MOST - 503)).unwrap();
-    draw(&host, &mut drawn).unwrap();
+    let mut drawn = renderer(&host, &device, &three());
+    drawn.renderer.add(crowd(MOST - 503)).unwrap();
+    draw(&mut drawn).unwrap();
     let profile = three().objects[0].profile.clone();
     let small = |n: usize| {
         let mut object = Object::new(format!("small {n}"), profile.clone());
         object.placement = copies(n + 1)[n];
         object
     };
-    let ids: Vec<_> = (0..500).map(|n| drawn.add(small(n)).unwrap()).collect();
-    assert!(drawn.add(small(500)).is_err());
-    draw(&host, &mut drawn).unwrap();
+    let ids: Vec<_> = (0..500)
+        .map(|n| drawn.renderer.add(small(n)).unwrap())
+        .collect();
+    assert!(drawn.renderer.add(small(500)).is_err());
+    draw(&mut drawn).unwrap();
     // Every other one goes: the rest is no single range, and crowds fit nevertheless.
     for id in ids.iter().step_by(2) {
-        drawn.remove(*id).unwrap();
+        drawn.renderer.remove(*id).unwrap();
     }
     for _ in 0..5 {
-        drawn.add(crowd(50)).unwrap();
+        drawn.renderer.add(crowd(50)).unwrap();
     }
-    assert!(drawn.add(small(500)).is_err());
-    let mut fresh = renderer(&device, &three());
-    fresh.add(crowd(MOST - 503)).unwrap();
+    assert!(drawn.renderer.add(small(500)).is_err());
+    let mut fresh = renderer(&host, &device, &three());
+    fresh.renderer.add(crowd(MOST - 503)).unwrap();
     for n in (1..500).step_by(2) {
-        fresh.add(small(n)).unwrap();
+        fresh.renderer.add(small(n)).unwrap();
     }
     for _ in 0..5 {
-        fresh.add(crowd(50)).unwrap();
+        fresh.renderer.add(crowd(50)).unwrap();
     }
-    assert!(draw(&host, &mut drawn).unwrap().0 == draw(&host, &mut fresh).unwrap().0);
+    assert!(draw(&mut drawn).unwrap().0 == draw(&mut fresh).unwrap().0);
 }
 
 /// Of coincident copies the one of the earlier object shows, wherever its instances are.
@@ -128,17 +123,17 @@ fn ties_do_not_depend_on_ranges() {
     let object = |color| three().objects[0].clone().with(|o| o.color = color);
     let (first, second) = (object([0.9, 0.1, 0.1]), object([0.1, 0.1, 0.9]));
     let empty = three().with(|s| s.objects = Vec::new());
-    let mut fresh = renderer(&device, &empty);
-    fresh.add(first.clone()).unwrap();
-    fresh.add(second.clone()).unwrap();
-    let wanted = draw(&host, &mut fresh).unwrap().0;
-    let mut drawn = renderer(&device, &empty);
+    let mut fresh = renderer(&host, &device, &empty);
+    fresh.renderer.add(first.clone()).unwrap();
+    fresh.renderer.add(second.clone()).unwrap();
+    let wanted = draw(&mut fresh).unwrap().0;
+    let mut drawn = renderer(&host, &device, &empty);
     // The second object takes the instance that a removed one leaves.
-    let gone = drawn.add(first.clone()).unwrap();
-    drawn.add(first).unwrap();
-    drawn.remove(gone).unwrap();
-    drawn.add(second).unwrap();
-    assert!(draw(&host, &mut drawn).unwrap().0 == wanted);
+    let gone = drawn.renderer.add(first.clone()).unwrap();
+    drawn.renderer.add(first).unwrap();
+    drawn.renderer.remove(gone).unwrap();
+    drawn.renderer.add(second).unwrap();
+    assert!(draw(&mut drawn).unwrap().0 == wanted);
 }
 
 /// Tables fill nine tenths of the buffer before one is refused, and the place of those that are gone
@@ -146,7 +141,7 @@ fn ties_do_not_depend_on_ranges() {
 #[test]
 fn tables_fill_their_buffer() {
     let (_layer, host, device) = small();
-    let mut drawn = renderer(&device, &three());
+    let mut drawn = renderer(&host, &device, &three());
     let other = |n: usize| {
         let side = 0.2 + 0.3 / (n + 1) as f64;
         let radii = [0.0, side, 0.5 * side, side, 0.0].into_iter();
@@ -161,9 +156,9 @@ fn tables_fill_their_buffer() {
     let mut ids = Vec::new();
     let mut refused = None;
     for n in 0..2000 {
-        ids.push(drawn.add(other(n)).unwrap());
+        ids.push(drawn.renderer.add(other(n)).unwrap());
         if n % 20 == 19
-            && let Err(error) = draw(&host, &mut drawn)
+            && let Err(error) = draw(&mut drawn)
         {
             refused = Some(error);
             break;
@@ -172,15 +167,15 @@ fn tables_fill_their_buffer() {
     let error = refused.expect("tables beyond the limit");
     assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
     // Those of the last frame that was drawn, each alone.
-    let costs = drawn.object_costs();
+    let costs = drawn.renderer.object_costs();
     let tables: u64 = costs.iter().map(|cost| cost.table_bytes).sum();
     println!("{} objects, {tables} bytes of tables", ids.len());
     assert!(tables > u64::from(STORAGE) * 17 / 20, "{tables}");
     for id in ids.drain(40..) {
-        drawn.remove(id).unwrap();
+        drawn.renderer.remove(id).unwrap();
     }
     for n in 0..100 {
-        ids.push(drawn.add(other(3000 + n)).unwrap());
+        ids.push(drawn.renderer.add(other(3000 + n)).unwrap());
     }
-    draw(&host, &mut drawn).unwrap();
+    draw(&mut drawn).unwrap();
 }

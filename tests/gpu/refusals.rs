@@ -3,8 +3,9 @@
 #![allow(unsafe_code)]
 
 use crate::calls::Layer;
-use crate::common::host::{borrow, once, open, open_with, opened};
+use crate::common::host::{self, borrow, once, open, open_with, opened};
 use crate::common::prelude::*;
+use crate::ranges::small_storage;
 use ash::vk::Handle as _;
 use revmap::error::ErrorKind::{Unsupported, Usage};
 
@@ -64,7 +65,15 @@ fn kinds(
 
 /// The kind and key of the refusal; `None` if a renderer is made.
 fn refused(device: &Device, output: Output) -> Option<(ErrorKind, Option<String>)> {
-    let made = Renderer::new(device, output, &SearchSettings::exact(), 1);
+    refused_by(device, output, &SearchSettings::exact())
+}
+
+fn refused_by(
+    device: &Device,
+    output: Output,
+    search: &SearchSettings,
+) -> Option<(ErrorKind, Option<String>)> {
+    let made = Renderer::new(device, output, search, 1);
     made.err().map(|error| (error.kind, error.key))
 }
 
@@ -72,6 +81,50 @@ fn refused(device: &Device, output: Output) -> Option<(ErrorKind, Option<String>
 fn assert_refused(device: &Device, output: Output, kind: ErrorKind, key: Option<&str>) {
     let found = refused(device, output.clone());
     assert_eq!(found, Some((kind, key.map(str::to_owned))), "{output:?}");
+}
+
+/// Planes that a search, a format or a stage does not draw, and biases of other planes than depths.
+#[test]
+fn planes_that_do_not_fit_are_refused() {
+    use vk::Format as F;
+    let twice = PlaneList::new(&[Plane::Color, Plane::Color]);
+    assert_eq!(twice.unwrap_err().kind, Usage);
+    for [factor, limit] in [
+        [-1.0, 1.0],
+        [f32::NAN, 1.0],
+        [1.0, f32::INFINITY],
+        [1.0, 0.0],
+    ] {
+        assert_eq!(SlopeBias::new(factor, limit).unwrap_err().kind, Usage);
+    }
+    let list = |plane| Planes::List(PlaneList::new(&[plane]).unwrap());
+    let of = |plane, format| dynamic(&[format], DEPTH, NONE, list(plane), 1);
+    let depth_alone = Planes::Depth { parallel: false };
+    let biased = PassFormats {
+        slope_bias: SlopeBias::new(1.0, 1.0).unwrap(),
+        ..host::color_pass()
+    };
+    let exact = SearchSettings::exact();
+    let circle = exact.with(|s| s.solver = CIRCLE);
+    let rgba8 = exact.with(|s| (s.solver, s.map_format) = (Solver::Live, MapFormat::Rgba8));
+    for (output, search, key) in [
+        (of(Plane::Identity, F::R32G32_SFLOAT), exact, "color"),
+        (of(Plane::Identity, F::R32_UINT), exact, "color"),
+        (of(Plane::Motion, F::R8G8_UNORM), exact, "color"),
+        (of(Plane::Motion, F::R16_SFLOAT), exact, "color"),
+        (of(Plane::Normal, F::R16G16_SFLOAT), exact, "color"),
+        (of(Plane::Normal, F::R8G8B8A8_UNORM), exact, "color"),
+        (of(Plane::Color, F::R8G8B8A8_UINT), exact, "color"),
+        (of(Plane::Color, FLOAT), rgba8, "map_format"),
+        (of(Plane::Color, FLOAT), circle, "planes"),
+        (Output::Compute(list(Plane::Color)), exact, "planes"),
+        (dynamic(&[], DEPTH, NONE, depth_alone, 1), circle, "planes"),
+        (Output::Compute(depth_alone), exact, "planes"),
+        (Output::Pass(biased), exact, "slope_bias"),
+    ] {
+        let found = refused_by(device(), output.clone(), &search);
+        assert_eq!(found, Some((Usage, Some(key.to_owned()))), "{output:?}");
+    }
 }
 
 #[test]
@@ -134,7 +187,7 @@ fn samples_that_the_device_has_not_are_refused() {
         assert_refused(device(), output, Usage, Some("samples"));
     }
     let (layer, host) = (Layer::take(), open());
-    let poorer = layer.poorer(&host, |m| m.samples = true).unwrap();
+    let poorer = layer.poorer(&host, |m| m.one_sample = true).unwrap();
     let own = PassKind::RenderPass {
         // SAFETY: the renderer refuses this handle before any use.
         pass: unsafe { HostPass::new(vk::RenderPass::from_raw(1)) },
@@ -269,7 +322,7 @@ fn setters_name_the_object() {
 #[test]
 fn too_many_copies_name_the_object() {
     let (layer, host) = (Layer::take(), open());
-    let poorer = layer.poorer(&host, |m| m.storage = 1 << 20).unwrap();
+    let poorer = layer.poorer(&host, small_storage).unwrap();
     let mut renderer = renderer(&poorer);
     let mut object = Object::new("vase", shapes::vase().into());
     let id = renderer.add(object.clone()).unwrap();

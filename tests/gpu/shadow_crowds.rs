@@ -2,28 +2,12 @@
 //! can draw.
 
 use crate::common::prelude::*;
-use crate::shadows::otherwise_lit;
+use crate::shadows::{otherwise_lit, table};
 
 /// A plate of 10 x 10 under one low light.
 fn plate() -> Scene {
-    let mut scene = Scene::new(Camera::new(
-        DVec3::new(4.2, 2.6, 2.4),
-        DVec3::new(2.6, 1.2, 0.0),
-    ));
-    scene.shadow = Shadow::Hard;
-    scene.ambient = [0.2; 3];
-    scene.lights = vec![Light {
-        direction: DVec3::new(-0.6, 0.45, -0.35),
-        color: [0.8; 3],
-        ..Light::default()
-    }];
-    let disc = [[0.0, 0.1], [0.48, 0.1], [0.48, 0.9], [0.0, 0.9]];
-    let profile = Profile::polygon(&disc, 0.5).unwrap();
-    let mut plate = Object::new("plate", Arc::new(profile));
-    plate.placement = placement([0.0, 0.0, -0.09], [0.0; 3], [15.0, 15.0, 0.1]);
-    plate.specular.strength = 0.0;
-    scene.objects.push(plate);
-    scene
+    let camera = Camera::new(DVec3::new(4.2, 2.6, 2.4), DVec3::new(2.6, 1.2, 0.0));
+    table(camera, DVec3::new(-0.6, 0.45, -0.35), [15.0, 15.0, 0.1])
 }
 
 /// Placements in a square of `side` x `side`, turned and scaled by their number.

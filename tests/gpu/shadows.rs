@@ -5,23 +5,27 @@ use crate::common::prelude::*;
 
 /// A plain round table with `casters` on it, under one light.
 fn scene(casters: Vec<Object>) -> Scene {
-    let mut scene = Scene::new(Camera::new(
-        DVec3::new(1.3, -1.9, 1.7),
-        DVec3::new(0.1, 0.1, 0.1),
-    ));
+    let camera = Camera::new(DVec3::new(1.3, -1.9, 1.7), DVec3::new(0.1, 0.1, 0.1));
+    let mut scene = table(camera, DVec3::new(0.55, 0.5, -0.6), [2.2, 2.2, 0.1]);
+    scene.objects.extend(casters);
+    scene
+}
+
+/// A plain round table of this size, under one light.
+pub fn table(camera: Camera, direction: DVec3, size: [f64; 3]) -> Scene {
+    let mut scene = Scene::new(camera);
     scene.shadow = Shadow::Hard;
     scene.ambient = [0.2; 3];
     scene.lights = vec![Light {
-        direction: DVec3::new(0.55, 0.5, -0.6),
+        direction,
         color: [0.8; 3],
         ..Light::default()
     }];
     let disc = Profile::polygon(&[[0.0, 0.1], [0.48, 0.1], [0.48, 0.9], [0.0, 0.9]], 0.5).unwrap();
     let mut table = Object::new("table", Arc::new(disc));
-    table.placement = placement([0.0, 0.0, -0.09], [0.0; 3], [2.2, 2.2, 0.1]);
+    table.placement = placement([0.0, 0.0, -0.09], [0.0; 3], size);
     table.specular.strength = 0.0;
     scene.objects.push(table);
-    scene.objects.extend(casters);
     scene
 }
 

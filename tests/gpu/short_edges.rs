@@ -2,7 +2,7 @@
 
 use crate::common::outlines::outline;
 use crate::common::prelude::*;
-use crate::random::Random;
+use crate::common::random::Random;
 use std::f64::consts::TAU;
 
 const SIZE: (u32, u32) = (400, 300);
@@ -36,7 +36,7 @@ fn stages_differ_in_no_run_of_pixels() {
     while pictures < 5 * outlines {
         seed += 1;
         let mut random = Random(seed);
-        let points = outline(seed % 6, &mut || random.next());
+        let points = outline(seed % 6, &mut random);
         let Ok(profile) = Profile::polygon(&points, 0.5) else {
             continue;
         };

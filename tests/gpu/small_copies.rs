@@ -1,7 +1,7 @@
 //! Copies smaller than a pixel: coverage and colour are right on average.
 
 use crate::common::prelude::*;
-use crate::random::Random;
+use crate::common::random::Random;
 
 const SIZE: (u32, u32) = (480, 360);
 /// Pixels of the finer picture in a pixel, along each side.

@@ -1,8 +1,9 @@
 //! Judges pictures of faces in one plane. Each copy is also drawn alone: those pictures give the
 //! copies that share a point, and the look of the first one. Pixels beside a contour are left out.
 
+use crate::common::change::Change;
 use crate::common::{draw, drawn_by};
-use crate::coplanar::{SIZE, changed, inlay};
+use crate::coplanar::{SIZE, inlay};
 use revmap::frame::Frame;
 use revmap::scene::{Object, Scene};
 use revmap::settings::{DrawStage, Solver};
@@ -51,7 +52,7 @@ fn alone(all: &Scene) -> Vec<Scene> {
         });
         copies.collect::<Vec<_>>()
     };
-    let with = |object: Object| changed(all.clone(), |one| one.objects = vec![object]);
+    let with = |object: Object| all.clone().with(|one| one.objects = vec![object]);
     all.objects.iter().flat_map(of).map(with).collect()
 }
 
@@ -100,7 +101,7 @@ pub fn speckles(scene: &Scene, drawn: impl Fn(&Scene) -> Picture) -> [usize; 2] 
 #[test]
 fn a_wrong_copy_is_counted() {
     let settings = drawn_by(SIZE, DrawStage::Fragment, Solver::Exact);
-    let last_first = |scene: &Scene| changed(scene.clone(), |one| one.objects.reverse());
+    let last_first = |scene: &Scene| scene.clone().with(|one| one.objects.reverse());
     let drawn = |scene: &Scene| draw(&last_first(scene), &settings).into();
     let [shared, wrong] = speckles(&inlay(0), drawn);
     assert!(shared == wrong && shared > 600, "{wrong} of {shared}");

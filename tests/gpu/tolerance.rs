@@ -103,27 +103,6 @@ fn no_tolerance_is_the_exact_level() {
     assert_eq!(all[0].instance_bytes, INSTANCE_BYTES);
 }
 
-/// A renderer beyond the budget fails, and the error has the numbers. Existing renderers continue,
-/// and all memory is freed in the end.
-#[test]
-fn a_memory_budget_is_kept() {
-    let device = Device::open_validated(None).unwrap();
-    let scene = scene_of(shapes::vase(), eye(25.0, 2.2));
-    let settings = settings(DrawStage::Fragment, 0.25);
-    let mut offscreen = Offscreen::new(&device, &scene, &settings).unwrap();
-    offscreen.draw().unwrap();
-    let taken = device.memory_use().total();
-    assert!(taken > offscreen.renderer().device_bytes());
-    device.set_memory_budget(Some(taken + (1 << 20)));
-    let error = Offscreen::new(&device, &scene, &settings).err().unwrap();
-    assert!(error.message.contains("memory budget"), "{error}");
-    assert_eq!(device.memory_use().total(), taken);
-    offscreen.draw().unwrap();
-    drop(offscreen);
-    assert_eq!(device.memory_use().total(), 0);
-    device.check().unwrap();
-}
-
 /// A shadow may fall nearer to the eye than its caster, so all objects use the level of the
 /// nearest.
 #[test]

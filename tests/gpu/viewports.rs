@@ -2,10 +2,12 @@
 //! range of their own.
 #![allow(unsafe_code)]
 
-use crate::common::host::{Attachments, Host, Mesh, MeshPipeline, MeshShaders, once, opened};
+use crate::common::host::{
+    self, Canvas, Drawn, Host, Mesh, MeshPipeline, MeshShaders, Picture, once, opened,
+};
 use crate::common::prelude::*;
-use crate::embedding::{Picture, first_frame, hundred, matrices, options, three};
-use crate::embedding_outputs::{by_proxies_of, depth_only, parallel};
+use crate::embedding::{hundred, matrices, options, three};
+use crate::embedding_outputs::{WIDE, by_proxies_of, depth_only, parallel};
 
 /// The host's `VkViewport` and scissor.
 #[derive(Clone, Copy)]
@@ -13,6 +15,7 @@ struct Port {
     place: Viewport,
     depths: [f64; 2],
     rows: [u32; 2],
+    order: DepthOrder,
 }
 
 impl Port {
@@ -29,15 +32,20 @@ impl Port {
             },
             depths: [0.0, 1.0],
             rows: [0, options().height],
+            order: DepthOrder::Normal,
         }
     }
 
-    /// The view of matrices with `y` downwards in clip space.
-    fn view(&self, [look, lens]: [DMat4; 2], order: DepthOrder) -> View {
+    /// A lens with `y` downwards in clip space, as the viewport has it.
+    fn lens(&self, lens: DMat4) -> DMat4 {
         let sense = self.place.height.signum();
-        let lens = DMat4::from_scale(DVec3::new(1.0, sense, 1.0)) * lens;
-        let view = View::from_matrices(look, lens, self.place, order).unwrap();
-        view.with_depth_range(self.depths).unwrap()
+        DMat4::from_scale(DVec3::new(1.0, sense, 1.0)) * lens
+    }
+
+    fn view(&self, [look, lens]: [DMat4; 2]) -> View {
+        let view = View::from_matrices(look, self.lens(lens), self.place, self.order).unwrap();
+        let view = view.with_depth_range(self.depths).unwrap();
+        view.with_rows(self.rows[0]..self.rows[1])
     }
 
     /// Sets viewport and scissor.
@@ -52,77 +60,60 @@ impl Port {
             max_depth: max as f32,
         };
         let [first, end] = self.rows;
-        let scissor = vk::Rect2D {
-            offset: vk::Offset2D {
-                x: 0,
-                y: first as i32,
-            },
-            extent: vk::Extent2D {
+        let scissor = vk::Rect2D::default()
+            .offset(vk::Offset2D::default().y(first as i32))
+            .extent(vk::Extent2D {
                 width: options().width,
                 height: end - first,
-            },
-        };
+            });
         // SAFETY: `cmd` is recording.
         unsafe {
             host.device.cmd_set_viewport(cmd, 0, &[viewport]);
             host.device.cmd_set_scissor(cmd, 0, &[scissor]);
         }
     }
-}
 
-/// Draws a mesh, if any, and the solids in a pass of one colour or of none.
-fn in_pass(
-    host: &Host,
-    pass: &PassFormats,
-    renderer: &mut Renderer,
-    (port, matrices): (&Port, [DMat4; 2]),
-    mesh: Option<&Mesh>,
-) -> Picture {
-    let options = options().with(|o| o.reversed = pass.depth == DepthOrder::Reversed);
-    let formats: &[_] = match pass.planes {
-        Planes::Color => &[(host::COLOR, 4)],
-        _ => &[],
-    };
-    let into = Attachments::new(host, options, formats).unwrap();
-    let colors: Vec<_> = formats.iter().map(|(format, _)| *format).collect();
-    let (shaders, none) = (MeshShaders::default(), vk::RenderPass::null());
-    let pipeline = MeshPipeline::new(host, &shaders, &options, none, &colors).unwrap();
-    let [look, lens] = matrices;
-    let view = port
-        .view(matrices, pass.depth)
-        .with_rows(port.rows[0]..port.rows[1]);
-    let sense = DVec3::new(1.0, port.place.height.signum(), 1.0);
-    let clip = DMat4::from_scale(sense) * lens * look;
-    once(host, |cmd| {
-        // SAFETY: `cmd` is recording; no frame is in flight; the pass has the output's formats.
-        unsafe {
-            let frame = renderer.prepare(cmd, 0, &view).unwrap();
-            let clears = vec![vk::ClearColorValue::default(); colors.len()];
-            into.draw(cmd, &clears, false, || {
-                port.set(host, cmd);
-                if let Some(mesh) = mesh {
-                    pipeline.draw(cmd, clip, Vec3::Z, std::slice::from_ref(mesh));
-                }
-                renderer.record(cmd, &frame).unwrap();
-            });
-            into.copy(cmd);
+    /// Draws solids, in a pass after a mesh, if any.
+    fn picture(
+        &self,
+        drawn: &mut Drawn,
+        matrices: [DMat4; 2],
+        mesh: Option<&(MeshPipeline, Mesh)>,
+    ) -> Picture {
+        drawn.view = self.view(matrices);
+        if let Canvas::Words(..) = drawn.canvas {
+            return drawn.picture();
         }
-    });
-    let color = formats.first().map(|_| into.color(0));
-    (color.unwrap_or_default(), into.depths())
+        let (host, canvas, renderer) = (drawn.host, &drawn.canvas, &mut drawn.renderer);
+        let clip = self.lens(matrices[1]) * matrices[0];
+        once(host, |cmd| {
+            // SAFETY: `cmd` is recording; no frame is in flight; the pass has the output's formats.
+            unsafe {
+                let frame = renderer.prepare(cmd, 0, &drawn.view).unwrap();
+                canvas.record(cmd, || {
+                    self.set(host, cmd);
+                    if let Some((pipeline, mesh)) = mesh {
+                        pipeline.draw(cmd, clip, Vec3::Z, std::slice::from_ref(mesh));
+                    }
+                    renderer.record(cmd, &frame).unwrap();
+                });
+                canvas.copy(cmd);
+            }
+        });
+        canvas.read()
+    }
 }
 
-/// Draws the solids in compute.
-fn in_compute(host: &Host, renderer: &mut Renderer, view: &View) -> Picture {
-    first_frame(host, options(), None, (renderer, view), None)
+fn drawn<'a>(host: &'a Host, device: &Device, output: Output, scene: &Scene) -> Drawn<'a> {
+    let by = (output, &SearchSettings::default());
+    Drawn::new(host, device, options(), by, scene)
 }
 
-fn color_renderer(device: &Device, scene: &Scene, compute: bool) -> Renderer {
-    let output = match compute {
-        true => Output::Compute(Planes::Color),
-        false => Output::Pass(host::color_pass()),
-    };
-    host::renderer_of(device, output, &SearchSettings::default(), 1, scene)
+fn outputs() -> [Output; 2] {
+    [
+        Output::Pass(host::color_pass()),
+        Output::Compute(Planes::Color),
+    ]
 }
 
 /// The number of pixels in which a picture differs from another one that was moved by some pixels,
@@ -180,20 +171,10 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
         ("shadows", shadows),
     ] {
         let matrices = matrices(&scene);
-        for compute in [false, true] {
-            let mut renderer = color_renderer(&device, &scene, compute);
-            let mut drawn = |port: &Port| match compute {
-                true => {
-                    let view = port.view(matrices, DepthOrder::Normal);
-                    let rows = port.rows[0]..port.rows[1];
-                    in_compute(&host, &mut renderer, &view.with_rows(rows))
-                }
-                false => {
-                    let pass = host::color_pass();
-                    in_pass(&host, &pass, &mut renderer, (port, matrices), None)
-                }
-            };
-            let what = format!("{name}, compute {compute}");
+        for output in outputs() {
+            let what = format!("{name}, {output:?}");
+            let mut solids = drawn(&host, &device, output, &scene);
+            let mut drawn = |port: &Port| port.picture(&mut solids, matrices, None);
             let whole = drawn(&Port::new([0, 0], false));
             assert!(whole.1.iter().filter(|depth| **depth < 1.0).count() > 3000);
             for by in MOVES {
@@ -222,15 +203,11 @@ fn viewports_beside_the_framebuffer_draw_what_shows() {
 fn parallel_views_beside_the_framebuffer_draw_what_shows() {
     let (host, device) = opened();
     let from = DVec3::new(2.0, 1.0, 2.5);
-    let look = host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options())[0];
-    let pass = depth_only(true);
+    let look = host::look(from, DVec3::new(0.0, 0.0, 0.5), DVec3::Z);
     for scene in [three(), hundred()] {
-        let output = Output::Pass(pass.clone());
-        let mut renderer = host::renderer_of(&device, output, &by_proxies_of(0), 1, &scene);
-        let mut drawn = |port: &Port| {
-            let shown = (port, [look, parallel()]);
-            in_pass(&host, &pass, &mut renderer, shown, None)
-        };
+        let by = (Output::Pass(depth_only(true)), &by_proxies_of(0));
+        let mut solids = Drawn::new(&host, &device, options(), by, &scene);
+        let mut drawn = |port: &Port| port.picture(&mut solids, [look, parallel()], None);
         let whole = drawn(&Port::new([0, 0], false));
         for by in MOVES {
             for up in [false, true] {
@@ -243,11 +220,11 @@ fn parallel_views_beside_the_framebuffer_draw_what_shows() {
 /// A viewport that the device does not have is refused by name, and so is its plan.
 #[test]
 fn viewports_beyond_the_device_are_refused() {
-    let (_host, device) = opened();
+    let (host, device) = opened();
     let scene = three();
     let matrices = matrices(&scene);
-    for compute in [false, true] {
-        let mut renderer = color_renderer(&device, &scene, compute);
+    for output in outputs() {
+        let mut renderer = drawn(&host, &device, output, &scene).renderer;
         for [x, y, width, height] in [
             [0.0, 0.0, 1e9, 48.0],
             [0.0, 0.0, 64.0, 1e9],
@@ -262,9 +239,7 @@ fn viewports_beyond_the_device_are_refused() {
                 width,
                 height,
             };
-            let error = renderer
-                .plan(&port.view(matrices, DepthOrder::Normal))
-                .unwrap_err();
+            let error = renderer.plan(&port.view(matrices)).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Content);
             assert_eq!(error.key.as_deref(), Some("view.viewport"), "{error}");
         }
@@ -272,23 +247,12 @@ fn viewports_beyond_the_device_are_refused() {
 }
 
 /// A lens whose far plane cuts the scene.
-fn lens(is_parallel: bool, reversed: bool) -> DMat4 {
-    let mut lens = parallel();
-    if !is_parallel {
-        let scene = three();
-        lens = matrices(&scene)[1];
-        let (near, far) = (0.1, 3.1);
-        lens.z_axis.z = far / (near - far);
-        lens.w_axis.z = near * far / (near - far);
-    }
-    // `z` becomes `w - z`.
-    let turned = DMat4::from_cols(
-        DVec4::X,
-        DVec4::Y,
-        DVec4::new(0.0, 0.0, -1.0, 0.0),
-        DVec4::new(0.0, 0.0, 1.0, 1.0),
-    );
-    if reversed { turned * lens } else { lens }
+fn lens(parallel: bool, reversed: bool) -> DMat4 {
+    let (scales, range) = match parallel {
+        true => (WIDE, [0.5, 6.0]),
+        false => (host::scales(&options()), [0.1, 3.1]),
+    };
+    host::lens(scales, parallel, reversed, range)
 }
 
 /// The number of hits, and of pixels in which a picture in a depth range differs from that in the
@@ -320,49 +284,48 @@ fn compare_ranges(
 fn solids_and_meshes_share_the_depth_range() {
     const RANGE: [f32; 2] = [0.2, 0.7];
     let (host, device) = opened();
-    let mesh = Mesh::sphere(&host, 64, Vec3::new(0.3, -0.1, 0.45), 0.3, Vec3::Z).unwrap();
     for (name, scene, least) in [
         ("cells", three(), 0),
         ("boxes", three(), u32::MAX),
         ("copies", hundred(), 0),
     ] {
         let look = matrices(&scene)[0];
+        let port = |depths, order| {
+            Port::new([0, 0], false).with(|p| (p.depths, p.order) = (depths, order))
+        };
+        let ranges = [[0.0, 1.0], RANGE.map(f64::from)];
         for (is_parallel, reversed) in [(false, false), (false, true), (true, false), (true, true)]
         {
-            let pass = PassFormats {
-                depth: match reversed {
-                    true => DepthOrder::Reversed,
-                    false => DepthOrder::Normal,
-                },
-                ..if is_parallel {
-                    depth_only(true)
-                } else {
-                    host::color_pass()
-                }
+            let options = options().with(|o| o.reversed = reversed);
+            let order = host::order(&options);
+            let (pass, colors) = match is_parallel {
+                true => (depth_only(true), &[][..]),
+                false => (host::color_pass(), &[host::COLOR][..]),
             };
-            let output = Output::Pass(pass.clone());
-            let mut renderer = host::renderer_of(&device, output, &by_proxies_of(least), 1, &scene);
+            let output = Output::Pass(pass.with(|p| p.depth = order));
+            let by = (output, &by_proxies_of(least));
+            let mut solids = Drawn::new(&host, &device, options, by, &scene);
+            let (shaders, none) = (MeshShaders::default(), vk::RenderPass::null());
+            let pipeline = MeshPipeline::new(&host, &shaders, &options, none, colors).unwrap();
+            let middle = Vec3::new(0.3, -0.1, 0.45);
+            let mesh = (
+                pipeline,
+                Mesh::sphere(&host, 64, middle, 0.3, Vec3::Z).unwrap(),
+            );
             let matrices = [look, lens(is_parallel, reversed)];
-            let mut drawn = |depths: [f64; 2], mesh| {
-                let port = Port::new([0, 0], false).with(|p| p.depths = depths);
-                in_pass(&host, &pass, &mut renderer, (&port, matrices), mesh)
-            };
             for mesh in [None, Some(&mesh)] {
-                let plain = drawn([0.0, 1.0], mesh);
-                let ranged = drawn(RANGE.map(f64::from), mesh);
+                let [plain, ranged] =
+                    ranges.map(|r| port(r, order).picture(&mut solids, matrices, mesh));
                 let [hits, differ] = compare_ranges(&ranged, &plain, RANGE, reversed);
                 println!("{name}, parallel {is_parallel}, reversed {reversed}: {differ} of {hits}");
                 // Ties of mesh and solid may be decided in another way.
                 assert!(hits > 1500 && differ <= 10, "{name}: {differ} of {hits}");
             }
         }
-        let view = |depths| {
-            let port = Port::new([0, 0], false).with(|p| p.depths = depths);
-            port.view([look, lens(false, false)], DepthOrder::Normal)
-        };
-        let mut renderer = color_renderer(&device, &scene, true);
-        let plain = in_compute(&host, &mut renderer, &view([0.0, 1.0]));
-        let ranged = in_compute(&host, &mut renderer, &view(RANGE.map(f64::from)));
+        let matrices = [look, lens(false, false)];
+        let mut solids = drawn(&host, &device, Output::Compute(Planes::Color), &scene);
+        let [plain, ranged] =
+            ranges.map(|r| port(r, DepthOrder::Normal).picture(&mut solids, matrices, None));
         let [hits, differ] = compare_ranges(&ranged, &plain, RANGE, false);
         assert!(
             hits > 1500 && differ == 0,

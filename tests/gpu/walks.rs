@@ -1,9 +1,9 @@
 //! Walks: pictures of crowds whose copies rays find in a hierarchy are those that tiles give.
 
 use super::crowds::{army, seen};
-use super::embedding::{drawn_by, options};
+use super::embedding::options;
 use super::embedding_outputs::{depth_only, depths};
-use crate::common::host::{opened, view_of};
+use crate::common::host::{color_pass, opened, view_of};
 use crate::common::prelude::*;
 use crate::common::ways::apart;
 
@@ -138,38 +138,10 @@ fn a_prepass_has_the_depths_of_the_main_pass() {
         planning: Planning::Device,
         ..SearchSettings::default()
     };
-    let (before, paths) = depths(&host, &device, &scene, &view, &search, &depth_only(false));
+    let [(before, paths), (main, _)] = [depth_only(false), color_pass()]
+        .map(|pass| depths(&host, &device, &scene, &view, &search, &pass));
     assert_eq!(paths, [DrawPath::Walk; 3]);
-    let (_, main) = drawn_by(&host, &device, options(), &scene, &view, &search);
     assert!(before == main && before.iter().filter(|d| **d < 1.0).count() > 3000);
-}
-
-/// The same renderer draws views and copies that change as a new one does.
-#[test]
-fn changes_are_seen() {
-    let (_, first) = seen(&army(400)).next().unwrap();
-    for stage in STAGES {
-        let of = settings(stage, Tolerance::DEFAULT, Planning::Device);
-        let mut offscreen = Offscreen::new(device(), &first, &of).unwrap();
-        let mut scene = first.clone();
-        for step in 0..5 {
-            match step {
-                0 | 1 => scene.camera.eye += DVec3::new(-1.0, -0.5, 0.7),
-                2 => {
-                    let copies = scene.objects[1].instances.iter().copied();
-                    scene.objects[1].instances = copies.skip(150).collect();
-                }
-                3 => {
-                    scene.objects.remove(0);
-                }
-                _ => scene.objects[0].offset.extend = 0.02,
-            }
-            let same = updated(&mut offscreen, &scene);
-            let new = drawn(&scene, &of, DrawPath::Walk);
-            assert_eq!(same.first_difference(&new), None, "{stage:?}, step {step}");
-        }
-    }
-    device().check().unwrap();
 }
 
 /// Walks leave to tiles what only tiles draw.

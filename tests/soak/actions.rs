@@ -323,8 +323,8 @@ impl Episode<'_> {
                 Ok(())
             }
             "target" => {
-                let depths = self.dice.chance(0.5);
-                self.players[n].set_target(self.host, depths)
+                self.players[n].depths = self.dice.chance(0.5);
+                Ok(())
             }
             // After this frame.
             _ => {

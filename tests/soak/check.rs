@@ -4,7 +4,7 @@ use crate::common::host::{Host, once};
 use crate::kind::Kind;
 use crate::log::{Finding, found};
 use crate::model::Model;
-use crate::surface::{Recording, Surface, target, words};
+use crate::recording::Recording;
 use crate::views::Seen;
 use revmap::gpu::{Device, DrawPath, Renderer};
 use std::collections::{BTreeSet, HashMap};
@@ -131,17 +131,13 @@ fn fresh(host: &Host, device: &Device, drawn: &Drawn, model: &Model) -> Result<F
     let null = ash::vk::RenderPass::null();
     let mut renderer = Renderer::new(device, kind.output(null), &kind.search, 1)?;
     let ids = model.add_to(&mut renderer)?;
-    let surface = Surface::new(host, kind);
-    let words = kind.compute.then(|| words(host, kind));
-    if let Some(words) = &words {
-        // SAFETY: the buffer has two words for each pixel, and outlives the renderer's frame.
-        unsafe { renderer.set_compute_target(target(words, drawn.depths)) }?;
-    }
-    let mut result = Ok(());
+    let canvas = kind.canvas(host);
+    canvas.lend(&mut renderer, drawn.depths);
     once(host, |cmd| {
-        // SAFETY: `cmd` is recording; no frame of this renderer is in flight.
-        let frame = unsafe { renderer.prepare(cmd, 0, &drawn.seen.view) };
-        result = frame.map_err(Finding::from).and_then(|frame| {
+        // SAFETY: `cmd` is recording; no frame of this renderer is in flight; all that the commands
+        // read outlives them.
+        unsafe {
+            let frame = renderer.prepare(cmd, 0, &drawn.seen.view)?;
             let recording = Recording {
                 renderer: &renderer,
                 frame: &frame,
@@ -149,13 +145,10 @@ fn fresh(host: &Host, device: &Device, drawn: &Drawn, model: &Model) -> Result<F
                 warms: false,
                 refused: Vec::new(),
             };
-            let shown = (&**kind, &drawn.seen);
-            // SAFETY: as above; all that the commands read outlives them.
-            unsafe { surface.draw(host, cmd, shown, words.as_ref(), &recording) }
-        });
-    });
-    result?;
-    let mut planes = surface.read(kind);
+            recording.draw(host, cmd, &canvas, &drawn.seen)
+        }
+    })?;
+    let mut planes = canvas.planes();
     if let Some(n) = kind.identity() {
         let new: Vec<_> = ids.iter().map(|id| id.number()).collect();
         renumber(&mut planes[n], &new, &drawn.model.numbers());

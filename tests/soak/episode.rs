@@ -3,7 +3,7 @@
 
 use crate::calls::Layer;
 use crate::check::{Drawn, Fault, check};
-use crate::common::host::{Host, borrow_through};
+use crate::common::host::{Commands, Host, borrow_through};
 use crate::log::{Finding, Log, found};
 use crate::player::Player;
 use crate::random::Random;
@@ -26,7 +26,7 @@ pub struct Episode<'a> {
     pub players: Vec<Player<'a>>,
     pub palette: Palette<'a>,
     pub flights: Vec<Flight>,
-    pool: vk::CommandPool,
+    _commands: Commands<'a>,
     pub next: usize,
     pub number: usize,
     /// Frames that have run and are not compared yet.
@@ -65,12 +65,12 @@ impl<'a> Episode<'a> {
         for player in &players {
             log.note(format!("{} views by {:?}", player.views, player.kind));
         }
-        let (pool, flights) = flights(host, frames);
+        let commands = Commands::new(host, vk::CommandBufferLevel::PRIMARY, 2 * frames).unwrap();
         Ok(Self {
             players,
             palette,
-            flights,
-            pool,
+            flights: flights(host, &commands),
+            _commands: commands,
             next: 0,
             number: 0,
             pending: Vec::new(),
@@ -149,7 +149,7 @@ impl<'a> Episode<'a> {
         self.log.note(format!("{n}: the renderer is made again"));
         self.log.tally.count("made again", 1);
         self.wait_for_all()?;
-        self.players[n].make_again(self.host, &self.device)
+        self.players[n].make_again(&self.device)
     }
 
     /// Waits for a flight, and keeps what it drew.
@@ -163,7 +163,7 @@ impl<'a> Episode<'a> {
         }
         .unwrap();
         for (player, slot, mut drawn) in std::mem::take(&mut flight.drawn) {
-            drawn.planes = self.players[player].surfaces[slot].read(&drawn.kind);
+            drawn.planes = self.players[player].canvases[slot].planes();
             self.log.tally.count("drawn", 1);
             self.pending.extend(self.compares.then_some(drawn));
         }
@@ -196,27 +196,16 @@ impl<'a> Episode<'a> {
     }
 }
 
-/// Commands and fences of frames in flight.
-fn flights(host: &Host, count: usize) -> (vk::CommandPool, Vec<Flight>) {
-    let device = &host.device;
-    // SAFETY: plain creations, destroyed in Drop.
-    unsafe {
-        let pool = vk::CommandPoolCreateInfo::default()
-            .queue_family_index(host.family)
-            .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
-        let pool = device.create_command_pool(&pool, None).unwrap();
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(pool)
-            .command_buffer_count(2 * count as u32);
-        let signaled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-        let all = device.allocate_command_buffers(&info).unwrap();
-        let flight = |cmd: &[vk::CommandBuffer; 2]| Flight {
-            cmd: *cmd,
-            fence: device.create_fence(&signaled, None).unwrap(),
-            drawn: Vec::new(),
-        };
-        (pool, all.as_chunks().0.iter().map(flight).collect())
-    }
+/// Frames in flight, of two commands each.
+fn flights(host: &Host, commands: &Commands<'_>) -> Vec<Flight> {
+    let signaled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+    let flight = |cmd: &[vk::CommandBuffer; 2]| Flight {
+        cmd: *cmd,
+        // SAFETY: a plain creation, destroyed in Drop.
+        fence: unsafe { host.device.create_fence(&signaled, None) }.unwrap(),
+        drawn: Vec::new(),
+    };
+    commands.raw.as_chunks().0.iter().map(flight).collect()
 }
 
 impl Drop for Episode<'_> {
@@ -228,7 +217,6 @@ impl Drop for Episode<'_> {
             for flight in &self.flights {
                 device.destroy_fence(flight.fence, None);
             }
-            device.destroy_command_pool(self.pool, None);
         }
     }
 }

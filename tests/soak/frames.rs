@@ -3,7 +3,7 @@
 use crate::check::Drawn;
 use crate::episode::Episode;
 use crate::log::{Finding, found};
-use crate::surface::Recording;
+use crate::recording::Recording;
 use crate::views::{self, Seen};
 use ash::vk;
 use revmap::error::{Error, ErrorKind};
@@ -15,8 +15,6 @@ struct Ready {
     player: usize,
     slot: usize,
     frame: PreparedFrame,
-    /// The number of its target among the player's.
-    words: usize,
     drawn: Drawn,
 }
 
@@ -111,7 +109,6 @@ impl Episode<'_> {
                 player: n,
                 slot,
                 frame,
-                words: player.words.len(),
                 drawn: drawn(),
             });
         }
@@ -149,6 +146,7 @@ impl Episode<'_> {
         let planted = self.plant(n);
         let before = self.device.pipelines_compiled();
         let player = &mut self.players[n];
+        player.canvases[slot].lend(&mut player.renderer, player.depths);
         player.stale = player.tokens[slot].take().or(player.stale.take());
         // SAFETY: `cmd` is recording outside of a pass; the slot's last frame was waited for, or
         // was not submitted.
@@ -276,13 +274,11 @@ impl Episode<'_> {
                 warms: self.dice.chance(0.1),
                 refused: refused.collect(),
             };
-            let words = one.words.checked_sub(1).map(|n| &player.words[n]);
             // SAFETY: `cmd` is recording outside of a pass; the wait for the flight comes before all
             // that it reads is dropped.
             unsafe {
-                let surface = &player.surfaces[one.slot];
-                let shown = (&*player.kind, &one.drawn.seen);
-                surface.draw(self.host, cmd, shown, words, &recording)?;
+                let canvas = &player.canvases[one.slot];
+                recording.draw(self.host, cmd, canvas, &one.drawn.seen)?;
             }
         }
         for one in ready {

@@ -1,6 +1,6 @@
 //! The kinds of output that renderers of a random host have.
 
-use crate::common::host::{COLOR, DEPTH, Options, dynamic, order};
+use crate::common::host::{COLOR, Canvas, DEPTH, Host, Options, dynamic, order};
 use crate::random::Random;
 use ash::vk;
 use revmap::gpu::{HostPass, Output, PassFormats, PassKind};
@@ -11,8 +11,8 @@ use revmap::settings::{Plane, PlaneList, Planes, Planning, SearchSettings, Solve
 pub struct Kind {
     pub options: Options,
     pub planes: Planes,
-    /// Formats of the colour attachments, and bytes of a pixel.
-    pub formats: Vec<(vk::Format, usize)>,
+    /// Formats of the colour attachments.
+    pub formats: Vec<vk::Format>,
     pub compute: bool,
     /// True if the renderer gets the host's render pass itself, with pipelines of its own.
     pub own_pass: bool,
@@ -24,14 +24,11 @@ impl Kind {
         let (width, height) = dice.pick(&[(24, 20), (33, 17), (20, 36), (24, 20), (64, 48)]);
         let mut kind = Self {
             options: Options {
-                width,
-                height,
-                dynamic: true,
-                samples: 1,
                 reversed: dice.chance(0.3),
+                ..Options::new(width, height)
             },
             planes: Planes::Color,
-            formats: vec![(COLOR, 4)],
+            formats: vec![COLOR],
             compute: false,
             own_pass: false,
             search: search(dice),
@@ -59,6 +56,14 @@ impl Kind {
             }
         }
         kind
+    }
+
+    /// What a slot's frame is drawn into.
+    pub fn canvas<'a>(&self, host: &'a Host) -> Canvas<'a> {
+        match self.compute {
+            true => Canvas::words(host, self.options),
+            false => Canvas::pass(host, self.options, &self.formats),
+        }
     }
 
     /// True if depths are along parallel rays.
@@ -91,11 +96,10 @@ impl Kind {
         if self.compute {
             return Output::Compute(self.planes);
         }
-        let colors: Vec<_> = self.formats.iter().map(|(format, _)| *format).collect();
         let begun = if self.options.dynamic {
-            dynamic(&colors)
+            dynamic(&self.formats)
         } else if pass == vk::RenderPass::null() {
-            let (color, depth) = (colors, DEPTH);
+            let (color, depth) = (self.formats.clone(), DEPTH);
             PassKind::SingleSubpass { color, depth }
         } else {
             // SAFETY: the pass outlives the renderers of the episode and what they compile.
@@ -108,39 +112,19 @@ impl Kind {
             ..PassFormats::new(begun, self.planes)
         })
     }
-
-    /// What attachments are cleared to.
-    pub fn clears(&self) -> Vec<vk::ClearColorValue> {
-        let of = |(format, _): &(vk::Format, usize)| match *format {
-            vk::Format::R32G32_UINT => vk::ClearColorValue {
-                uint32: [u32::MAX; 4],
-            },
-            _ => vk::ClearColorValue {
-                float32: [0.1, 0.2, 0.3, 1.0],
-            },
-        };
-        self.formats.iter().map(of).collect()
-    }
 }
 
 fn search(dice: &mut Random) -> SearchSettings {
     SearchSettings {
-        solver: dice.pick(&[
-            Solver::Exact,
-            Solver::Exact,
-            Solver::Exact,
-            Solver::Exact,
-            Solver::Quadric,
-            Solver::Live,
-        ]),
+        solver: match dice.below(6) {
+            0 => Solver::Quadric,
+            1 => Solver::Live,
+            _ => Solver::Exact,
+        },
         // Small maps are baked fast.
         map_rows: Some(32),
         proxy_min_pixels: dice.pick(&[0, 150, 150, u32::MAX]),
-        tolerance: dice.pick(&[
-            Tolerance::EXACT,
-            Tolerance::DEFAULT,
-            Tolerance::new(8.0).unwrap(),
-        ]),
+        tolerance: Tolerance::new(dice.pick(&[0.0, 0.25, 8.0])).unwrap(),
         planning: dice.pick(&[Planning::Host, Planning::Device]),
         ..SearchSettings::exact()
     }
@@ -163,13 +147,13 @@ fn planes(dice: &mut Random) -> Vec<Plane> {
         .collect()
 }
 
-fn format(plane: Plane) -> (vk::Format, usize) {
+fn format(plane: Plane) -> vk::Format {
     match plane {
-        Plane::Color | Plane::BaseColor => (COLOR, 4),
-        Plane::Normal => (vk::Format::R16G16B16A16_SFLOAT, 8),
-        Plane::OctahedralNormal => (vk::Format::R16G16_SFLOAT, 4),
-        Plane::Material => (vk::Format::R8G8_UNORM, 2),
-        Plane::Motion => (vk::Format::R32G32_SFLOAT, 8),
-        Plane::Identity => (vk::Format::R32G32_UINT, 8),
+        Plane::Color | Plane::BaseColor => COLOR,
+        Plane::Normal => vk::Format::R16G16B16A16_SFLOAT,
+        Plane::OctahedralNormal => vk::Format::R16G16_SFLOAT,
+        Plane::Material => vk::Format::R8G8_UNORM,
+        Plane::Motion => vk::Format::R32G32_SFLOAT,
+        Plane::Identity => vk::Format::R32G32_UINT,
     }
 }

@@ -1,6 +1,6 @@
 //! The actions of an episode, and what they found.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::fs::File;
 use std::io::Write;
@@ -55,11 +55,10 @@ impl Display for Tally {
     }
 }
 
-/// The actions of an episode: the last ones in memory, all in a file, which outlives a crash.
-/// Printed if the thread panics.
+/// The actions of an episode, in a file, which outlives a crash. Its end is printed if the thread
+/// panics.
 pub struct Log {
     seed: u64,
-    last: VecDeque<String>,
     path: PathBuf,
     file: File,
     pub tally: Tally,
@@ -74,26 +73,23 @@ impl Log {
         let path = path.join(format!("soak-{seed}-{}.txt", std::process::id()));
         Self {
             seed,
-            last: VecDeque::new(),
             file: File::create(&path).unwrap(),
             path,
             tally: Tally::default(),
         }
     }
 
-    /// Keeps an action. The first word is its name in the tally.
-    pub fn note(&mut self, action: impl Into<String>) {
-        let action = action.into();
+    /// Keeps an action.
+    pub fn note(&mut self, action: impl Display) {
         let _ = writeln!(self.file, "{action}");
-        if self.last.len() == LAST {
-            self.last.pop_front();
-        }
-        self.last.push_back(action);
     }
 
     /// The last actions, one a line.
     pub fn text(&self) -> String {
-        let last = self.last.iter().map(|one| format!("  - {one}\n"));
+        let text = std::fs::read_to_string(&self.path).unwrap_or_default();
+        let lines: Vec<_> = text.lines().collect();
+        let last = lines[lines.len().saturating_sub(LAST)..].iter();
+        let last = last.map(|one| format!("  - {one}\n"));
         let all = self.path.display();
         format!(
             "the last actions (all are in {all}):\n{}",

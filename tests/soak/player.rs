@@ -1,11 +1,10 @@
 //! A renderer of the host, what the host believes of it, and what its slots are drawn into.
 
-use crate::common::host::{Host, HostBuffer};
+use crate::common::host::{Canvas, Host};
 use crate::kind::Kind;
 use crate::log::Finding;
 use crate::model::{Model, Thing};
 use crate::random::Random;
-use crate::surface::{Surface, target, words};
 use crate::views::Seen;
 use revmap::gpu::{Device, PreparedFrame, Renderer};
 use std::rc::Rc;
@@ -18,9 +17,8 @@ pub struct Player<'a> {
     pub model: Model,
     pub views: usize,
     /// One per slot.
-    pub surfaces: Vec<Surface<'a>>,
-    /// Targets of compute, of which the last is set. Earlier ones may be in use.
-    pub words: Vec<HostBuffer<'a>>,
+    pub canvases: Vec<Canvas<'a>>,
+    /// True if compute compares depths.
     pub depths: bool,
     /// The view that each slot showed last.
     pub seen: Vec<Option<Seen>>,
@@ -48,14 +46,12 @@ impl<'a> Player<'a> {
         let kind = Rc::new(Kind::random(dice));
         let views = dice.pick(&[1, 1, 1, 2, 3]);
         let slots = frames * views;
-        let surfaces: Vec<_> = (0..slots).map(|_| Surface::new(host, &kind)).collect();
-        let renderer = renderer(device, &kind, &surfaces[0], slots)?;
-        let mut player = Self {
-            renderer,
+        let canvases: Vec<_> = (0..slots).map(|_| kind.canvas(host)).collect();
+        Ok(Self {
+            renderer: renderer(device, &kind, &canvases)?,
             model: Model::default(),
             views,
-            surfaces,
-            words: Vec::new(),
+            canvases,
             depths: true,
             seen: vec![None; slots],
             tokens: (0..slots).map(|_| None).collect(),
@@ -66,16 +62,14 @@ impl<'a> Player<'a> {
             prewarmed: false,
             spoilt: false,
             kind,
-        };
-        player.set_target(host, true)?;
-        Ok(player)
+        })
     }
 
     /// Makes another renderer with the same content. The earlier frames are done.
-    pub fn make_again(&mut self, host: &'a Host, device: &Device) -> Result<(), Finding> {
+    pub fn make_again(&mut self, device: &Device) -> Result<(), Finding> {
         self.join()?;
         // Two renderers at once for a moment, as after a change of settings.
-        self.renderer = renderer(device, &self.kind, &self.surfaces[0], self.surfaces.len())?;
+        self.renderer = renderer(device, &self.kind, &self.canvases)?;
         self.renderer.hide_until_compiled(self.hides);
         for thing in &mut self.model.things {
             thing.last = None;
@@ -87,19 +81,6 @@ impl<'a> Player<'a> {
         // `add_to` ended a frame.
         self.model.end_frame();
         (self.changed, self.prewarmed, self.spoilt) = (true, false, false);
-        self.set_target(host, self.depths)
-    }
-
-    /// Gives compute another target. Nothing is done for other outputs.
-    pub fn set_target(&mut self, host: &'a Host, depths: bool) -> Result<(), Finding> {
-        if !self.kind.compute {
-            return Ok(());
-        }
-        let new = words(host, &self.kind);
-        // SAFETY: the buffer has two words for each pixel, and is kept until the renderer is gone.
-        unsafe { self.renderer.set_compute_target(target(&new, depths)) }?;
-        self.words.push(new);
-        self.depths = depths;
         Ok(())
     }
 
@@ -129,15 +110,10 @@ impl Drop for Player<'_> {
     }
 }
 
-fn renderer(
-    device: &Device,
-    kind: &Kind,
-    surface: &Surface<'_>,
-    slots: usize,
-) -> revmap::Result<Renderer> {
-    let pass = match kind.own_pass {
-        true => surface.pass(),
-        false => ash::vk::RenderPass::null(),
+fn renderer(device: &Device, kind: &Kind, canvases: &[Canvas<'_>]) -> revmap::Result<Renderer> {
+    let pass = match &canvases[0] {
+        Canvas::Pass(into) if kind.own_pass => into.pass,
+        _ => ash::vk::RenderPass::null(),
     };
-    Renderer::new(device, kind.output(pass), &kind.search, slots)
+    Renderer::new(device, kind.output(pass), &kind.search, canvases.len())
 }

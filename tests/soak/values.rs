@@ -9,7 +9,8 @@ use revmap::gpu::HostImage;
 use revmap::maps::{ColorMap, DisplacementMap, Projection, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{
-    BumpForm, Clip, Copies, Light, Lighting, Material, Object, Offset, Placement, Shadow,
+    BumpForm, Clip, Copies, Environment, Light, Lighting, Material, Object, Offset, Placement,
+    Shadow,
 };
 use std::sync::Arc;
 
@@ -227,7 +228,10 @@ impl<'a> Palette<'a> {
         let count = dice.pick(&[0, 1, 2, 2, 3, 5]);
         Lighting {
             ambient: [0.1 + 0.1 * dice.below(3) as f32; 3],
-            environment: None,
+            environment: dice.chance(0.3).then(|| Environment {
+                up: [0.5, 0.7, dice.between(0.2, 1.1) as f32],
+                down: [0.3, 0.2, 0.1],
+            }),
             lights: (0..count).map(|_| light(dice)).collect(),
             shadow: match self.shadows {
                 true => dice.pick(&[Shadow::Off, Shadow::Off, Shadow::Hard, Shadow::Soft]),

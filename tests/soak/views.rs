@@ -1,10 +1,10 @@
 //! Random views.
 
-use crate::common::host::order;
+use crate::common::host;
 use crate::kind::Kind;
 use crate::random::Random;
 use ash::vk;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec3};
 use revmap::gpu::{View, Viewport};
 use revmap::scene::{Camera, Placement};
 use revmap::settings::Planes;
@@ -27,11 +27,12 @@ pub fn random(
 ) -> Seen {
     let (width, height) = (kind.options.width, kind.options.height);
     let (eye, target, name) = eye(dice, inside);
+    let whole = host::viewport(&kind.options);
     let port = match kind.compute {
-        true => whole(kind),
-        false => viewport(dice, kind),
+        true => whole,
+        false => viewport(dice, &whole),
     };
-    let plain = port == whole(kind);
+    let plain = port == whole;
     let camera = plain && !kind.options.reversed && !kind.parallel() && dice.chance(0.4);
     let made = if camera {
         let camera = Camera {
@@ -42,11 +43,9 @@ pub fn random(
         };
         View::from_camera(&camera, (width, height), [0.05, 60.0])
     } else {
-        let projection = match kind.parallel() {
-            true => parallel(dice, kind.options.reversed, port.height < 0.0),
-            false => perspective(dice, &port, kind.options.reversed),
-        };
-        View::from_matrices(look(eye, target), projection, port, order(&kind.options))
+        let look = host::look(eye, target, up(target - eye));
+        let order = host::order(&kind.options);
+        View::from_matrices(look, lens(dice, kind, &port), port, order)
     };
     let mut view = made.unwrap_or_else(|e| panic!("a view {name} was refused: {e}"));
     let mut rows = [0, height];
@@ -80,16 +79,12 @@ pub fn random(
             min_depth: 0.0,
             max_depth: 1.0,
         },
-        scissor: vk::Rect2D {
-            offset: vk::Offset2D {
-                x: 0,
-                y: rows[0] as i32,
-            },
-            extent: vk::Extent2D {
+        scissor: vk::Rect2D::default()
+            .offset(vk::Offset2D::default().y(rows[0] as i32))
+            .extent(vk::Extent2D {
                 width,
                 height: rows[1] - rows[0],
-            },
-        },
+            }),
         name,
     }
 }
@@ -124,43 +119,20 @@ fn eye(dice: &mut Random, inside: Option<Placement>) -> (DVec3, DVec3, &'static 
     }
 }
 
-fn whole(kind: &Kind) -> Viewport {
-    Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: f64::from(kind.options.width),
-        height: f64::from(kind.options.height),
-    }
-}
-
-fn viewport(dice: &mut Random, kind: &Kind) -> Viewport {
-    let whole = whole(kind);
+fn viewport(dice: &mut Random, whole: &Viewport) -> Viewport {
     let (width, height) = (whole.width, whole.height);
-    let mut port = match dice.below(10) {
-        0 => Viewport {
-            x: 10.0,
-            y: 5.0,
-            width: width - 15.0,
-            height: height - 7.5,
-        },
-        1 => Viewport {
-            x: 8.0,
-            y: 3.0,
-            ..whole
-        },
-        2 => Viewport {
-            x: -9.5,
-            y: -7.0,
-            width: width + 3.0,
-            height: height + 20.0,
-        },
-        3 => Viewport {
-            x: -100.0,
-            y: 0.0,
-            width: 60.0,
-            height,
-        },
-        _ => whole,
+    let [x, y, width, height] = match dice.below(10) {
+        0 => [10.0, 5.0, width - 15.0, height - 7.5],
+        1 => [8.0, 3.0, width, height],
+        2 => [-9.5, -7.0, width + 3.0, height + 20.0],
+        3 => [-100.0, 0.0, 60.0, height],
+        _ => [0.0, 0.0, width, height],
+    };
+    let mut port = Viewport {
+        x,
+        y,
+        width,
+        height,
     };
     if dice.chance(0.15) {
         (port.y, port.height) = (port.y + port.height, -port.height);
@@ -175,46 +147,28 @@ fn up(forward: DVec3) -> DVec3 {
     }
 }
 
-fn look(eye: DVec3, target: DVec3) -> DMat4 {
-    let forward = (target - eye).normalize();
-    let right = forward.cross(up(forward)).normalize();
-    let up = right.cross(forward);
-    let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
-}
-
-/// A frustum in the middle or beside it; reversed depth may reach to infinity.
-fn perspective(dice: &mut Random, port: &Viewport, reversed: bool) -> DMat4 {
-    let (near, far) = (0.05, 60.0);
-    let focal = 1.0 / dice.pick(&[10f64, 20.0, 45.0]).to_radians().tan();
-    let aspect = port.width / port.height;
-    let [x, y] = dice.pick(&[[0.0; 2], [0.0; 2], [0.3, -0.2]]);
-    let (z, w) = match (reversed, dice.chance(0.5)) {
-        (true, true) => (0.0, near),
-        (true, false) => (near / (far - near), near * far / (far - near)),
-        (false, _) => (far / (near - far), near * far / (near - far)),
+/// A frustum in the middle or beside it, where reversed depth may reach to infinity, or parallel
+/// rays. Clip space has y upwards in a viewport of negative height.
+fn lens(dice: &mut Random, kind: &Kind, port: &Viewport) -> DMat4 {
+    let reversed = kind.options.reversed;
+    let mut range = [0.05, 60.0];
+    let [x, y] = match kind.parallel() {
+        true => {
+            let half = dice.pick(&[0.5, 1.5, 4.0]);
+            [0.75 / half, 1.0 / half]
+        }
+        false => {
+            if reversed && dice.chance(0.5) {
+                range[1] = f64::INFINITY;
+            }
+            let focal = 1.0 / dice.pick(&[10f64, 20.0, 45.0]).to_radians().tan();
+            [focal / (port.width / port.height).abs(), focal]
+        }
     };
-    // Clip space has y upwards in a viewport of negative height.
-    DMat4::from_cols(
-        DVec4::new(focal / aspect.abs(), 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -focal * port.height.signum(), 0.0, 0.0),
-        DVec4::new(x, y, z, -1.0),
-        DVec4::new(0.0, 0.0, w, 0.0),
-    )
-}
-
-fn parallel(dice: &mut Random, reversed: bool, flipped: bool) -> DMat4 {
-    let (near, far) = (0.05, 60.0);
-    let half = dice.pick(&[0.5, 1.5, 4.0]);
-    let (z, w) = match reversed {
-        true => (1.0 / (far - near), far / (far - near)),
-        false => (-1.0 / (far - near), -near / (far - near)),
-    };
-    let y = if flipped { 1.0 } else { -1.0 };
-    DMat4::from_cols(
-        DVec4::new(0.75 / half, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, y / half, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, z, 0.0),
-        DVec4::new(0.0, 0.0, w, 1.0),
-    )
+    let scales = [x, y * port.height.signum()];
+    let mut lens = host::lens(scales, kind.parallel(), reversed, range);
+    if !kind.parallel() {
+        [lens.z_axis.x, lens.z_axis.y] = dice.pick(&[[0.0; 2], [0.0; 2], [0.3, -0.2]]);
+    }
+    lens
 }

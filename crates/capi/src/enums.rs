@@ -11,7 +11,6 @@ use revmap_files::ProfileAxis;
 
 /// The part of a picture or a drawing that is the half-plane to be turned.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapAxis {
     /// The axis is the middle: the picture is a whole silhouette, and its right half is used.
     Center = 0,
@@ -23,7 +22,6 @@ pub enum RevmapAxis {
 /// for comparison: a library that is built without the feature `searches` refuses them with
 /// REVMAP_RESULT_UNSUPPORTED.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapSolver {
     /// The default of this version: REVMAP_SOLVER_EXACT.
     Default = 0,
@@ -49,7 +47,6 @@ pub enum RevmapSolver {
 
 /// The source of the distances of a shape map.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapMapSource {
     /// The most accurate for the profile.
     Default = 0,
@@ -63,7 +60,6 @@ pub enum RevmapMapSource {
 
 /// The format of the distances of a shape map on the device.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapMapFormat {
     /// Signed distance as a 32-bit float.
     R32 = 0,
@@ -75,7 +71,6 @@ pub enum RevmapMapFormat {
 
 /// The planes of a picture to draw.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapPlanes {
     /// Colour only. A pass gets linear RGBA, which the attachment's format encodes: give a view of an
     /// _SRGB format. An attachment of a _UNORM format holds linear values, and a float format keeps
@@ -95,7 +90,6 @@ pub enum RevmapPlanes {
 /// The values of one colour attachment of REVMAP_PLANES_LIST. Channels that it does not name are 0,
 /// and alpha is 1.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapAttachment {
     /// The shaded colour, linear RGBA. A float format keeps values above 1.
     Color = 0,
@@ -120,7 +114,6 @@ pub enum RevmapAttachment {
 
 /// A plane that revmap_offscreen_read() returns. Row 0 is on top.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapPlane {
     /// 4 bytes a pixel: sRGB, alpha linear.
     Srgb8 = 0,
@@ -142,7 +135,6 @@ pub enum RevmapPlane {
 
 /// The near end of the depth range.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapDepthOrder {
     /// 0 is near, fragments pass that are less.
     Normal = 0,
@@ -154,7 +146,6 @@ pub enum RevmapDepthOrder {
 /// either depth order. After a depth prepass of the same objects and view give
 /// REVMAP_DEPTH_COMPARE_EQUAL or REVMAP_DEPTH_COMPARE_NEARER_OR_EQUAL.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapDepthCompare {
     /// Nearer.
     Nearer = 0,
@@ -176,7 +167,6 @@ pub enum RevmapDepthCompare {
 
 /// The command by which a host begins its pass.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapPassKind {
     /// By vkCmdBeginRendering.
     Dynamic = 0,
@@ -186,7 +176,6 @@ pub enum RevmapPassKind {
 
 /// The stage that traces rays.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapStage {
     /// In fragment shaders.
     Fragment = 0,
@@ -196,7 +185,6 @@ pub enum RevmapStage {
 
 /// The projection that gives the texture coordinates of surface points.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapProjection {
     /// Azimuth and height.
     Cylindrical = 0,
@@ -210,7 +198,6 @@ pub enum RevmapProjection {
 
 /// The formula by which a height map tilts the normal.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapBumpForm {
     /// Gradient along the surface.
     SurfaceGradient = 0,
@@ -220,7 +207,6 @@ pub enum RevmapBumpForm {
 
 /// The part of a solid that the shape box cuts.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapClip {
     /// The box cuts nothing that an offset adds: it grows with the offset.
     None = 0,
@@ -230,7 +216,6 @@ pub enum RevmapClip {
 
 /// The filter that computes slopes from heights.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapSlopeFilter {
     /// Scharr's.
     Scharr = 0,
@@ -240,7 +225,6 @@ pub enum RevmapSlopeFilter {
 
 /// Shadows, by tracing from the surface towards each light.
 #[repr(u32)]
-#[derive(Clone, Copy)]
 pub enum RevmapShadow {
     /// No shadows; nothing is traced.
     Off = 0,

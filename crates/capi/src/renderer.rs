@@ -210,7 +210,7 @@ unsafe fn recorder(
     output: Output,
     search: *const RevmapSearch,
     frames: u32,
-    shading: Option<&HostShading>,
+    shading: Option<(*const RevmapShading, vk::DescriptorSetLayout)>,
 ) -> Outcome<Mutex<Recorder>> {
     // SAFETY: as the caller promised.
     let settings = unsafe { crate::values::search(search) }?;
@@ -219,8 +219,15 @@ unsafe fn recorder(
     let slots = frames as usize;
     let renderer = match shading {
         None => Renderer::new(&device, output, &settings, slots),
-        // SAFETY: the shading and its layout are as the caller has promised.
-        Some(host) => unsafe { Renderer::with_shading(&device, output, &settings, slots, host) },
+        Some((shading, set_layout)) => {
+            let shading = RevmapShading::get(shading)?;
+            let host = HostShading {
+                shading,
+                set_layout,
+            };
+            // SAFETY: the shading and its layout are as the caller has promised.
+            unsafe { Renderer::with_shading(&device, output, &settings, slots, &host) }
+        }
     }?;
     Ok(Mutex::new(Recorder {
         renderer,
@@ -269,16 +276,6 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     }
 }
 
-fn host_shading(
-    shading: *const RevmapShading,
-    set_layout: vk::DescriptorSetLayout,
-) -> Outcome<HostShading> {
-    Ok(HostShading {
-        shading: RevmapShading::get(shading)?,
-        set_layout,
-    })
-}
-
 /// Makes a renderer as revmap_renderer_create() does, with a host's function that shades in place of
 /// the library's. The function takes no lights of revmap_renderer_set_lighting(). set_layout is the
 /// layout of descriptor set 3, for fragments; null if the function reads none. The layout has every
@@ -303,8 +300,7 @@ pub unsafe extern "C" fn revmap_renderer_create_with_shading(
     unsafe {
         create(renderer, || {
             let output = Output::Pass(read(pass)?.formats()?);
-            let host = host_shading(shading, set_layout)?;
-            recorder(device, output, search, frames, Some(&host))
+            recorder(device, output, search, frames, Some((shading, set_layout)))
         })
     }
 }
@@ -326,8 +322,7 @@ pub unsafe extern "C" fn revmap_renderer_create_compute_with_shading(
     unsafe {
         create(renderer, || {
             let output = Output::Compute(enums::planes(planes)?);
-            let host = host_shading(shading, set_layout)?;
-            recorder(device, output, search, frames, Some(&host))
+            recorder(device, output, search, frames, Some((shading, set_layout)))
         })
     }
 }

@@ -2,30 +2,27 @@
 //! bit. Motion, masks, depth tests, rays through samples.
 
 use crate::host::{
-    Attachments, COLOR, DEPTH, Host, Options, borrow, dynamic, once, open, open_with,
-    view_and_projection, viewport,
+    self, COLOR, Canvas, DEPTH, Drawn, Host, borrow, dynamic, open, open_with, view_and_projection,
 };
 use crate::names::*;
 use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
-use std::cell::RefCell;
 
 type F = vk::Format;
 type A = RevmapAttachment;
 
-/// Every plane with a format and its bytes a pixel.
-const PLANES: [(A, Plane, vk::Format, usize); 7] = [
-    (A::Identity, Plane::Identity, F::R32G32_UINT, 8),
-    (A::Motion, Plane::Motion, F::R32G32_SFLOAT, 8),
-    (A::Color, Plane::Color, F::R16G16B16A16_SFLOAT, 8),
-    (A::BaseColor, Plane::BaseColor, F::R8G8B8A8_UNORM, 4),
-    (A::Normal, Plane::Normal, F::R32G32B32A32_SFLOAT, 16),
+/// Every plane with a format.
+const PLANES: [(A, Plane, vk::Format); 7] = [
+    (A::Identity, Plane::Identity, F::R32G32_UINT),
+    (A::Motion, Plane::Motion, F::R32G32_SFLOAT),
+    (A::Color, Plane::Color, F::R16G16B16A16_SFLOAT),
+    (A::BaseColor, Plane::BaseColor, F::R8G8B8A8_UNORM),
+    (A::Normal, Plane::Normal, F::R32G32B32A32_SFLOAT),
     (
         A::OctahedralNormal,
         Plane::OctahedralNormal,
         F::R16G16_SNORM,
-        4,
     ),
-    (A::Material, Plane::Material, F::R32G32_SFLOAT, 8),
+    (A::Material, Plane::Material, F::R32G32_SFLOAT),
 ];
 const NONE: [u32; 2] = [u32::MAX; 2];
 const MATERIAL: Material = Material {
@@ -36,45 +33,20 @@ const MATERIAL: Material = Material {
 const MOVED: [f64; 3] = [0.05, -0.15, 0.02];
 const BIAS: f64 = 1.0 / 1024.0;
 
+/// A pass of all planes, by dynamic rendering.
+fn output() -> Output {
+    let list = Planes::List(PlaneList::new(&PLANES.map(|(_, plane, _)| plane)).unwrap());
+    let begun = dynamic(&PLANES.map(|(.., format)| format));
+    Output::Pass(PassFormats::new(begun, list))
+}
+
 /// What every plane is drawn into.
-fn attachments(host: &Host) -> Attachments<'_> {
-    let formats = PLANES.map(|(_, _, format, bytes)| (format, bytes));
-    let options = Options {
+fn canvas(host: &Host) -> Canvas<'_> {
+    let options = host::Options {
         dynamic: true,
         ..OPTIONS
     };
-    Attachments::new(host, options, &formats).unwrap()
-}
-
-/// Draws a frame and waits for it.
-fn draw<T>(
-    host: &Host,
-    into: &Attachments<'_>,
-    prepare: impl FnOnce(vk::CommandBuffer) -> T,
-    record: impl FnOnce(vk::CommandBuffer, T),
-) {
-    let clear = |plane: Plane| match plane {
-        Plane::Identity => vk::ClearColorValue {
-            uint32: [NONE[0]; 4],
-        },
-        _ => vk::ClearColorValue { float32: [0.0; 4] },
-    };
-    let clears = PLANES.map(|(_, plane, ..)| clear(plane));
-    once(host, |cmd| {
-        let prepared = prepare(cmd);
-        // SAFETY: `cmd` is recording; the attachments live.
-        unsafe {
-            into.draw(cmd, &clears, false, || record(cmd, prepared));
-            into.copy(cmd);
-        }
-    });
-}
-
-/// The bytes of all planes and of the depth.
-fn bytes(into: &Attachments<'_>) -> Vec<Vec<u8>> {
-    let colors = (0..PLANES.len()).map(|n| into.color(n));
-    let depths = bytemuck::pod_collect_to_vec(&into.depths());
-    colors.chain([depths]).collect()
+    Canvas::new(host, options, &output())
 }
 
 /// The pairs of words of a plane.
@@ -98,8 +70,8 @@ fn matrices((eye, jitter): Seen) -> [DMat4; 2] {
 
 fn view_in_rust(seen: Seen) -> View {
     let [view, projection] = matrices(seen);
-    let view = View::from_matrices(view, projection, viewport(&OPTIONS), DepthOrder::Normal);
-    view.unwrap().with_jitter(seen.1)
+    let view = host::view([view, projection], &OPTIONS).unwrap();
+    view.with_jitter(seen.1)
 }
 
 fn view_in_c(seen: Seen) -> RevmapView {
@@ -116,36 +88,26 @@ fn view_in_c(seen: Seen) -> RevmapView {
 
 /// Two frames of the Rust renderer; the first object moves between them.
 fn drawn(host: &Host) -> [Vec<Vec<u8>>; 2] {
-    let (device, into) = (borrow(host), attachments(host));
-    let planes = PLANES.map(|(_, plane, ..)| plane);
-    let list = Planes::List(PlaneList::new(&planes).unwrap());
-    let begun = dynamic(&PLANES.map(|(_, _, format, _)| format));
-    let output = Output::Pass(PassFormats::new(begun, list));
-    let mut renderer = Renderer::new(&device, output, &SearchSettings::default(), 1).unwrap();
+    let (device, search) = (borrow(host), SearchSettings::default());
     let mut scene = scene();
     scene.objects[1].material = Some(MATERIAL);
-    let ids: Vec<ObjectId> = (scene.objects.iter())
-        .map(|object| renderer.add(object.clone()).unwrap())
-        .collect();
+    let options = host::Options {
+        dynamic: true,
+        ..OPTIONS
+    };
+    let mut drawn = Drawn::new(host, &device, options, (output(), &search), &scene);
     let first = view_in_rust(FIRST);
     let second = view_in_rust(SECOND).with_last(&first).with_depth_bias(BIAS);
     [first, second].map(|view| {
-        let shared = RefCell::new(&mut renderer);
-        draw(
-            host,
-            &into,
-            // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
-            |cmd| unsafe { shared.borrow_mut().prepare(cmd, 0, &view).unwrap() },
-            // SAFETY: the frame was prepared, the pass has the output's formats.
-            |cmd, frame| unsafe { shared.borrow().record(cmd, &frame).unwrap() },
-        );
-        renderer.end_frame();
+        drawn.view = view;
+        drawn.picture();
+        drawn.renderer.end_frame();
         let moved = Placement {
             position: MOVED.into(),
             ..Placement::default()
         };
-        renderer.set_placement(ids[0], moved).unwrap();
-        bytes(&into)
+        drawn.renderer.set_placement(drawn.ids[0], moved).unwrap();
+        drawn.canvas.planes()
     })
 }
 
@@ -155,13 +117,13 @@ struct Lists<'a> {
     device: *mut RevmapDevice,
     renderer: *mut RevmapRenderer,
     objects: [RevmapObject; 2],
-    into: Attachments<'a>,
+    canvas: Canvas<'a>,
 }
 
 /// A renderer of all planes for a pass; the other values are those of `pass`.
 fn renderer(device: *mut RevmapDevice, pass: RevmapPass) -> *mut RevmapRenderer {
     let numbers = PLANES.map(|(attachment, ..)| attachment as u32);
-    let formats = PLANES.map(|(_, _, format, _)| format);
+    let formats = PLANES.map(|(.., format)| format);
     let pass = RevmapPass {
         kind: RevmapPassKind::Dynamic as u32,
         samples: 1,
@@ -215,7 +177,7 @@ impl<'a> Lists<'a> {
             device,
             renderer,
             objects: add(renderer, Object::COLOR),
-            into: attachments(host),
+            canvas: canvas(host),
         }
     }
 
@@ -226,7 +188,8 @@ impl<'a> Lists<'a> {
                 ok! { revmap_renderer_record(self.renderer, cmd, 0); }
             }
         };
-        draw(self.host, &self.into, |cmd| self.prepare(cmd, view), record);
+        let prepare = |cmd| self.prepare(cmd, view);
+        self.canvas.draw(self.host, prepare, record);
     }
 
     fn prepare(&self, cmd: vk::CommandBuffer, view: &RevmapView) {
@@ -248,7 +211,7 @@ impl<'a> Lists<'a> {
 
     /// The number of pixels that show each object, and of those that show none.
     fn shown(&self) -> [usize; 3] {
-        let pixels = pairs(&self.into.color(0));
+        let pixels = pairs(&self.canvas.planes()[0]);
         let of = |pair| pixels.iter().filter(|p| **p == pair).count();
         let [first, second] = [0, 1].map(|n| of([self.number(n), 0]));
         assert_eq!(first + second + of(NONE), pixels.len());
@@ -270,7 +233,10 @@ fn a_list_of_planes_is_what_rust_draws() {
     let wanted = drawn(&host);
     let lists = Lists::new(&host);
     lists.draw(&view_in_c(FIRST));
-    assert!(bytes(&lists.into) == wanted[0], "the first frame differs");
+    assert!(
+        lists.canvas.planes() == wanted[0],
+        "the first frame differs"
+    );
     let moved = RevmapPlacement {
         position: MOVED,
         rotation: [0.0, 0.0, 0.0, 1.0],
@@ -285,7 +251,8 @@ fn a_list_of_planes_is_what_rust_draws() {
     lists.draw(&view_in_c(SECOND));
     let [first, second, none] = lists.shown();
     assert!(first > 1500 && second > 1500 && none > 10_000);
-    let pixels = [lists.into.color(1), lists.into.color(0)].map(|bytes| pairs(&bytes));
+    let planes = lists.canvas.planes();
+    let pixels = [&planes[1], &planes[0]].map(|bytes| pairs(bytes));
     for (motion, identity) in pixels[0].iter().zip(&pixels[1]) {
         let [x, y] = motion.map(f32::from_bits);
         let moves = x.hypot(y);
@@ -300,7 +267,7 @@ fn a_list_of_planes_is_what_rust_draws() {
         depth_bias: BIAS,
         ..view_in_c(SECOND)
     });
-    let pairs = bytes(&lists.into).into_iter().zip(&wanted[1]);
+    let pairs = lists.canvas.planes().into_iter().zip(&wanted[1]);
     for (n, (found, wanted)) in pairs.enumerate() {
         assert!(found == *wanted, "plane {n} of the second frame differs");
     }
@@ -340,7 +307,7 @@ fn a_pass_tests_depths_as_it_says() {
     let lists = Lists::new(&host);
     let view = view_in_c(FIRST);
     lists.draw(&view);
-    let before = bytes(&lists.into);
+    let before = lists.canvas.planes();
     for (compare, covers) in [
         (RevmapDepthCompare::Nearer, false),
         (RevmapDepthCompare::NearerOrEqual, true),
@@ -368,8 +335,8 @@ fn a_pass_tests_depths_as_it_says() {
                 }
             }
         };
-        draw(&host, &lists.into, prepare, record);
-        let after = bytes(&lists.into);
+        lists.canvas.draw(&host, prepare, record);
+        let after = lists.canvas.planes();
         let base = PLANES.iter().position(|p| p.1 == Plane::BaseColor).unwrap();
         let green = |pixel: &[u8]| pixel == [0, 255, 0, 255];
         let covered = after[base].chunks_exact(4).filter(|p| green(p)).count();

@@ -97,7 +97,6 @@ mod programs;
 mod random;
 mod rays;
 mod recording;
-mod recording_compute;
 mod shading;
 
 #[path = "../../../../tests/common/host.rs"]

@@ -8,11 +8,8 @@ use std::path::Path;
 use std::process::Command;
 
 const OPTIONS: Options = Options {
-    width: 640,
-    height: 480,
-    dynamic: true,
-    samples: 1,
     reversed: true,
+    ..Options::new(640, 480)
 };
 
 /// The objects of `examples/c/engine.c` in its last frame.

@@ -3,10 +3,7 @@
 //!
 //! A quarter of `REVMAP_SOAK_SECONDS` is the time, `REVMAP_SOAK_SEED` repeats a run.
 
-use crate::host::{
-    Attachments, COLOR, DEPTH, Host, HostBuffer, Options, Texture, assert_silent, barrier,
-    commands, open,
-};
+use crate::host::{COLOR, Canvas, DEPTH, Host, Options, Texture, assert_silent, commands, open};
 use crate::names::*;
 use crate::recording::lend_with_queue;
 use std::collections::VecDeque;
@@ -17,13 +14,7 @@ mod values;
 use values::Random;
 
 /// The size of every target.
-const SIZE: Options = Options {
-    width: 64,
-    height: 48,
-    dynamic: true,
-    samples: 1,
-    reversed: false,
-};
+const SIZE: Options = Options::new(64, 48);
 const WHOLE: [f64; 4] = [0.0, 0.0, 64.0, 48.0];
 
 /// The last calls with their results, and the number of those that succeeded.
@@ -93,8 +84,8 @@ struct Driver<'a> {
     host: &'a Host,
     dice: Random,
     device: [*mut RevmapDevice; 1],
-    into: [Attachments<'a>; 3],
-    words: HostBuffer<'a>,
+    /// One for each kind of renderer.
+    canvases: [Canvas<'a>; 4],
     images: Vec<*mut RevmapHostImage>,
     renderers: Vec<Made>,
     profiles: Vec<*mut RevmapProfile>,
@@ -350,15 +341,18 @@ fn random_calls_meet_no_fault() {
         (vk::Format::R8G8B8A8_SNORM, [10, 250, 0, 0]),
     ];
     let textures = textures.map(|(format, texel)| Texture::new(&host, format, &[texel; 64]));
-    let list = LIST.map(|(format, bytes, _)| (format, bytes));
-    let formats: [&[_]; 3] = [&[(COLOR, 4)], &list, &[]];
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+    let list = LIST.map(|(format, _)| format);
+    let pass = |formats: &[_]| Canvas::pass(&host, SIZE, formats);
     let mut driver = Driver {
         host: &host,
         dice: Random(seed),
         device: [lend_with_queue(&host)],
-        into: formats.map(|formats| Attachments::new(&host, SIZE, formats).unwrap()),
-        words: HostBuffer::new(&host, 8 * 64 * 48, usage).unwrap(),
+        canvases: [
+            pass(&[COLOR]),
+            pass(&list),
+            pass(&[]),
+            Canvas::words(&host, SIZE),
+        ],
         images: Vec::new(),
         renderers: Vec::new(),
         profiles: vec![crate::arguments::spindle()],

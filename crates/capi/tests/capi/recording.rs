@@ -1,19 +1,16 @@
-//! Recording through the C interface into a render pass: what the Rust renderer draws.
+//! Recording through the C interface, into a render pass and in compute: what the Rust renderer
+//! draws.
 
-use crate::host::{Host, Options, Stage, borrow, frame, open, renderer};
+use crate::host::{COLOR, Canvas, Drawn, Host, Options, Picture, borrow, open, view_of};
 use crate::names::*;
 
 pub const OPTIONS: Options = Options {
-    width: 240,
-    height: 180,
     dynamic: false,
-    samples: 1,
-    reversed: false,
+    ..Options::new(240, 180)
 };
 pub const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]];
 pub const EYE: [f64; 3] = [2.0, 0.5, 1.5];
 pub const BESIDE: [f64; 3] = [0.1, 0.6, -0.2];
-pub const RANGE: [f64; 2] = [0.1, 10.0];
 
 pub fn lend(host: &Host) -> *mut RevmapDevice {
     lend_with(host, vk::Queue::null())
@@ -92,102 +89,162 @@ pub fn scene() -> Scene {
     scene
 }
 
-pub fn camera() -> RevmapCamera {
-    RevmapCamera {
-        eye: EYE,
-        ..defaults!(revmap_camera_defaults, RevmapCamera)
+/// A render pass, or words of compute.
+pub fn canvas(host: &Host, compute: bool) -> Canvas<'_> {
+    match compute {
+        true => Canvas::words(host, OPTIONS),
+        false => Canvas::pass(host, OPTIONS, &[COLOR]),
     }
 }
 
-/// The stage's render pass.
-pub fn render_pass(stage: &Stage) -> RevmapPass {
+/// The output of a Rust renderer.
+pub fn output(canvas: &Canvas) -> Output {
+    let Canvas::Pass(into) = canvas else {
+        return Output::Compute(Planes::Color);
+    };
+    let begun = PassKind::RenderPass {
+        // SAFETY: the canvas outlives the renderer.
+        pass: unsafe { HostPass::new(into.pass) },
+        subpass: 0,
+    };
+    Output::Pass(PassFormats::new(begun, Planes::Color))
+}
+
+/// The scene by a Rust renderer.
+pub fn in_rust<'a>(host: &'a Host, mut renderer: Renderer, canvas: Canvas<'a>) -> Drawn<'a> {
+    let scene = scene();
+    canvas.lend(&mut renderer, true);
+    Drawn {
+        ids: crate::host::add(&mut renderer, &scene),
+        view: view_of(&scene, &OPTIONS),
+        renderer,
+        canvas,
+        host,
+    }
+}
+
+/// The render pass of a canvas.
+pub fn render_pass(canvas: &Canvas) -> RevmapPass {
+    let Canvas::Pass(into) = canvas else {
+        panic!("words have no pass");
+    };
     RevmapPass {
         kind: RevmapPassKind::RenderPass as u32,
         samples: 1,
-        render_pass: stage.into.pass,
+        render_pass: into.pass,
         ..sized!(RevmapPass)
     }
 }
 
-/// What the Rust renderer records into the stage's pass.
-fn drawn(host: &Host, stage: &mut Stage) -> Vec<u8> {
-    let device = borrow(host);
-    let mut renderer = renderer(&device, stage, &SearchSettings::default(), 2);
-    let scene = scene();
-    for object in &scene.objects {
-        renderer.add(object.clone()).unwrap();
+/// A renderer of two slots.
+fn create(device: *mut RevmapDevice, canvas: &Canvas) -> *mut RevmapRenderer {
+    let mut renderer = null_mut();
+    // SAFETY: live values; the canvas outlives the renderer.
+    unsafe {
+        match canvas {
+            Canvas::Pass(_) => {
+                let pass = render_pass(canvas);
+                ok! { revmap_renderer_create(device, &pass, null(), 2, &mut renderer); }
+            }
+            Canvas::Words(words) => {
+                let mut target = sized!(RevmapComputeTarget);
+                target.words = words.raw;
+                let color = RevmapPlanes::Color as u32;
+                ok! {
+                    revmap_renderer_create_compute(device, color, null(), 2, &mut renderer);
+                    revmap_renderer_set_compute_target(renderer, &target);
+                }
+            }
+        }
     }
-    let view = View::from_camera(&scene.camera, (OPTIONS.width, OPTIONS.height), RANGE).unwrap();
-    frame(stage, &mut renderer, &view, DMat4::IDENTITY, &[]);
-    stage.read().unwrap().0
+    renderer
+}
+
+/// Prepares a slot for the scene's camera, and draws what `record` records.
+pub fn draw(
+    host: &Host,
+    canvas: &Canvas,
+    renderer: *mut RevmapRenderer,
+    slot: u32,
+    record: impl FnOnce(vk::CommandBuffer),
+) -> Picture {
+    let camera = RevmapCamera {
+        eye: EYE,
+        ..defaults!(revmap_camera_defaults, RevmapCamera)
+    };
+    let prepare = |cmd| {
+        let (w, h) = (OPTIONS.width, OPTIONS.height);
+        // SAFETY: no frame is in flight; `cmd` is recording outside of a pass.
+        unsafe {
+            ok! { revmap_renderer_prepare_camera(renderer, cmd, slot, &camera, w, h, 0.1, 50.0); }
+        }
+    };
+    canvas.draw(host, prepare, |cmd, ()| record(cmd))
 }
 
 /// A renderer that hides compiles nothing while it prepares. What it leaves out appears once it is
 /// compiled, as Rust draws it.
 #[test]
-fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
+fn frames_show_what_rust_draws_once_they_are_compiled() {
     let host = open();
-    let mut stage = Stage::new(&host, OPTIONS).unwrap();
-    let wanted = drawn(&host, &mut stage);
-    let (device, camera) = (lend(&host), camera());
-    let (mut renderer, mut prewarm) = (null_mut(), null_mut());
-    let mut used = sized!(RevmapMemoryUse);
-    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
-    // the renderer's.
+    let [red, green, blue, alpha] = [0.05, 0.2, 0.6, 0.5];
+    let word = ComputeTarget::color_word([red, green, blue, alpha]);
+    assert_eq!(revmap_color_word(red, green, blue, alpha), word);
+    for compute in [false, true] {
+        check(&host, compute);
+    }
+}
+
+fn check(host: &Host, compute: bool) {
+    let device = borrow(host);
+    let own = canvas(host, compute);
+    let made = Renderer::new(&device, output(&own), &SearchSettings::default(), 2).unwrap();
+    let wanted = in_rust(host, made, own).picture();
+    let (device, canvas) = (lend(host), canvas(host, compute));
+    let renderer = create(device, &canvas);
+    let mut prewarm = null_mut();
+    type Record = unsafe extern "C" fn(*mut RevmapRenderer, vk::CommandBuffer, u32) -> RevmapResult;
+    let both: [Record; 2] = [revmap_renderer_record, revmap_renderer_record_compute];
+    let [own, other] = [usize::from(compute), usize::from(!compute)].map(|n| both[n]);
+    // SAFETY: live values; a slot is prepared before it is recorded, into the renderer's target.
     unsafe {
-        let pass = render_pass(&stage);
-        ok! {
-            revmap_renderer_create(device, &pass, null(), 2, &mut renderer);
-            revmap_renderer_hide_until_compiled(renderer, 1);
-        }
+        ok! { revmap_renderer_hide_until_compiled(renderer, 1); }
         add(renderer);
         let compiled = || {
             let mut info = sized!(RevmapDeviceInfo);
             ok! { revmap_device_info(device, &mut info); }
             info.pipelines_compiled
         };
-        let mut shown = |warms: bool| {
+        let statistics = |slot| {
             let mut statistics = sized!(RevmapFrameStatistics);
-            let prepare = |cmd, slot: usize| {
-                let (slot, w, h, [near, far]) = (slot as u32, OPTIONS.width, OPTIONS.height, RANGE);
-                ok! {
-                    revmap_renderer_prepare_camera(renderer, cmd, slot, &camera, w, h, near, far);
-                    revmap_renderer_frame_statistics(renderer, slot, &mut statistics);
-                }
-                Ok(slot)
-            };
-            let record = |cmd, &slot: &u32| {
+            ok! { revmap_renderer_frame_statistics(renderer, slot, &mut statistics); }
+            statistics
+        };
+        let shown = |slot: u32, warms: bool| {
+            let mut before = sized!(RevmapFrameStatistics);
+            let picture = draw(host, &canvas, renderer, slot, |cmd| {
+                before = statistics(slot);
                 if warms {
                     ok! { revmap_renderer_record_prewarm(renderer, cmd, slot); }
                 } else {
-                    ok! { revmap_renderer_record(renderer, cmd, slot); }
+                    ok! { own(renderer, cmd, slot); }
                 }
-                let refused = revmap_renderer_record_compute(renderer, cmd, slot);
-                assert_eq!(refused, RevmapResult::Usage);
-                let mut after = sized!(RevmapFrameStatistics);
-                ok! { revmap_renderer_frame_statistics(renderer, slot, &mut after); }
+                assert_eq!(other(renderer, cmd, slot), RevmapResult::Usage);
+                let after = statistics(slot);
                 let is_time = |ms: f64| (1e-6..6e4).contains(&ms);
                 assert!(is_time(after.prepare_ms), "{after:?}");
                 // A prewarming is no recording.
-                assert!(if warms {
-                    after.record_ms == 0.0
-                } else {
-                    is_time(after.record_ms)
-                });
-                Ok(())
-            };
-            let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
-            drawn.unwrap();
-            (stage.read().unwrap().0, statistics)
+                let recorded = is_time(after.record_ms);
+                assert!(recorded != warms && (recorded || after.record_ms == 0.0));
+            });
+            (picture.0, before)
         };
         let is_empty = |picture: &[u8]| picture.chunks_exact(4).all(|p| p == &picture[..4]);
         let before = compiled();
-        let (picture, statistics) = shown(false);
+        let (picture, first) = shown(0, false);
         assert!(is_empty(&picture), "drawn");
-        assert!(
-            statistics.hidden > 0 && statistics.draws == 0,
-            "{statistics:?}"
-        );
+        let work = |s: &RevmapFrameStatistics| s.draws + s.dispatches;
+        assert!(first.hidden > 0 && first.draws == 0, "{first:?}");
         assert_eq!(compiled(), before);
         ok! {
             revmap_renderer_prewarm(renderer, &mut prewarm);
@@ -196,23 +253,24 @@ fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
         }
         let ready = compiled();
         assert!(ready > before);
-        assert!(is_empty(&shown(true).0), "draws of no pixel have drawn");
-        for _ in 0..2 {
-            let (picture, statistics) = shown(false);
-            assert!(picture == wanted, "pixels differ");
+        assert!(is_empty(&shown(1, true).0), "draws of no pixel have drawn");
+        for slot in [0, 1] {
+            let (picture, statistics) = shown(slot, false);
+            assert!(picture == wanted.0, "pixels differ");
             assert_eq!((statistics.hidden, statistics.objects), (0, 2));
             assert_eq!(statistics.record_ms, 0.0, "not recorded yet");
-            assert!(statistics.draws > 0 && statistics.slot_bytes > 0);
+            assert!(work(&statistics) > 0 && statistics.slot_bytes > 0);
         }
-        let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);
+        let solid = wanted.0.chunks_exact(4).filter(|p| *p != &wanted.0[..4]);
         assert!(solid.count() > 3000);
         assert_eq!(compiled(), ready, "a frame has compiled");
-        let (_, statistics) = shown(false);
+        let mut all = sized!(RevmapStatistics);
+        ok! { revmap_renderer_statistics(renderer, &mut all); }
+        assert_eq!(all.objects, 2);
+        assert!(!compute || (all.drawn_by_hull, all.drawn_by_tiles) == (0, 2));
+        let (slot_bytes, mut used) = (statistics(0).slot_bytes, sized!(RevmapMemoryUse));
         ok! { revmap_device_memory_use(device, &mut used); }
-        assert!(
-            used.device + used.visible >= statistics.slot_bytes,
-            "{used:?}"
-        );
+        assert!(used.device + used.visible >= slot_bytes, "{used:?}");
         let mut unprepared = sized!(RevmapFrameStatistics);
         let refused = revmap_renderer_frame_statistics(renderer, 2, &mut unprepared);
         assert_eq!(refused, RevmapResult::Usage);
@@ -221,7 +279,7 @@ fn a_render_pass_shows_what_rust_draws_once_it_is_compiled() {
             revmap_device_memory_use(device, &mut used);
         }
         let left = used.device + used.visible + used.host;
-        assert!(left < statistics.slot_bytes, "{used:?}");
+        assert!(left < slot_bytes, "{used:?}");
         ok! { revmap_device_destroy(device); }
     }
 }

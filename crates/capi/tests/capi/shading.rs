@@ -1,13 +1,11 @@
 //! A host's shading and images through the C interface: what the Rust renderer draws.
 
-use crate::host::{Host, Stage, Texture, UniformSet, borrow, open};
+use crate::host::{self, Host, Texture, UniformSet, borrow, open};
 use crate::names::*;
-use crate::recording::{OPTIONS, POINTS, RANGE, camera, lend, render_pass, scene};
+use crate::recording::{POINTS, canvas, draw, in_rust, lend, output, render_pass};
 use revmap::shading::Shading;
-use std::cell::RefCell;
 
 const BYTES: &[u8] = include_bytes!("../../../../examples/forward/shade.shading");
-const GRAPHICS: vk::PipelineBindPoint = vk::PipelineBindPoint::GRAPHICS;
 
 /// The lights of `examples/forward`: a sun, a sky, no lamps.
 fn lights(host: &Host) -> UniformSet<'_> {
@@ -17,57 +15,28 @@ fn lights(host: &Host) -> UniformSet<'_> {
     UniformSet::of(host, &all).unwrap()
 }
 
-/// What the Rust renderer draws with the shading and the image.
-fn drawn(host: &Host, stage: &mut Stage, set: &UniformSet, image: &HostImage) -> Vec<u8> {
-    let device = borrow(host);
-    let begun = PassKind::RenderPass {
-        // SAFETY: the stage outlives the renderer.
-        pass: unsafe { HostPass::new(stage.into.pass) },
-        subpass: 0,
-    };
-    let output = Output::Pass(PassFormats::new(begun, Planes::Color));
-    let by = HostShading {
-        shading: Arc::new(Shading::from_bytes(BYTES).unwrap()),
-        set_layout: set.layout,
-    };
-    let search = SearchSettings::default();
-    // SAFETY: the layout has what the function reads, and outlives the renderer.
-    let made = unsafe { Renderer::with_shading(&device, output, &search, 2, &by) };
-    let mut renderer = made.unwrap();
-    let scene = scene();
-    let id = renderer.add(scene.objects[0].clone()).unwrap();
-    renderer.set_color_image(id, Some(image.clone())).unwrap();
-    let view = View::from_camera(&scene.camera, (OPTIONS.width, OPTIONS.height), RANGE).unwrap();
-    let renderer = RefCell::new(&mut renderer);
-    let drawn = stage.frame(
-        DMat4::IDENTITY,
-        Vec3::Z,
-        &[],
-        // SAFETY: the stage has waited for the slot; `cmd` is recording outside of its pass.
-        |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, &view) }?),
-        // SAFETY: the frame was prepared, and the renderer's layout has the set.
-        |cmd, frame| unsafe {
-            set.bind(cmd, GRAPHICS, renderer.borrow().pipeline_layout()?, 3);
-            Ok(renderer.borrow().record(cmd, frame)?)
-        },
-    );
-    drawn.unwrap();
-    stage.read().unwrap().0
-}
-
 #[test]
 fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
     let host = open();
-    let mut stage = Stage::new(&host, OPTIONS).unwrap();
     let set = lights(&host);
     let texture = Texture::new(&host, vk::Format::R8G8B8A8_UNORM, &[[230, 77, 26, 255]; 16]);
+    let (own, by) = (borrow(&host), canvas(&host, false));
+    let shading = Arc::new(Shading::from_bytes(BYTES).unwrap());
+    let search = SearchSettings::default();
+    // SAFETY: the layout has what the function reads, and outlives the renderer.
+    let made = unsafe { host::shaded(&own, output(&by), &search, 2, &shading, set.layout) };
+    let mut rust = in_rust(&host, made.unwrap(), by);
+    rust.renderer.remove(rust.ids[1]).unwrap();
     let image = texture.image();
-    let wanted = drawn(&host, &mut stage, &set, &image);
-    let (device, camera) = (lend(&host), camera());
-    // SAFETY: live values; the stage has waited for a slot before it is prepared, and its pass is
-    // the renderer's.
+    rust.renderer
+        .set_color_image(rust.ids[0], Some(image))
+        .unwrap();
+    let (wanted, _) = rust.picture_by(Some(&set));
+    drop(rust);
+    let (device, canvas) = (lend(&host), canvas(&host, false));
+    // SAFETY: live values; no frame is in flight, and the canvas has the renderer's pass.
     unsafe {
-        let pass = render_pass(&stage);
+        let pass = render_pass(&canvas);
         let (mut renderer, mut shading, mut image) = (null_mut(), null_mut(), null_mut());
         let (mut profile, mut object) = (null_mut(), 0);
         let bytes = BYTES.as_ptr().cast();
@@ -87,34 +56,26 @@ fn a_hosts_shading_and_image_are_drawn_as_in_rust() {
         }
         let mut layout = vk::PipelineLayout::null();
         ok! { revmap_renderer_pipeline_layout(renderer, &mut layout); }
-        let draw = |stage: &mut Stage| {
-            let prepare = |cmd, slot: usize| {
-                let (w, h, [near, far]) = (OPTIONS.width, OPTIONS.height, RANGE);
-                ok! { revmap_renderer_prepare_camera(renderer, cmd, slot as u32, &camera, w, h, near, far); }
-                Ok(slot)
+        let drawn = |slot: u32| {
+            let record = |cmd| {
+                set.bind(cmd, vk::PipelineBindPoint::GRAPHICS, layout, 3);
+                ok! { revmap_renderer_record(renderer, cmd, slot); }
             };
-            let record = |cmd, &slot: &usize| {
-                set.bind(cmd, GRAPHICS, layout, 3);
-                ok! { revmap_renderer_record(renderer, cmd, slot as u32); }
-                Ok(())
-            };
-            let drawn = stage.frame(DMat4::IDENTITY, Vec3::Z, &[], prepare, record);
-            drawn.unwrap();
-            stage.read().unwrap().0
+            draw(&host, &canvas, renderer, slot, record).0
         };
         let held = || {
             let mut held = 7;
             ok! { revmap_host_image_is_held(image, &mut held); }
             held
         };
-        assert!(draw(&mut stage) == wanted, "pixels differ");
+        assert!(drawn(0) == wanted, "pixels differ");
         let solid = wanted.chunks_exact(4).filter(|p| *p != &wanted[..4]);
         assert!(solid.count() > 1500);
         assert_eq!(held(), 1);
         ok! { revmap_renderer_set_color_image(renderer, object, null()); }
-        assert!(draw(&mut stage) != wanted, "the image is still shown");
+        assert!(drawn(1) != wanted, "the image is still shown");
         assert_eq!(held(), 1, "the other slot holds it");
-        draw(&mut stage);
+        drawn(0);
         assert_eq!(held(), 0);
         ok! {
             revmap_renderer_set_slope_image(renderer, object, image);

@@ -1,7 +1,7 @@
 //! Views along the axis, from within a tenth of a unit of it: tips, lids, hollows and holes through
 //! narrow and wide lenses. In a quarter of the views the middle ray is the axis.
 
-use super::numbers::Random;
+use super::numbers::{self, Random};
 use super::{Draft, DraftCamera, DraftObject, OBLIQUE};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 impl Draft {
     /// The view of a seed.
     pub(super) fn along_axis(seed: u64) -> Self {
-        let r = &mut Random::of(seed);
+        let r = &mut numbers::of(seed);
         let on_axis = r.once_in(4.0);
         let polygon = r.about_axis();
         let scale = r.maybe(2.0, 1.0, |r| r.log(0.01, 100.0));
@@ -32,7 +32,7 @@ impl Draft {
         let [far_end, near_end] = if above { ends } else { [ends[1], ends[0]] };
         let away = r.log(0.3, 10.0) * if above { 1.0 } else { -1.0 };
         let mut aside = || {
-            let (s, c) = r.within(0.0, TAU).sin_cos();
+            let (s, c) = r.between(0.0, TAU).sin_cos();
             let by = if on_axis { 0.0 } else { r.log(1e-3, 0.1) };
             [by * c, by * s]
         };
@@ -57,7 +57,7 @@ impl Draft {
             fov: r.log(0.2, 60.0),
         };
         // With an odd number of pixels along both sides one ray is in the middle.
-        let mut side = |least: f64, most: f64| r.within(least, most) as u32 | u32::from(on_axis);
+        let mut side = |least: f64, most: f64| r.between(least, most) as u32 | u32::from(on_axis);
         let size = (side(48.0, 97.0), side(36.0, 73.0));
         let up = r.maybe(2.0, OBLIQUE, |_| [0.0, 1.0, 0.0]);
         Self {
@@ -82,8 +82,8 @@ impl Draft {
 impl Random {
     /// A polygon with something to see along its axis.
     fn about_axis(&mut self) -> Vec<[f64; 2]> {
-        let (low, high) = (self.within(0.02, 0.3), self.within(0.7, 0.98));
-        let outer = self.within(0.1, 0.48);
+        let (low, high) = (self.between(0.02, 0.3), self.between(0.7, 0.98));
+        let outer = self.between(0.1, 0.48);
         let inner = outer * self.log(0.003, 0.7);
         // Heights of cones from nearly level to steep.
         let mut cone = |radius: f64| (radius * self.log(3e-3, 3.0)).min(0.19);
@@ -110,7 +110,7 @@ impl Random {
             ],
             // A hole that narrows or widens.
             3 => {
-                let end = inner * self.within(0.5, 1.5);
+                let end = inner * self.between(0.5, 1.5);
                 vec![[inner, low], [outer, low], [outer, high], [end, high]]
             }
             // A funnel above, a tip below.
@@ -131,7 +131,7 @@ impl Random {
                 points.extend([[outer, high], [0.0, high]]);
                 points
             }
-            _ => self.polygon(),
+            _ => self.any_polygon(),
         }
     }
 }

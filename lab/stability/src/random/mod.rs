@@ -5,7 +5,6 @@ mod numbers;
 mod reduced;
 
 use super::case::Step;
-use super::cases::on_half_turn;
 use super::judge::Truth;
 use super::run::both_stages;
 use numbers::Random;
@@ -77,39 +76,10 @@ pub struct Failure {
 }
 
 impl Random {
-    fn polygon(&mut self) -> Vec<[f64; 2]> {
-        let count = 3 + (9.0 * self.next()) as usize;
-        let last = count as f64;
-        match (4.0 * self.next()) as u32 {
-            // Half a star, both ends on the axis.
-            0 => (0..=count)
-                .map(|k| on_half_turn(k, count, self.within(0.15, 0.48)))
-                .collect(),
-            // A whole star off the axis: a ring.
-            1 => (0..count)
-                .map(|k| {
-                    let angle = TAU * k as f64 / last;
-                    let radius = self.within(0.05, 0.22);
-                    [0.26 + radius * angle.cos(), 0.5 + radius * angle.sin()]
-                })
-                .collect(),
-            // Discs, cones and cylinders on top of each other.
-            2 => {
-                let mut points = vec![[0.0, 0.04]];
-                for k in 0..count {
-                    let z = 0.04 + 0.9 * k as f64 / last;
-                    let (low, high) = (self.within(0.08, 0.46), self.within(0.08, 0.46));
-                    points.push([low, z]);
-                    points.push([if self.once_in(2.0) { low } else { high }, z + 0.9 / last]);
-                }
-                points.push([0.0, 0.94]);
-                points
-            }
-            // Anything, its edges crossing.
-            _ => (0..count.min(6))
-                .map(|_| [self.within(0.0, 0.48), self.within(0.02, 0.98)])
-                .collect(),
-        }
+    fn any_polygon(&mut self) -> Vec<[f64; 2]> {
+        let count = 3 + self.below(9);
+        let kind = self.below(4) as u64;
+        self.polygon(kind, count)
     }
 
     /// Makes the first object or the view extreme in one way.
@@ -147,19 +117,19 @@ impl Random {
             // Nearly level: lids, thin rings.
             3 => {
                 let by = self.log(1e-4, 0.1);
-                let level = self.within(0.1, 0.9);
+                let level = self.between(0.1, 0.9);
                 let squeezed = |z: f64| level + by * (z - 0.5);
                 polygon.iter_mut().for_each(|p| p[1] = squeezed(p[1]));
             }
             // A section without thickness: out and back along a line.
             4 => {
-                let n = (self.next() * polygon.len() as f64) as usize;
-                let (root, tip) = (polygon[n], [self.within(0.0, 0.5), self.within(0.0, 1.0)]);
+                let n = self.below(polygon.len());
+                let (root, tip) = (polygon[n], [self.between(0.0, 0.5), self.between(0.0, 1.0)]);
                 polygon.splice(n..n, [root, tip]);
             }
             // A corner twice, or nearly.
             5 => {
-                let n = (self.next() * polygon.len() as f64) as usize;
+                let n = self.below(polygon.len());
                 let by = self.maybe(2.0, 0.0, |r| r.log(1e-12, 1e-4));
                 let [r, z] = polygon[n];
                 polygon.insert(n, [r + by, z]);
@@ -176,12 +146,12 @@ impl Random {
             }
             // Along a level face.
             7 => {
-                let n = (self.next() * polygon.len() as f64) as usize;
+                let n = self.below(polygon.len());
                 camera.eye[2] = camera.target[2] + scale * (polygon[n][1] - 0.5);
                 camera.target[2] = camera.eye[2];
             }
             // A very wide field of view.
-            _ => camera.fov = self.within(90.0, 170.0),
+            _ => camera.fov = self.between(90.0, 170.0),
         }
     }
 
@@ -200,7 +170,7 @@ impl Random {
         let is_thin = (0..polygon.len()).any(is_twice);
         for _ in 0..3 * u32::from(!is_thin) {
             let count = polygon.len();
-            let n = (self.next() * count as f64) as usize;
+            let n = self.below(count);
             let [before, here, after] = [n + count - 1, n, n + 1].map(|k| polygon[k % count]);
             let length = self.log(1e-4, 0.05);
             let towards = |other: [f64; 2]| {
@@ -217,12 +187,12 @@ impl Random {
         (object.keys).retain(|key| placed.iter().any(|name| key.starts_with(name)));
         object.keys.push(format!("scale = {:?}", [scale; 3]));
         object.copies.clear();
-        let (s, c) = self.within(0.0, TAU).sin_cos();
+        let (s, c) = self.between(0.0, TAU).sin_cos();
         let local = [corner[0] * c, corner[0] * s, corner[1]];
-        let (way, away) = (self.direction(), self.within(1.5, 4.0));
+        let (way, away) = (self.direction(), self.between(1.5, 4.0));
         camera.target = [0, 1, 2].map(|k| at[k] + scale * local[k]);
         camera.eye = [0, 1, 2].map(|k| camera.target[k] + scale * away * way[k]);
-        camera.fov = self.within(1.0, 10.0);
+        camera.fov = self.between(1.0, 10.0);
     }
 
     fn object(&mut self, scale: f64, at: [f64; 3]) -> DraftObject {
@@ -235,11 +205,11 @@ impl Random {
         keys.push(format!("rotation = {turn:?}"));
         keys.push(format!("color = {:?}", [(); 3].map(|()| self.next())));
         if self.once_in(3.0) {
-            keys.push(format!("extend = {:?}", self.within(-0.05, 0.1)));
+            keys.push(format!("extend = {:?}", self.between(-0.05, 0.1)));
         }
         if self.once_in(3.0) {
             keys.push(format!("bevel = {:?}", self.log(0.05, 2.0)));
-            keys.push(format!("chamfer = {:?}", self.within(0.05, 0.3)));
+            keys.push(format!("chamfer = {:?}", self.between(0.05, 0.3)));
         }
         if self.once_in(6.0) {
             keys.push(format!("axis = {:?}", [self.next(), self.next()]));
@@ -254,12 +224,12 @@ impl Random {
             for _ in 0..3 {
                 let [x, y, z] = self.direction().map(|d| 0.6 * scale * d);
                 let [a, b, c, d] = self.rotation();
-                let s = scale * self.within(0.3, 1.0);
+                let s = scale * self.between(0.3, 1.0);
                 copies.push([at[0] + x, at[1] + y, at[2] + z, a, b, c, d, s, s, s]);
             }
         }
         DraftObject {
-            polygon: self.polygon(),
+            polygon: self.any_polygon(),
             keys,
             copies,
         }
@@ -272,7 +242,7 @@ impl Draft {
         if seed >= ALONG_AXIS_FROM {
             return Self::along_axis(seed);
         }
-        let r = &mut Random::of(seed);
+        let r = &mut numbers::of(seed);
         let scale = r.maybe(3.0, 1.0, |r| r.log(1e-4, 1e4));
         let middle = r.maybe(4.0, [0.0; 3], |r| {
             let far = r.log(1.0, 1e5);
@@ -288,7 +258,7 @@ impl Draft {
             })
             .collect();
         let away = if r.once_in(8.0) {
-            r.within(0.05, 0.8)
+            r.between(0.05, 0.8)
         } else {
             r.log(1.2, 1e3)
         };

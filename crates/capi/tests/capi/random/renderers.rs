@@ -11,12 +11,12 @@ pub enum Kind {
     Compute,
 }
 
-/// Formats of the attachments of a list, with bytes a pixel and numbers of `RevmapAttachment`.
-pub const LIST: [(vk::Format, usize, u32); 4] = [
-    (vk::Format::R16G16B16A16_SFLOAT, 8, 0),
-    (vk::Format::R32G32B32A32_SFLOAT, 16, 2),
-    (vk::Format::R32G32_SFLOAT, 8, 5),
-    (vk::Format::R32G32_UINT, 8, 6),
+/// Formats of the attachments of a list, with numbers of `RevmapAttachment`.
+pub const LIST: [(vk::Format, u32); 4] = [
+    (vk::Format::R16G16B16A16_SFLOAT, 0),
+    (vk::Format::R32G32B32A32_SFLOAT, 2),
+    (vk::Format::R32G32_SFLOAT, 5),
+    (vk::Format::R32G32_UINT, 6),
 ];
 
 pub struct Made {
@@ -46,11 +46,11 @@ impl Driver<'_> {
             made && planes == 0
         } else {
             let formats: Vec<_> = match kind {
-                Kind::List => LIST.iter().map(|(format, ..)| *format).collect(),
+                Kind::List => LIST.iter().map(|(format, _)| *format).collect(),
                 Kind::Color => vec![COLOR],
                 _ => Vec::new(),
             };
-            let numbers = LIST.map(|(.., number)| number);
+            let numbers = LIST.map(|(_, number)| number);
             let pass = RevmapPass {
                 size: dice.size::<RevmapPass>(),
                 samples: 1,
@@ -70,7 +70,9 @@ impl Driver<'_> {
             return;
         }
         let mut target = sized!(RevmapComputeTarget);
-        target.words = self.words.raw;
+        if let Canvas::Words(words) = &self.canvases[Kind::Compute as usize] {
+            target.words = words.raw;
+        }
         let set = call! { revmap_renderer_set_compute_target(handle, &target) };
         assert_eq!(set, kind == Kind::Compute);
         self.renderers.push(Made {
@@ -117,7 +119,7 @@ impl Driver<'_> {
             };
             assert_eq!(recorded, ready);
         };
-        commands(host, submits, |cmd| {
+        let done = commands(host, submits, |cmd| {
             let ready = if by_camera {
                 let camera = defaults!(revmap_camera_defaults, RevmapCamera);
                 let (camera, near, far) = (&camera, near.abs(), 10.0 * far.abs());
@@ -133,20 +135,8 @@ impl Driver<'_> {
             if !records || known != ready {
                 return;
             }
-            if kind == Kind::Compute {
-                if ready && view.viewport != WHOLE {
-                    return; // the target has another size
-                }
-                // SAFETY: `cmd` is recording outside of a pass; the words live until it has run.
-                unsafe {
-                    let (words, far) = (self.words.raw, 1f32.to_bits());
-                    host.device
-                        .cmd_fill_buffer(cmd, words, 0, vk::WHOLE_SIZE, far);
-                    barrier(host, cmd, &[]);
-                    record(cmd, ready);
-                    barrier(host, cmd, &[]);
-                }
-                return;
+            if kind == Kind::Compute && ready && view.viewport != WHOLE {
+                return; // the target has another size
             }
             // Vulkan refuses viewports far outside.
             let [x, y, width, height] = view.viewport.map(|side| side as f32);
@@ -164,16 +154,16 @@ impl Driver<'_> {
                 min_depth: 0.0,
                 max_depth: 1.0,
             };
-            let clears = [vk::ClearColorValue::default(); 4];
-            // SAFETY: `cmd` is recording outside of a pass, the attachments live and do not change.
+            // SAFETY: `cmd` is recording outside of a pass, the canvas lives and does not change.
             unsafe {
-                self.into[kind as usize].draw(cmd, &clears, false, || {
-                    if ready {
+                self.canvases[kind as usize].record(cmd, || {
+                    if ready && kind != Kind::Compute {
                         host.device.cmd_set_viewport(cmd, 0, &[viewport]);
                     }
                     record(cmd, ready);
                 });
             }
         });
+        done.unwrap();
     }
 }

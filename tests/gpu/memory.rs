@@ -1,10 +1,11 @@
-//! A simulated device of 4 GiB: what does not fit is refused by kind, and everything else goes on.
+//! Device memory: a simulated device of 4 GiB, on which what does not fit is refused by kind, and
+//! everything else goes on; surfaces and objects without end.
 #![allow(unsafe_code)]
 
 use crate::calls::{Layer, above, planted_device};
-use crate::common::host::{borrow_through, open};
+use crate::common::host::{Drawn, borrow_through, color_pass, open, opened};
 use crate::common::prelude::*;
-use crate::embedding::three;
+use crate::embedding::{options, three};
 use std::collections::HashMap;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
@@ -89,9 +90,84 @@ fn what_does_not_fit_is_refused_and_the_rest_goes_on() {
     assert_eq!(REFUSED.load(SeqCst), 1);
     assert_eq!((device.memory_use(), live()), (used, full));
 
+    device.set_memory_budget(Some(used.total() + (1 << 20)));
+    let small_settings = settings.with(|s| s.width = 800);
+    let refused = Offscreen::new(&device, &scene, &small_settings)
+        .err()
+        .unwrap();
+    assert!(refused.message.contains("memory budget"), "{refused}");
+    assert_eq!(device.memory_use(), used);
+
     assert!(next_frame(&mut small).first_difference(&before).is_none());
     drop((small, first));
     assert_eq!(device.memory_use(), MemoryUse::default());
     drop(device);
     assert_eq!(live(), 0);
+}
+
+/// Device memory after two thousand frames equals that after a hundred, although every frame builds
+/// surfaces.
+#[test]
+fn memory_stays_flat() {
+    let (host, device) = opened();
+    let options = options().with(|o| (o.width, o.height) = (32, 24));
+    let camera = Camera::new(DVec3::new(1.0, 1.0, 3.0), DVec3::new(-3.0, -2.5, 0.0));
+    let profile = Arc::new(shapes::sphere());
+    let object = |x: f64| {
+        let place = scaled([x, -2.5, 0.0], 0.4);
+        Object::new("one", profile.clone()).with(|o| o.placement = place)
+    };
+    let scene = Scene::new(camera).with(|s| s.objects = vec![object(-3.0), object(-2.5)]);
+    let by = (Output::Pass(color_pass()), &SearchSettings::exact());
+    let mut few = Drawn::new(&host, &device, options, by, &scene);
+    let taken = || {
+        let allocator = device.allocator().unwrap();
+        let report = allocator.lock().unwrap().generate_report();
+        (report.total_allocated_bytes, report.total_capacity_bytes)
+    };
+    let mut early = None;
+    for n in 0..2000u32 {
+        let extend = 0.01 + 1e-6 * f64::from(n);
+        let id = few.ids[n as usize % 2];
+        few.renderer
+            .set_offset(id, offset(extend, 0.0, 1.0))
+            .unwrap();
+        few.picture();
+        if n == 100 {
+            early = Some(taken());
+        }
+    }
+    assert_eq!(early, Some(taken()));
+    assert_eq!(few.renderer.rebuild_count(), 2001);
+}
+
+/// Twenty thousand objects use ten times the device memory of two thousand, and can be removed.
+#[test]
+fn objects_by_the_ten_thousand() {
+    let (host, device) = opened();
+    let profiles = [shapes::vase(), shapes::sphere(), shapes::glass()].map(Arc::new);
+    let object = |n: u32| {
+        let mut object = Object::new("one", profiles[n as usize % profiles.len()].clone());
+        let (x, y) = (f64::from(n % 150), f64::from(n / 150));
+        object.placement = placement([0.1 * x - 7.5, 0.1 * y - 6.5, 0.0], [0.0; 3], [0.1; 3]);
+        object
+    };
+    let empty = scene_of(shapes::vase(), eye(25.0, 3.0)).with(|s| s.objects = Vec::new());
+    let bytes = |count: u32| {
+        let by = (Output::Compute(Planes::Color), &SearchSettings::exact());
+        let mut drawn = Drawn::new(&host, &device, options(), by, &empty);
+        let objects = (0..count).map(|n| drawn.renderer.add(object(n)).unwrap());
+        let ids: Vec<_> = objects.collect();
+        drawn.picture();
+        let bytes = device.memory_use().total();
+        for id in ids.iter().step_by(20) {
+            drawn.renderer.remove(*id).unwrap();
+        }
+        assert_eq!(drawn.renderer.object_count(), ids.len() - ids.len() / 20);
+        drawn.picture();
+        bytes
+    };
+    let (few, many) = (bytes(2_000), bytes(20_000));
+    println!("{few} and {many} bytes");
+    assert!(many < 14 * few);
 }
