@@ -4,12 +4,11 @@
 
 use crate::calls::{Layer, Mask};
 use crate::common::host::{
-    Checked, Host, HostBuffer, add, borrow, borrow_through, once, open, open_with, renderer_of,
-    target, view_of,
+    Canvas, Checked, Host, add, borrow, borrow_through, once, open, open_with, renderer_of, view_of,
 };
 use crate::common::prelude::*;
 use crate::common::ways::apart;
-use crate::embedding::{far_words, options, three};
+use crate::embedding::{options, three};
 use crate::memory_types::simulated;
 
 pub fn settings(stage: DrawStage) -> Settings {
@@ -386,15 +385,12 @@ fn a_failed_preparation_keeps_the_frame_before_it_or_is_named() {
     let [before, after] = scenes();
     let options = options();
     let view = view_of(&before, &options);
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let words = HostBuffer::of(&host, &far_words(&options), usage).unwrap();
+    let words = Canvas::words(&host, options);
     // Records a frame that is older than a second preparation, after a change. The n-th call fails.
     let record = |search: &SearchSettings, n: usize, change: &dyn Fn(&mut Renderer)| {
         let output = Output::Compute(Planes::Color);
         let mut renderer = renderer_of(&device, output, search, 1, &before);
-        // SAFETY: the buffer has two words per pixel, and frames are drawn one after the other.
-        unsafe { renderer.set_compute_target(target(&words)) }.unwrap();
-        let mut ends = None;
+        words.lend(&mut renderer, true);
         // SAFETY: the commands are recorded outside of a pass, and no frame is in flight.
         once(&host, |cmd| unsafe {
             let frame = renderer.prepare(cmd, 0, &view).unwrap();
@@ -402,9 +398,8 @@ fn a_failed_preparation_keeps_the_frame_before_it_or_is_named() {
             layer.fail_at(n);
             let second = renderer.prepare(cmd, 0, &view);
             layer.fail_at(usize::MAX);
-            ends = Some((second.err(), renderer.record_compute(cmd, &frame).err()));
-        });
-        ends.unwrap()
+            (second.err(), renderer.record_compute(cmd, &frame).err())
+        })
     };
     let search = SearchSettings::default();
     let grows = |renderer: &mut Renderer| {

@@ -1,6 +1,7 @@
 //! Questions that a report answers in one sentence: fragment or compute, and whether another search
 //! than the default is faster.
 
+use super::losses::{Pair, to_meshes, worst};
 use crate::measure::ratios::{Over, Ratio, between, over};
 use crate::measure::row::Row;
 use crate::plan::is_rbm_baseline;
@@ -9,7 +10,7 @@ use crate::report::columns::{Cell, Context};
 use revmap::settings::DrawStage;
 use revmap_figures::groups::grouped;
 use revmap_figures::names::{count, number, range};
-use revmap_figures::stats::{Interval, Verdict};
+use revmap_figures::stats::Verdict;
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -36,10 +37,70 @@ impl Question {
 
 /// The sentences at the top of a report: a reader wants them first.
 pub(crate) fn findings(context: &Context) -> Vec<String> {
-    let all = [Question::Stages, Question::Rivals];
-    all.iter()
-        .flat_map(|question| question.answers(context, context.rows))
-        .collect()
+    let mut all = Question::Stages.answers(context, context.rows);
+    let opponent = format!("{}, the mesh of that silhouette", Method::OPPONENT);
+    let mesh = "the coarsest mesh that errs no more in depth";
+    for (reference, name) in [
+        (Over::Opponent, opponent),
+        (Over::Mesh, mesh.to_owned()),
+        (Over::Baseline, context.baseline()),
+    ] {
+        let mut ratios = over(context.rows.iter().copied(), reference);
+        ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
+        let told = ratios.iter().map(|r| {
+            let (way, stage) = (context.styles.way(&r.settings), r.settings.stage.name());
+            let time = Cell::Known(r.time).shown();
+            let verdict = r.time.verdict(context.resolved).word("faster", "slower");
+            let over = context.over_pictures(r.pairs.len());
+            format!("{way}, {stage} stage: {time}{over}, {verdict}")
+        });
+        let told = told.collect::<Vec<_>>().join("; ");
+        if !told.is_empty() {
+            all.push(format!(
+                "Speed: the default takes this part of the time of {name} (95 % interval): {told}."
+            ));
+        }
+    }
+    all.extend(exactness(context));
+    let loses: Vec<_> = rivals(context, context.rows)
+        .into_iter()
+        .chain(to_meshes(context))
+        .collect();
+    if !loses.is_empty() {
+        all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
+    }
+    all
+}
+
+/// The worst errors of the default, of the RBM baseline and of each mesh.
+fn exactness(context: &Context) -> Option<String> {
+    let mut all: Vec<(String, [f64; 4])> = Vec::new();
+    for row in context.rows {
+        let settings = &row.settings;
+        let is_mesh = settings.method.is_mesh();
+        let way = match settings.method {
+            _ if is_rbm_baseline(settings) => context.baseline(),
+            method if is_mesh || method == Method::DEFAULT => context.styles.way(settings),
+            _ => continue,
+        };
+        let errors = &row.errors;
+        let view = errors.view.unwrap_or_default();
+        let depth = errors.depth.map_or(0.0, |depth| depth.p99);
+        let wrong = 100.0 * errors.wrong();
+        let own = [view.silhouette_max, view.depth_p99, depth, wrong];
+        match all.iter_mut().find(|known| known.0 == way) {
+            Some((_, known)) => *known = [0, 1, 2, 3].map(|k| known[k].max(own[k])),
+            None => all.push((way, own)),
+        }
+    }
+    let told = all.iter().map(|(way, worst)| {
+        let [silhouette, pixels, depth, wrong] = worst.map(|v| number(v, 2));
+        format!("{way} {silhouette} pixels, {pixels} pixels ({depth} h/512), {wrong} %")
+    });
+    let told = told.collect::<Vec<_>>().join("; ");
+    (!told.is_empty()).then(|| {
+        format!("Exactness, in the worst picture: silhouettes are within, 99 % of depths are within, and wrong pixels of the pixels hit are: {told}.")
+    })
 }
 
 /// How many times are not resolved, if any is not.
@@ -97,21 +158,6 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
         )
     };
     ratios.iter().map(sentence).collect()
-}
-
-/// A row of the default search, the fastest other search, and the ratio of their times.
-type Pair<'a> = (&'a Row, &'a Row, Interval);
-
-/// The pair whose ratio is largest, of those that are resolved.
-fn worst<'a, 'b>(
-    context: &Context,
-    pairs: impl Iterator<Item = &'b Pair<'a>>,
-) -> Option<&'b Pair<'a>>
-where
-    'a: 'b,
-{
-    let known = pairs.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
-    known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))
 }
 
 fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
@@ -242,6 +288,30 @@ mod tests {
         let (answers, _) = stages_of(&[rows.to_vec(), vec![lies]].concat());
         assert_eq!(answers.len(), 1);
         assert!(answers[0].ends_with("in no picture do the clocks agree in both."));
+    }
+
+    /// The fastest mesh is named, however much it errs, and one picture is not counted.
+    #[test]
+    fn the_mesh_that_is_faster_is_named() {
+        let mesh = |method, passes: &[f64]| timed(method, DrawStage::Fragment, 0, passes);
+        let coarse = Method::mesh_within(4.0).unwrap();
+        let rows = [
+            mesh(Method::DEFAULT, &[10.0, 10.2, 10.0]),
+            mesh(Method::OPPONENT, &[5.0, 5.1, 5.0]),
+            drawn(coarse, DrawStage::Fragment, &[2.5, 2.55, 2.5], 9.0),
+        ];
+        let told = with_context(&rows, findings).join(" ");
+        let wanted = "Where it loses, if anywhere: Against the fastest mesh of the picture it takes at most 4 (4 to 4) of the time: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
+        assert!(told.contains(wanted), "{told}");
+        assert!(!told.contains("1 picture"), "{told}");
+        // Times that are not resolved still have a fastest mesh.
+        let rows = [
+            mesh(Method::DEFAULT, &[10.0, 90.0, 30.0]),
+            mesh(coarse, &[2.5, 2.55, 2.5]),
+        ];
+        let told = with_context(&rows, findings).join(" ");
+        let wanted = "No ratio to a mesh is resolved; the fastest is `mesh:4px`.";
+        assert!(told.contains(wanted), "{told}");
     }
 
     /// The quadric search is faster in one picture; a wider interval with a larger ratio does not

@@ -6,8 +6,6 @@
 #include "core/pixel_ray.glsl"
 #include "search/quadric.glsl"
 
-#define SOLID_AT starts_within
-
 bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
 {
     hit = NO_HIT;
@@ -17,11 +15,13 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
     return true;
 }
 
-bool trace_solid(vec3 eye, vec3 v, float base, float start, vec2 span, bool inside, inout Hit hit)
+bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
+    hit = NO_HIT;
     Meridian m;
     // Vertices hand over whether there are patches, and fragments must take what they are handed.
-    return clip_ray(eye, v, base, start, m) && shape.table_fact_2 != 0u && hit_at(eye, v, m.t_start, hit);
+    bool meets = clip_ray(eye, v, base, frame_block.ray_start - base, m);
+    return meets && shape.table_fact_2 != 0u && hit_at(eye, v, m.t_start, hit);
 }
 
 #endif
