@@ -1,5 +1,5 @@
 //! Tables and charts of a report, described in TOML. The folder `own` holds the program's. A plan
-//! may add some. Each names columns; see [`columns`].
+//! may add some. Each names columns; see [`columns`](crate::report::columns).
 
 mod answers;
 mod charts;
