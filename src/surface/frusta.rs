@@ -60,6 +60,8 @@ pub(super) struct FrustaBuilder<'a> {
 impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
     pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
+        // Short patches are joined with longer ones, and yet a ray may meet them from behind a plane.
+        let is_single = cell.len() == 1;
         let cell = &self.without_short(cell);
         let mut shell = Vec::new();
         let mut frusta: Vec<[DVec2; 2]> = Vec::new();
@@ -83,7 +85,7 @@ impl FrustaBuilder<'_> {
             join(&mut shell, &mut frusta, rims);
             from = to;
         }
-        self.wall_off(cell, &mut shell);
+        self.wall_off(cell, is_single, &mut shell);
         shell
     }
 
@@ -208,7 +210,7 @@ impl FrustaBuilder<'_> {
     }
 
     /// Walls at both ends.
-    fn wall_off(&self, cell: &[QuadricPatch], shell: &mut Vec<[DVec2; 2]>) {
+    fn wall_off(&self, cell: &[QuadricPatch], is_single: bool, shell: &mut Vec<[DVec2; 2]>) {
         let (Some(&[begin, _]), Some(&[_, end])) = (shell.first(), shell.last()) else {
             return;
         };
@@ -222,7 +224,7 @@ impl FrustaBuilder<'_> {
                 };
                 let feet = self.feet_of_plane(inner, joint, top);
                 // A ray from behind meets no other patch.
-                let count = if cell.len() == 1 { 1 } else { 2 };
+                let count = if is_single { 1 } else { 2 };
                 return feet[..count].to_vec();
             }
             let foot = self.foot(patch, joint, top);

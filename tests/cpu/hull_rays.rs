@@ -222,6 +222,15 @@ fn rims_and_ledges_lose_no_ray() {
         [0.0, 0.113918],
         [0.155462, 0.356134],
     ];
+    // The chamfer above the rim of an underside is shorter than the margin of frusta.
+    let chamfer = vec![
+        [0.1, 0.49],
+        [0.28, 0.49],
+        [0.38253591159320594, 0.64],
+        [0.4445125608591141, 0.64],
+        [0.44444763471024945, 0.6400668390194846],
+        [0.274956735871248, 0.79],
+    ];
     for (name, points) in [
         ("ledge", ledge),
         ("below", below),
@@ -229,6 +238,7 @@ fn rims_and_ledges_lose_no_ray() {
         ("turned", turned),
         ("hole", hole),
         ("narrow rim", narrow),
+        ("short chamfer", chamfer),
     ] {
         for patches_per_cell in 2..=8 {
             let solid = Solid::of(&points, patches_per_cell);
