@@ -186,10 +186,10 @@ fn a_crowd_is_as_many_single_objects() {
     device().check().unwrap();
 }
 
-/// Copies hidden from the eye may still cast a shadow. The random host (`tests/soak`) brings copies
-/// into view.
+/// Copies hidden from the eye may still cast a shadow. Copies that come into view are visible in
+/// the first frame.
 #[test]
-fn hidden_copies_throw_shadows() {
+fn hidden_copies_throw_shadows_and_come_back() {
     for stage in STAGES {
         let mut scene = army(70);
         scene.shadow = Shadow::Hard;
@@ -198,6 +198,19 @@ fn hidden_copies_throw_shadows() {
         assert_same_bits(&culled, &all, &format!("{stage:?}, shadows"));
         let listed = draw(&scene, &settings(stage, true));
         assert_near(&culled, &listed, &format!("{stage:?}, shadows"));
+        scene.shadow = Shadow::Off;
+        let mut offscreen = Offscreen::new(device(), &scene, &settings(stage, true)).unwrap();
+        for (name, scene) in seen(&scene) {
+            let moved = updated(&mut offscreen, &scene);
+            let fresh = draw(&scene, &settings(stage, true));
+            assert_same_bits(&moved, &fresh, &format!("{stage:?}, {name}"));
+        }
+        // One object changes, and so does the part of the others that it hides.
+        scene.objects[1].instances.truncate(3);
+        (scene.camera.eye, scene.camera.target) = (VIEWS[3].1.into(), VIEWS[3].2.into());
+        let fewer = updated(&mut offscreen, &scene);
+        let fresh = draw(&scene, &settings(stage, true));
+        assert_same_bits(&fewer, &fresh, &format!("{stage:?}, fewer"));
     }
     device().check().unwrap();
 }

@@ -130,6 +130,28 @@ fn every_value_is_seen() {
     }
 }
 
+/// The sky comes, changes and goes while a renderer draws.
+#[test]
+fn a_renderer_follows_the_sky() {
+    let bright = with_sky(scene_of(shapes::glass(), eye(20.0, 1.7)), |_| {});
+    let plain = bright.clone().with(|s| s.environment = None);
+    let dim = bright.clone().with(|s| {
+        let (up, down) = ([0.1; 3], [0.05; 3]);
+        s.environment = Some(Environment { up, down });
+    });
+    for stage in STAGES {
+        let settings = sized(160, 120).with(|s| s.stage = stage);
+        let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
+        for scene in [&plain, &bright, &dim, &plain] {
+            let wanted = draw(scene, &settings);
+            assert_eq!(
+                updated(&mut renderer, scene).first_difference(&wanted),
+                None
+            );
+        }
+    }
+}
+
 #[cfg(feature = "shaderc")]
 #[test]
 fn a_function_of_the_host_shades_without_it() {

@@ -96,6 +96,28 @@ fn a_retry_after_a_failed_call_draws_everything() {
     }
 }
 
+/// The budget of memory refuses a frame. Once there is memory, everything is drawn.
+#[test]
+fn a_retry_after_a_refusal_of_memory_draws_everything() {
+    let (host, device) = opened();
+    let scene = textured();
+    for stage in STAGES {
+        let wanted = by_maps(&host, &device, stage, &scene).picture().0;
+        let mut drawn = by_maps(&host, &device, stage, &scene);
+        let mut refused = 0;
+        for more in 0..20 {
+            let used = device.memory_use().total();
+            device.set_memory_budget(Some(used + 2000 * more));
+            refused += never(&host, |cmd| {
+                u32::from(drawn.record(cmd, (0, 0), None).is_err())
+            });
+        }
+        device.set_memory_budget(None);
+        assert!(refused > 2, "{stage:?}: {refused}");
+        assert_eq!(differ(&drawn.picture().0, &wanted), 0, "{stage:?}");
+    }
+}
+
 /// An object that cannot be drawn is named in each frame until it is mended or removed; the others
 /// are drawn then, without being set again.
 #[test]

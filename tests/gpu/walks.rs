@@ -144,6 +144,34 @@ fn a_prepass_has_the_depths_of_the_main_pass() {
     assert!(before == main && before.iter().filter(|d| **d < 1.0).count() > 3000);
 }
 
+/// The same renderer draws views and copies that change as a new one does.
+#[test]
+fn changes_are_seen() {
+    let (_, first) = seen(&army(400)).next().unwrap();
+    for stage in STAGES {
+        let of = settings(stage, Tolerance::DEFAULT, Planning::Device);
+        let mut offscreen = Offscreen::new(device(), &first, &of).unwrap();
+        let mut scene = first.clone();
+        for step in 0..5 {
+            match step {
+                0 | 1 => scene.camera.eye += DVec3::new(-1.0, -0.5, 0.7),
+                2 => {
+                    let copies = scene.objects[1].instances.iter().copied();
+                    scene.objects[1].instances = copies.skip(150).collect();
+                }
+                3 => {
+                    scene.objects.remove(0);
+                }
+                _ => scene.objects[0].offset.extend = 0.02,
+            }
+            let same = updated(&mut offscreen, &scene);
+            let new = drawn(&scene, &of, DrawPath::Walk);
+            assert_eq!(same.first_difference(&new), None, "{stage:?}, step {step}");
+        }
+    }
+    device().check().unwrap();
+}
+
 /// Walks leave to tiles what only tiles draw.
 #[test]
 fn the_host_plans_what_cannot_be_walked() {
