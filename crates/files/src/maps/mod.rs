@@ -4,6 +4,7 @@ pub(crate) mod header;
 mod shape_map;
 mod source;
 mod texture;
+mod transform;
 
 pub use shape_map::{shape_map, write_shape_map};
 pub use source::{BINARY, COVERAGE, MAP_SOURCES};

@@ -1,9 +1,9 @@
 //! Distances that are measured in pixels, for comparison with the papers.
 
+use super::transform::{NONE, squared_to_other};
 use crate::raster::{bounds, rasterize, resample, with_levels};
 use crate::trace::outline;
-use image::{GrayImage, Luma};
-use imageproc::distance_transform::euclidean_squared_distance_transform;
+use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::host_memory;
 use revmap::maps::{MapSource, Measured, round_down};
@@ -59,80 +59,17 @@ fn binary(profile: &Profile, columns: u32, rows: u32) -> Result<Measured> {
 pub(super) fn binary_distances(raster: &Raster) -> Result<Vec<f32>> {
     let form = raster.coverage.iter().map(|&c| c > 0.5);
     let form: Vec<bool> = host_memory::collected(form, MAP)?;
-    let squared = squared_to_other(&form, raster.columns as usize);
+    let squared = squared_to_other(&form, raster.columns as usize)?;
     let texel = 1.0 / f64::from(raster.rows);
-    let signed = |(squared, solid): (f64, &bool)| {
-        let distance = squared.sqrt();
-        round_down(if *solid { 1.0 - distance } else { distance } * texel)
+    let signed = |squared: u32, solid: bool| {
+        let distance = match squared {
+            NONE => f64::INFINITY,
+            squared => f64::from(squared).sqrt(),
+        };
+        round_down(if solid { 1.0 - distance } else { distance } * texel)
     };
-    host_memory::collected(squared.zip(&form).map(signed), MAP)
-}
-
-/// The squared distance, in texels, from the centre of each texel of `form` (row by row, `columns`
-/// to the row) to the nearest centre of the other value; infinite if there is none (Felzenszwalb &
-/// Huttenlocher 2012). Empty texels continue beyond the right, upper and lower borders.
-fn squared_to_other(form: &[bool], columns: usize) -> impl ExactSizeIterator<Item = f64> {
-    let rows = form.len() / columns;
-    let to = |wanted: bool| {
-        // With a rim of empty texels beyond those borders.
-        let at = |x: u32, y: u32| {
-            let inside = (x as usize) < columns && (1..=rows).contains(&(y as usize));
-            let solid = inside && form[(y as usize - 1) * columns + x as usize];
-            Luma([u8::from(solid == wanted)])
-        };
-        let image = GrayImage::from_fn(columns as u32 + 1, rows as u32 + 2, at);
-        euclidean_squared_distance_transform(&image)
-    };
-    let (solid, empty) = rayon::join(|| to(true), || to(false));
-    (0..form.len()).map(move |k| {
-        let distances = if form[k] { &empty } else { &solid };
-        distances.get_pixel((k % columns) as u32, (k / columns) as u32 + 1)[0]
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn brute_force(form: &[bool], columns: i64) -> Vec<f64> {
-        let rows = form.len() as i64 / columns;
-        let place = |k: usize| (k as i64 % columns, k as i64 / columns);
-        let solid = |x: i64, y: i64| {
-            x < columns && (0..rows).contains(&y) && form[(y * columns + x) as usize]
-        };
-        let one = |k: usize| {
-            let (x, y) = place(k);
-            // Nothing counts left of the axis.
-            let all = (0..=columns).flat_map(|u| (-1..=rows).map(move |v| (u, v)));
-            let other = all.filter(|&(u, v)| solid(u, v) != form[k]);
-            other
-                .map(|(u, v)| ((u - x).pow(2) + (v - y).pow(2)) as f64)
-                .fold(f64::INFINITY, f64::min)
-        };
-        (0..form.len()).map(one).collect()
-    }
-
-    proptest! {
-        #[test]
-        fn distances_equal_brute_force(
-            columns in 1usize..24,
-            density in 0.0f64..1.0,
-            noise in prop::collection::vec(0.0f64..1.0, 1..400),
-        ) {
-            let count = noise.len().next_multiple_of(columns);
-            let form: Vec<bool> =
-                (0..count).map(|k| noise[k % noise.len()] < density * density).collect();
-            let found: Vec<f64> = squared_to_other(&form, columns).collect();
-            prop_assert_eq!(found, brute_force(&form, columns as i64));
-        }
-    }
-
-    #[test]
-    fn long_distances_are_exact() {
-        let mut form = vec![false; 90_000];
-        form[0] = true;
-        let last = squared_to_other(&form, 30_000).last();
-        assert_eq!(last, Some(29_999.0 * 29_999.0 + 4.0));
-    }
+    let mut out = host_memory::filled(form.len(), 0.0, MAP)?;
+    let each = out.par_iter_mut().zip(&squared).zip(&form);
+    each.for_each(|((out, &squared), &solid)| *out = signed(squared, solid));
+    Ok(out)
 }
