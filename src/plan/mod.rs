@@ -46,7 +46,8 @@ pub(crate) struct FramePlan {
     pub draws: Vec<IndexedDraw>,
     /// The buffer of tiles: see `tiles.glsl`.
     pub tile_words: Vec<u32>,
-    /// Vectors of the bins, to which the device sorts tiles by the length of their lists of patches.
+    /// Vectors of the bins, to which the device sorts tiles by the length of their lists of
+    /// patches.
     pub bin_vectors: u32,
     /// Heads of the bins, a vector each, which come first and are zeroed before that.
     pub bin_heads: u32,
@@ -90,8 +91,8 @@ pub(crate) enum Call {
 /// `VkDrawIndexedIndirectCommand`: indices, instances, first index, vertex offset, first instance.
 pub(crate) type IndexedDraw = [u32; 5];
 
-/// Plans a frame. `open`: the pixels that compute draws; all if none. `walks`: the hierarchies that rays
-/// walk.
+/// Plans a frame. `open`: the pixels that compute draws; all if none. `walks`: the hierarchies that
+/// rays walk.
 pub(crate) fn plan(
     view: &View,
     objects: &[PlanObject],

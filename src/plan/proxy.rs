@@ -51,13 +51,14 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
-/// True if a solid fills its box, so that the box is drawn: most rays enter the box within the solid,
-/// and most of the cells would be outside of the box.
+/// True if a solid fills its box, so that the box is drawn: most rays enter the box within the
+/// solid, and most of the cells would be outside of the box.
 pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
     surface.extent()[0] > Object::WIDEST * object.profile.radius
 }
 
-/// True if cells may pay for an object in a view: it covers enough pixels, and does not fill its box.
+/// True if cells may pay for an object in a view: it covers enough pixels, and does not fill its
+/// box.
 pub(crate) fn may_pay(
     object: &Object,
     surface: &OffsetSurface,

@@ -1,9 +1,9 @@
-//! Hierarchies of boxes around copies, which rays from the eye and towards lights walk. Nothing here
-//! depends on the view.
+//! Hierarchies of boxes around copies, which rays from the eye and towards lights walk. Nothing
+//! here depends on the view.
 //!
-//! A hierarchy is a heap: the children of node `k` are `2 k` and `2 k + 1`, and all copies are on one
-//! level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid around all
-//! copies.
+//! A hierarchy is a heap: the children of node `k` are `2 k` and `2 k + 1`, and all copies are on
+//! one level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid
+//! around all copies.
 
 use super::tiles::Cylinder;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
@@ -23,11 +23,11 @@ const STEPS: f64 = 65535.0;
 const FLATTEST: f64 = 1e-6;
 /// Number of leaves from which subtrees are filled in parallel.
 const PARALLEL: usize = 2048;
-/// Extent of a large copy, as a part of the extent of all. Boxes of nodes above a large copy contain
-/// little more than it, so large copies are in a subtree of their own.
+/// Extent of a large copy, as a part of the extent of all. Boxes of nodes above a large copy
+/// contain little more than it, so large copies are in a subtree of their own.
 const LARGE: f64 = 0.25;
-/// Numbers of leaves of which large ones are told from others. The heap has up to twice as many nodes
-/// then.
+/// Numbers of leaves of which large ones are told from others. The heap has up to twice as many
+/// nodes then.
 const MANY: Range<u32> = 64..1 << 17;
 
 /// A copy and its box in the world.
@@ -60,7 +60,8 @@ struct Layer {
 pub(crate) struct Walks {
     pub grid: Grid,
     pub nodes: Vec<WalkNode>,
-    /// Index of the first node of the copies that cast shadows; `None` if nothing is shaded in shadow.
+    /// Index of the first node of the copies that cast shadows; `None` if nothing is shaded in
+    /// shadow.
     pub casters: Option<u32>,
     /// Objects whose path is [`Path::Walk`](super::path::Path::Walk).
     layers: Vec<Layer>,
@@ -204,8 +205,8 @@ fn add(nodes: &mut Vec<WalkNode>, leaves: &mut [Leaf], grid: &Grid) -> u32 {
 }
 
 impl Walks {
-    /// The hierarchies of the objects that rays from the eye walk, and of all objects if rays towards
-    /// lights do.
+    /// The hierarchies of the objects that rays from the eye walk, and of all objects if rays
+    /// towards lights do.
     pub fn new(objects: &[PlanObject], with: &Conditions, shadowed: bool) -> Self {
         let mut layers: Vec<Layer> = Vec::new();
         let mut numbers = HashMap::new();

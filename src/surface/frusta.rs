@@ -7,8 +7,8 @@ use glam::DVec2;
 /// Slope `|dr/dz|` from which frusta reach past the ends of their patches.
 const FLAT: f64 = 4.0;
 
-/// Walls reach at least this far into the solid, object units: guards admit points up to 1.6e-4 past the
-/// ends of flat patches.
+/// Walls reach at least this far into the solid, object units: guards admit points up to 1.6e-4
+/// past the ends of flat patches.
 const ROOT: f64 = 2e-4;
 
 /// Options for making shells.
@@ -60,7 +60,8 @@ pub(super) struct FrustaBuilder<'a> {
 impl FrustaBuilder<'_> {
     /// The polyline of a cell's shell, in the meridian through the polygons' corners.
     pub fn of(&self, cell: &[QuadricPatch]) -> Vec<[DVec2; 2]> {
-        // Short patches are joined with longer ones, and yet a ray may meet them from behind a plane.
+        // Short patches are joined with longer ones, and yet a ray may meet them from behind a
+        // plane.
         let is_single = cell.len() == 1;
         let cell = &self.without_short(cell);
         let mut shell = Vec::new();
@@ -200,8 +201,8 @@ impl FrustaBuilder<'_> {
         };
         let [mut from, mut to] = [rim(a, b), rim(b, a)];
         if (to.x - from.x).abs() > FLAT * (to.y - from.y).abs() {
-            // A plane extends its own rims over the part that the neighbours' margins leave out, and a
-            // flat patch over that which its guard admits past its ends.
+            // A plane extends its own rims over the part that the neighbours' margins leave out,
+            // and a flat patch over that which its guard admits past its ends.
             let way = (to - from).normalize_or_zero() * self.options.margin.max(ROOT);
             (from, to) = (from - way, to + way);
             (from.x, to.x) = (from.x.max(0.0), to.x.max(0.0));
@@ -271,8 +272,8 @@ impl FrustaBuilder<'_> {
     }
 
     /// True if a ray may pass between the wall's foot and the surface beyond the joint, and then
-    /// meet the cell: the wall comes from the cell's side of the joint's height, and its foot is not
-    /// in the solid all round.
+    /// meet the cell: the wall comes from the cell's side of the joint's height, and its foot is
+    /// not in the solid all round.
     fn is_open(&self, patch: &QuadricPatch, joint: DVec2, top: DVec2, foot: DVec2) -> bool {
         joint.x > 0.0
             && beside(patch, joint, top)
@@ -363,9 +364,9 @@ fn extremes(patch: &QuadricPatch, span: &Span, a: DVec2, normal: DVec2) -> Vec<(
 }
 
 /// Appends frusta and joins each to the one before it. Frusta at a bulge meet at the intersection
-/// of their lines, and in a hollow where they cross. Otherwise more frusta join them. At a ridge they
-/// go around its `rims`: a direct one has polygons around the circles of one part and within those
-/// of the other, and would leave part of the joint's circle outside.
+/// of their lines, and in a hollow where they cross. Otherwise more frusta join them. At a ridge
+/// they go around its `rims`: a direct one has polygons around the circles of one part and within
+/// those of the other, and would leave part of the joint's circle outside.
 fn join(shell: &mut Vec<[DVec2; 2]>, frusta: &mut Vec<[DVec2; 2]>, mut rims: Option<[DVec2; 2]>) {
     for mut frustum in frusta.drain(..) {
         if let Some(last) = shell.last_mut() {

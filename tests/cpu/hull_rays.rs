@@ -204,8 +204,8 @@ fn rims_and_ledges_lose_no_ray() {
         [0.3, 0.5],
         [0.2992, 0.5],
     ];
-    // A rim of 0.016 at the end of a cell that leans outwards as a whole: the rim itself faces up, and
-    // rays come over the wall at its upper end.
+    // A rim of 0.016 at the end of a cell that leans outwards as a whole: the rim itself faces up,
+    // and rays come over the wall at its upper end.
     let narrow = vec![
         [0.131933, 0.118276],
         [0.158050, 0.103708],

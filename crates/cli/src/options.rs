@@ -142,9 +142,9 @@ impl Drawing {
         }
     }
 
-    /// Opens the device with the memory limit and the pipelines of earlier runs: one file per driver
-    /// in the user's cache folder. Errors with this file are no failures, since pipelines are
-    /// compiled again.
+    /// Opens the device with the memory limit and the pipelines of earlier runs: one file per
+    /// driver in the user's cache folder. Errors with this file are no failures, since pipelines
+    /// are compiled again.
     pub fn open(&self) -> Result<(Device, Kept)> {
         let device = self.device.open()?;
         device.set_memory_budget(self.memory_budget.map(|mib| mib << 20));
@@ -228,8 +228,8 @@ impl Surroundings {
         self.studio.then(studio).transpose()
     }
 
-    /// The scene of a file without the studio, and the studio. Its camera is chosen for a profile in
-    /// place of a scene.
+    /// The scene of a file without the studio, and the studio. Its camera is chosen for a profile
+    /// in place of a scene.
     pub fn read(
         &self,
         file: &mut SceneFile,

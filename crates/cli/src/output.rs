@@ -24,15 +24,15 @@ pub fn result(line: &str) {
     keep_fault(writeln!(std::io::stdout(), "{line}"));
 }
 
-/// The characters in a line of the terminal that shows standard output, 80 if it does not tell; none
-/// for a file or a pipe.
+/// The characters in a line of the terminal that shows standard output, 80 if it does not tell;
+/// none for a file or a pipe.
 pub fn width() -> Option<usize> {
     let terminal = console::Term::stdout();
     terminal.is_term().then(|| terminal.size().1.into())
 }
 
-/// Notes a fault of standard output for [`end`]. A reader that closes the pipe early, such as `head`,
-/// causes none.
+/// Notes a fault of standard output for [`end`]. A reader that closes the pipe early, such as
+/// `head`, causes none.
 pub fn keep_fault(written: std::io::Result<()>) {
     if let Some(fault) = written.err().filter(|e| e.kind() != BrokenPipe) {
         let _ = FAULT.set(fault);
@@ -118,8 +118,8 @@ impl<'a> Outputs<'a> {
         self
     }
 
-    /// Checks the files before any work. None may be named twice or be one of the `inputs`, and each
-    /// must be writable.
+    /// Checks the files before any work. None may be named twice or be one of the `inputs`, and
+    /// each must be writable.
     ///
     /// # Errors
     /// [`ErrorKind::Usage`] for the names, [`ErrorKind::File`] for files that cannot be written.

@@ -58,8 +58,8 @@ pub(crate) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
         Err(e) => e,
     };
     match declared(bytes).as_deref() {
-        // These encodings differ from Unicode in 0x80 to 0x9f and eight letters, which occur only in
-        // names and comments.
+        // These encodings differ from Unicode in 0x80 to 0x9f and eight letters, which occur only
+        // in names and comments.
         Some(
             "iso-8859-1" | "iso8859-1" | "latin1" | "latin-1" | "us-ascii" | "windows-1252"
             | "cp1252" | "iso-8859-15",

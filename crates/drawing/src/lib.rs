@@ -1,10 +1,10 @@
 //! Reads SVG drawings as browsers draw them, into plain painted paths.
 //!
 //! [`read`] walks the elements that show and follows references from there, so that nothing hidden
-//! or unused is refused. Styles, selectors and transforms of CSS are applied. Numbers stay in double
-//! precision. Properties that it does not know are those without influence on an outline.
-//! Everything else is drawn, warned of, or refused with its line and a remedy (`docs/drawings.md` of
-//! the repository has the list).
+//! or unused is refused. Styles, selectors and transforms of CSS are applied. Numbers stay in
+//! double precision. Properties that it does not know are those without influence on an outline.
+//! Everything else is drawn, warned of, or refused with its line and a remedy (`docs/drawings.md`
+//! of the repository has the list).
 //!
 //! ```
 //! let text = "<svg viewBox='0 0 4 8'><g opacity='.5'><rect width='2' height='3'/></g></svg>";

@@ -44,8 +44,8 @@ struct CasterRoot {
     uint only_copy; // index of the only copy, or INNER_NODE
 };
 
-// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl), and the
-// eye in the grid of the hierarchies that rays walk (stage/walk.glsl).
+// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl), and
+// the eye in the grid of the hierarchies that rays walk (stage/walk.glsl).
 struct PlacedEye {
     vec3 high; // the eye is high + middle + low, world axes
     float unused_0;
@@ -86,8 +86,8 @@ struct FrameData {
 
 // A copy of an object, relative to the eye. The CPU computes it in double precision for each view, so that no rounding
 // error grows with the distance from the world's origin or from the eye. Copies whose `table` is PLACED have no view:
-// their position in the world is the sum of `position`, `origin` and (depth, clip_x, clip_y), and core/placed.glsl makes
-// the other members.
+// their position in the world is the sum of `position`, `origin` and (depth, clip_x, clip_y), and core/placed.glsl
+// makes the other members.
 struct Instance {
     vec3 position; // middle of the box's lower face, from the eye, world axes
     float depth; // depth of the box's middle
@@ -172,8 +172,8 @@ struct LevelTables {
     uint unused_2;
 };
 
-// A node of a hierarchy. `index` of a node without children is its copy, or INNER_NODE. The node before the root has the
-// index of the first node without children; the children of node `k` are 2 k and 2 k + 1.
+// A node of a hierarchy. `index` of a node without children is its copy, or INNER_NODE. The node before the root has
+// the index of the first node without children; the children of node `k` are 2 k and 2 k + 1.
 struct WalkNode {
     uvec3 bounds; // along each axis: least step of the grid | largest << 16
     uint index;

@@ -196,8 +196,8 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout 
 }
 
 // Traces the ray `eye + t v`. The eye, or the point that is shaded, is at t = -base. Rays from the eye begin at the
-// host's near plane, also where it is known to cut no solid: roots count from there, and their last bits must not depend on
-// what else is drawn with a copy. The ray has no hit outside the range `span` of t.
+// host's near plane, also where it is known to cut no solid: roots count from there, and their last bits must not
+// depend on what else is drawn with a copy. The ray has no hit outside the range `span` of t.
 bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
 {
     hit = NO_HIT;

@@ -88,13 +88,14 @@ pub(super) struct LevelRules {
     pub parallel: bool,
     /// Most copies of an object that share one level.
     pub most_proxies: usize,
-    /// True if the device finds the level of each copy that it walks to: then no view rules a level out.
+    /// True if the device finds the level of each copy that it walks to: then no view rules a level
+    /// out.
     pub walks: bool,
 }
 
 impl LevelRules {
-    /// The objects that a view shows, with surfaces of the levels that it allows. New surfaces are not
-    /// made yet.
+    /// The objects that a view shows, with surfaces of the levels that it allows. New surfaces are
+    /// not made yet.
     pub fn planned(self, view: &View, snapshot: &Snapshot) -> Result<Vec<PlannedObject>> {
         let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
         let mut all = Vec::with_capacity(snapshot.objects.len());
@@ -146,8 +147,8 @@ impl LevelRules {
         Ok(planned)
     }
 
-    /// True if each copy of an object has a level of its own. The view has no influence, so a moving
-    /// camera needs no other pipelines.
+    /// True if each copy of an object has a level of its own. The view has no influence, so a
+    /// moving camera needs no other pipelines.
     fn levels_copies(self, object: &PreparedObject) -> bool {
         let object = object.drawn();
         let many = object.instances.len() > self.most_proxies && object.repeat == [1; 3];

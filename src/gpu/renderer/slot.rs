@@ -65,8 +65,8 @@ pub(crate) struct FrameSlot {
     pub bound: Option<BoundPlan>,
     /// The number of the slot's frame. A token of an earlier frame records nothing.
     pub serial: u64,
-    /// The hierarchies in [`SlotBuffer::Nodes`]. The copies that rays from the eye walk to, which have
-    /// the same blocks in each view, are in [`SlotBuffer::Instances`].
+    /// The hierarchies in [`SlotBuffer::Nodes`]. The copies that rays from the eye walk to, which
+    /// have the same blocks in each view, are in [`SlotBuffer::Instances`].
     pub walks: Option<Arc<Walks>>,
     uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
@@ -102,7 +102,8 @@ pub(crate) struct BoundStep {
     /// True if it compares depths of a compute target.
     pub compares_depths: bool,
     pub textures: Arc<TextureSet>,
-    /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its block.
+    /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
+    /// block.
     pub offsets: [u32; 2],
 }
 
@@ -122,11 +123,12 @@ pub struct FrameStatistics {
     pub tiles: u32,
     /// Bytes of the slot's buffers.
     pub slot_bytes: u64,
-    /// CPU time of [`Renderer::prepare`](crate::gpu::Renderer::prepare), milliseconds of the clock: of
-    /// everything from the values that were set to the copies of textures.
+    /// CPU time of [`Renderer::prepare`](crate::gpu::Renderer::prepare), milliseconds of the clock:
+    /// of everything from the values that were set to the copies of textures.
     pub prepare_ms: f64,
     /// CPU time of the last [`Renderer::record`](crate::gpu::Renderer::record) or
-    /// [`record_compute`](crate::gpu::Renderer::record_compute) of the frame, milliseconds; 0 before.
+    /// [`record_compute`](crate::gpu::Renderer::record_compute) of the frame, milliseconds; 0
+    /// before.
     pub record_ms: f64,
 }
 
@@ -267,8 +269,8 @@ impl FrameSlot {
         write(self.buffer_mut(buffer), at, block)
     }
 
-    /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of the
-    /// instance of copy 0.
+    /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of
+    /// the instance of copy 0.
     pub fn write_instances<Block: bytemuck::Pod>(
         &mut self,
         first: u32,
@@ -282,8 +284,8 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Writes the hierarchies that rays walk, and makes room for the bytes of all instances. Returns
-    /// true if the copies that rays from the eye walk to are written already.
+    /// Writes the hierarchies that rays walk, and makes room for the bytes of all instances.
+    /// Returns true if the copies that rays from the eye walk to are written already.
     pub fn write_walks(&mut self, walks: &Arc<Walks>, instances: u64) -> Result<bool> {
         let known = self.walks.take();
         let before = self.buffer(SlotBuffer::Instances).raw;

@@ -293,8 +293,8 @@ pub(crate) fn plain(input: &mut Parser) -> String {
     text
 }
 
-/// Adds the text that is left. Comments become blanks, and blocks without an end get one. Returns true
-/// if a part of it is in braces.
+/// Adds the text that is left. Comments become blanks, and blocks without an end get one. Returns
+/// true if a part of it is in braces.
 fn add_plain(input: &mut Parser, text: &mut String) -> bool {
     let mut has_block = false;
     loop {
