@@ -167,10 +167,10 @@ fn large_first(leaves: &mut [Leaf], grid: &Grid) -> usize {
     let least = LARGE * STEPS * grid.unit.max_element();
     let is_large = |leaf: &Leaf| (leaf.high - leaf.low).max_element() > least;
     let count = leaves.iter().filter(|leaf| is_large(leaf)).count();
-    if !MANY.contains(&(leaves.len() as u32)) || count == leaves.len() {
+    if !MANY.contains(&(leaves.len() as u32)) || [0, leaves.len()].contains(&count) {
         return 0;
     }
-    leaves.sort_unstable_by_key(|leaf| (!is_large(leaf), leaf.instance));
+    leaves.sort_unstable_by_key(|leaf| !is_large(leaf));
     count
 }
 

@@ -9,7 +9,7 @@
 //! 3. In this order, copies are listed in the tiles that may show them ([`strip`], [`outer`]). The
 //!    pixels that a copy is sure to hide are marked there ([`cover`]). Later copies are not listed
 //!    for pixels where they are wholly behind that copy.
-//! 4. The listed copies are distributed to tiles and queues ([`tile_writer`]).
+//! 4. The listed copies are distributed to tiles and queues ([`tile_writer`]), in one buffer ([`layers`]).
 //!
 //! A copy is dropped only where its solid is proven absent, or where solids in front of it are
 //! proven present. Pictures are identical to unculled ones to the last bit, except for roundings
@@ -20,24 +20,27 @@
 
 mod bounds;
 mod cover;
+mod layers;
 mod open_pixels;
 mod outer;
 mod strip;
 mod tile_writer;
 
 pub(crate) use bounds::{Cylinder, MOST_PIXELS, Projector};
+pub(crate) use layers::LayerTiles;
 pub use open_pixels::OpenPixels;
-pub(crate) use tile_writer::{LEAST_QUEUE, LayerTiles, TILE_PIXELS};
+pub(crate) use tile_writer::{LEAST_QUEUE, TILE_PIXELS};
 
 use super::view::View;
 use crate::scene::{Cluster, Object};
 use crate::solid::offset_surface::OffsetSurface;
 use crate::surface::Cylinders;
 use bounds::ScreenBounds;
+use layers::{LayeredTiles, join};
 use rayon::prelude::*;
 use std::ops::Range;
 use strip::{Item, Opened, Strip};
-use tile_writer::{LayeredTiles, TileCopy, TileWriter, join};
+use tile_writer::{TileCopy, TileWriter};
 
 /// Copies of one object.
 pub(crate) struct Batch<'a> {
