@@ -16,7 +16,7 @@ void main()
     float angle = float(vertex % RING_CORNERS) * (6.28318530717958648 / float(RING_CORNERS));
     gl_Position = clip_of(i, vec3(rz.x * cos(angle), rz.x * sin(angle), rz.y) + vec3(shape.axis, 0.0));
     hand_over(i, frame.depth_sense);
-    cell_record = at;
+    window_record.w = uintBitsToFloat(at | INDEX_BITS);
     if (FETCHED_CELLS == 0u) {
         [[unroll]] for (uint k = 0u; k < FEW_PATCHES; ++k) {
             cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);

@@ -2,16 +2,26 @@
 
 use super::QuadricPatch;
 use super::frusta::ProxyHullOptions;
+use glam::DVec2;
 use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Time of the test of a patch, over that of all else in a fragment: lights, the ray's set-up, stores.
 /// On lavapipe 22 values of half and twice this, and of the next two, change frames by 2 % and less.
-const TEST: f64 = 0.07;
-/// Time of a cell's triangles, as an area whose fragments test nothing, object units squared.
-const CELL: f64 = 0.004;
-/// Width of the walls at a joint over its radius: corners of rings stand out.
-const WALL: f64 = 0.07;
+const TEST: f64 = 0.05;
+/// Time of a cell's triangles, as a part of the chain's area whose fragments test nothing.
+const CELL: f64 = 0.02;
+/// Mean area of a wall at the end of an upright patch, over the square of the joint's radius: it
+/// reaches from the corners of a ring to its circle.
+const WALL: f64 = 0.08;
+/// Mean area by which the corners of a level patch stand out, in the same unit.
+const CORNERS: f64 = 0.018;
+
+/// Least length of a cell's surface, object units, so that the margins of its shell stay small beside
+/// it. A shorter patch shares the cell of a neighbour.
+const SHORTEST: f64 = 0.001;
+/// More than any time: what a short cell costs.
+const NEVER: f64 = 1e12;
 
 /// Cells of consecutive patches of a chain, of the least estimated time.
 ///
@@ -25,16 +35,25 @@ pub(super) fn divide(patches: &[QuadricPatch], options: &ProxyHullOptions) -> Ve
     for chain in patches.chunk_by(|a, b| a.chain == b.chain) {
         // Of the patches before each: the least time, and where their last cell begins.
         let mut best = vec![(0.0, 0)];
+        let area_of =
+            |p: &QuadricPatch| 0.25 * PI * (p.start.x + p.end.x) * p.start.distance(p.end);
+        let triangles = CELL * chain.iter().map(area_of).sum::<f64>();
+        let wall = |patch: &QuadricPatch, joint: DVec2| {
+            let way = (patch.end - patch.start).normalize_or_zero().abs();
+            joint.x * joint.x * way.dot(DVec2::new(CORNERS, WALL))
+        };
         for end in 1..=chain.len() {
-            let mut area = 0.0;
+            let (mut area, mut length) = (0.0, 0.0);
             let mut least = (f64::INFINITY, 0);
             for begin in (end.saturating_sub(most)..end).rev() {
-                let patch = &chain[begin];
-                area += 0.25 * PI * (patch.start.x + patch.end.x) * patch.start.distance(patch.end);
+                let (patch, last) = (&chain[begin], &chain[end - 1]);
+                area += area_of(patch);
+                length += patch.start.distance(patch.end);
                 let tests = if end - begin <= few { few } else { most };
-                let rings = patch.start.x * patch.start.x + chain[end - 1].end.x.powi(2);
-                let drawn = area + 0.5 * PI * WALL * rings;
-                let time = best[begin].0 + CELL + drawn * (1.0 + TEST * tests as f64);
+                let drawn = area + wall(patch, patch.start) + wall(last, last.end);
+                let is_short = f64::from(u8::from(length < SHORTEST));
+                let fixed = triangles + NEVER * is_short;
+                let time = best[begin].0 + fixed + drawn * (1.0 + TEST * tests as f64);
                 if time < least.0 {
                     least = (time, begin);
                 }
@@ -60,7 +79,6 @@ mod tests {
     use crate::profile::Outline;
     use crate::scene::Offset;
     use crate::surface::{ContourSource, FitOptions, fit_patches};
-    use glam::DVec2;
 
     /// A rounded bottom of many small patches under a tall wall.
     fn patches() -> Vec<QuadricPatch> {

@@ -11,6 +11,9 @@ const FLAT: f64 = 4.0;
 /// past the ends of flat patches.
 const ROOT: f64 = 2e-4;
 
+/// Parts of a wall's longest reach into the solid that are tried before the whole.
+const REACHES: [f64; 4] = [0.0, 0.125, 0.25, 0.5];
+
 /// Options for making shells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProxyHullOptions {
@@ -34,7 +37,7 @@ impl Default for ProxyHullOptions {
         Self {
             sides: 12,
             patches_per_cell: 8,
-            few: 2,
+            few: 1,
             gap: 0.03,
             margin: 1e-4,
         }
@@ -262,13 +265,15 @@ impl FrustaBuilder<'_> {
         let around = beside(patch, joint, top) == (patch.quadric[0] > 0.0);
         let factor = if around { self.widen } else { 1.0 };
         let ring = DVec2::new(joint.x * factor, joint.y);
-        let p = ring + (ring - top).normalize_or_zero() * self.reach(joint);
-        DVec2::new(p.x.max(0.0), p.y)
-    }
-
-    /// Distance by which a wall continues beyond a joint.
-    fn reach(&self, joint: DVec2) -> f64 {
-        (self.widen - 1.0) * joint.x + ROOT
+        let way = (ring - top).normalize_or_zero();
+        let foot = |part: f64| {
+            let p = ring + way * (part * (self.widen - 1.0) * joint.x + ROOT);
+            DVec2::new(p.x.max(0.0), p.y)
+        };
+        // Walls of patches that are nearly level are in the solid sooner.
+        let within = |p: &DVec2| self.is_solid([p.x / self.widen, p.x], p.y);
+        let shorter = REACHES.into_iter().map(foot).find(within);
+        shorter.unwrap_or_else(|| foot(1.0))
     }
 
     /// True if a ray may pass between the wall's foot and the surface beyond the joint, and then

@@ -50,7 +50,7 @@ impl Modules<'_> {
             println!("cargo::rerun-if-changed={}", file.display());
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             hash.add(name.as_bytes());
-            hash.add(&fs::read(file)?);
+            hash.add_code(&fs::read_to_string(file)?);
         }
         let (hash, compiler) = (hash.0, compiler()?);
         if keeps() {
@@ -73,7 +73,7 @@ impl Modules<'_> {
         writeln!(
             text,
             "/// Each module, packed, in the order of the list.\npub(crate) static MODULES: &[&[u8]] = &[{list}];\n\n\
-             /// FNV-1a of the names and texts of all sources.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
+             /// FNV-1a of the names and texts of all sources, without comments.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
              /// FNV-1a of what the compiler makes of a fixed probe: tells compilers apart; 0 where none was used.\n\
              pub const COMPILER_HASH: u64 = {compiler:#018x};\n"
         )?;
@@ -299,6 +299,17 @@ impl Fnv {
         self.0
     }
 
+    /// Adds the lines of a source without comments, indents and empty lines.
+    fn add_code(&mut self, text: &str) {
+        for line in text.lines() {
+            let code = line.split("//").next().unwrap_or_default().trim();
+            if !code.is_empty() {
+                self.add(code.as_bytes());
+                self.add(b"\n");
+            }
+        }
+    }
+
     /// Adds bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         for &b in bytes {
@@ -311,6 +322,19 @@ impl Fnv {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn comments_do_not_change_the_hash_of_a_source() {
+        let hash = |text: &str| {
+            let mut hash = Fnv::default();
+            hash.add_code(text);
+            hash.value()
+        };
+        let plain = hash("float a;\n    float b;\n");
+        assert_eq!(plain, hash("// Two.\n\nfloat a; // one\nfloat b;\n"));
+        assert_ne!(plain, hash("float a;\nfloat c;\n"));
+        assert_ne!(plain, hash("float a; float b;\n"));
+    }
 
     #[test]
     fn names_of_includes_have_slashes_on_every_system() {

@@ -39,6 +39,7 @@ layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {
 // lanes at the very start of a shader, but lane by lane wherever lanes may be inactive. Unused copies cost nothing.
 // Fragments receive their most frequent inputs as flat varyings.
 Frame frame;
+vec3 depth_window; // first_depth, depth_range and far_depth
 Light first_light;
 Light second_light;
 Shape shape; // of the current object: the instance's, or one that may cast a shadow on it
@@ -63,6 +64,7 @@ bool is_outside()
 void load_frame(uint only)
 {
     frame = frame_block.frame;
+    depth_window = vec3(frame_block.first_depth, frame_block.depth_range, frame_block.far_depth);
     first_light = frame_block.lights[0];
     second_light = frame_block.lights[1];
     if (ONE_OBJECT != 0u) {

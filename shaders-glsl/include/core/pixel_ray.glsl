@@ -91,8 +91,7 @@ float clip_depth_of(float t)
 // beyond, where nothing is drawn, it is the buffer's end that is far.
 float buffer_depth_of(float clip)
 {
-    float far = frame_block.far_depth;
-    return mix(frame_block.first_depth + frame_block.depth_range * clip, clip, clip == far);
+    return mix(depth_window.x + depth_window.y * clip, clip, clip == depth_window.z);
 }
 
 // Returns the depth buffer value of `t`.

@@ -26,7 +26,7 @@ bool trace_cell(vec2 pixel, out Hit hit)
     const uint TESTS = FEW_IN_CELLS != 0u ? FEW_PATCHES : PATCHES_PER_CELL;
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * TESTS; ++k) {
-        uint at = cell_record + 2u * k;
+        uint at = (floatBitsToUint(window_record.w) & ~INDEX_BITS) + 2u * k;
         vec4 quadric = uintBitsToFloat(patch_tables[at + 1u]);
         vec4 guard = uintBitsToFloat(patch_tables[at + 2u]);
         entered = take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric) || entered;

@@ -3,8 +3,7 @@
 #define CELL_VARYINGS_GLSL
 #include "stage/varyings.glsl"
 
-layout(location = 11) flat VARYING vec4 cell_quadric[PATCHES_PER_CELL];
-layout(location = 19) flat VARYING vec4 cell_guard[PATCHES_PER_CELL];
-layout(location = 27) flat VARYING uint cell_record; // first vector of the frustum in patch_tables
+layout(location = 12) flat VARYING vec4 cell_quadric[PATCHES_PER_CELL];
+layout(location = 20) flat VARYING vec4 cell_guard[PATCHES_PER_CELL];
 
 #endif

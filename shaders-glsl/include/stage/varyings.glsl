@@ -20,6 +20,8 @@ layout(location = 7) flat VARYING vec4 look_ambient; // w: bits of the instance'
 layout(location = 8) flat VARYING vec4 look_light_0; // xyz: direction to the light; w: red of its colour
 layout(location = 9) flat VARYING vec4 look_light_1; // like look_light_0
 layout(location = 10) flat VARYING vec4 look_colors; // green and blue of both lights
+// xyz: depth_window; w, for cells: bits of the frustum's first vector in patch_tables, with INDEX_BITS
+layout(location = 11) flat VARYING vec4 window_record;
 
 const uint INDEX_BITS = 0x40000000u; // make an index below 2^29 a normal float; a device may flush others to zero
 
@@ -38,6 +40,7 @@ void load_varyings()
     frame.pixel_size = ray_dir_00.w;
     frame.depth_constant = ray_dir_x.w;
     frame.depth_factor = ray_dir_y.w;
+    depth_window = window_record.xyz;
 }
 
 PixelRays varying_rays()

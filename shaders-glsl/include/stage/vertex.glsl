@@ -34,6 +34,7 @@ void hand_over(Instance i, float scale)
     look_light_0 = vec4(look.light_0.towards, look.light_0.color.r);
     look_light_1 = vec4(look.light_1.towards, look.light_1.color.r);
     look_colors = vec4(look.light_0.color.gb, look.light_1.color.gb);
+    window_record = vec4(depth_window, 0.0);
 }
 
 #endif

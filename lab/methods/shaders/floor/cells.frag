@@ -6,7 +6,7 @@
 #include "search/quadric.glsl"
 #include "stage/outputs.glsl"
 
-layout(location = 11) flat in vec4 first_quadric;
+layout(location = 12) flat in vec4 first_quadric;
 
 layout(depth_greater) out float gl_FragDepth;
 

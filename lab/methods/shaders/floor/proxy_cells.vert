@@ -4,7 +4,7 @@
 #include "stage/vertex.glsl"
 #include "core/patch_tables.glsl"
 
-layout(location = 11) flat out vec4 first_quadric;
+layout(location = 12) flat out vec4 first_quadric;
 
 void main()
 {
