@@ -19,7 +19,7 @@ const CORNERS: f64 = 0.018;
 
 /// Least length of a cell's surface, object units, so that the margins of its shell stay small beside
 /// it. A shorter patch shares the cell of a neighbour.
-const SHORTEST: f64 = 0.001;
+const SHORTEST: f64 = 0.0005;
 /// More than any time: what a short cell costs.
 const NEVER: f64 = 1e12;
 
