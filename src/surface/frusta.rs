@@ -11,6 +11,10 @@ const FLAT: f64 = 4.0;
 /// past the ends of flat patches.
 const ROOT: f64 = 2e-4;
 
+/// Part of its radius by which a flat patch reaches past its rim at least: a sixteenth of a pixel, to
+/// which some rasterisers round corners, where a wide solid fills a picture.
+const RIM: f64 = 2e-4;
+
 /// Parts of a wall's longest reach into the solid that are tried before the whole.
 const REACHES: [f64; 4] = [0.0, 0.125, 0.25, 0.5];
 
@@ -206,8 +210,9 @@ impl FrustaBuilder<'_> {
         if (to.x - from.x).abs() > FLAT * (to.y - from.y).abs() {
             // A plane extends its own rims over the part that the neighbours' margins leave out,
             // and a flat patch over that which its guard admits past its ends.
-            let way = (to - from).normalize_or_zero() * self.options.margin.max(ROOT);
-            (from, to) = (from - way, to + way);
+            let way = (to - from).normalize_or_zero();
+            let past = |p: DVec2| self.options.margin.max(ROOT).max(RIM * p.x) * way;
+            (from, to) = (from - past(from), to + past(to));
             (from.x, to.x) = (from.x.max(0.0), to.x.max(0.0));
         }
         [from, to]
