@@ -18,13 +18,11 @@ void main()
     hand_over(i, frame.depth_sense);
     window_record.w = uintBitsToFloat(at | INDEX_BITS);
     if (FETCHED_CELLS == 0u) {
-        [[unroll]] for (uint k = 0u; k < FEW_PATCHES; ++k) {
-            cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
-            cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
-        }
+        cell_quadric[0] = uintBitsToFloat(patch_tables[at + 1u]);
+        cell_guard[0] = uintBitsToFloat(patch_tables[at + 2u]);
     }
-    if (FETCHED_CELLS == 0u && FEW_IN_CELLS == 0u) {
-        [[unroll]] for (uint k = FEW_PATCHES; k < PATCHES_PER_CELL; ++k) {
+    if (FETCHED_CELLS == 0u && SINGLE_CELLS == 0u) {
+        [[unroll]] for (uint k = 1u; k < PATCHES_PER_CELL; ++k) {
             cell_quadric[k] = uintBitsToFloat(patch_tables[at + 1u + 2u * k]);
             cell_guard[k] = uintBitsToFloat(patch_tables[at + 2u + 2u * k]);
         }

@@ -172,7 +172,7 @@ impl PipelineCompiler {
                         },
                         outside: if may_cut { Outside::None } else { Outside::All },
                         depths,
-                        few: !depths, // both forms of cells are listed
+                        single: !depths, // both forms of cells are listed
                     },
                     ..general
                 });

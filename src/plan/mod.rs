@@ -24,7 +24,7 @@ pub(crate) use tiles::MOST_PIXELS;
 pub use tiles::OpenPixels;
 use tiles::Projector;
 
-use crate::shader::generated::{BOX_INDICES, FEW_PATCHES, RING_CORNERS};
+use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
 use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use crate::surface::Frustum;
@@ -235,9 +235,9 @@ impl FramePlan {
         for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
-            let mut add = |kind, [outside, few]: [bool; 2], draws: Vec<IndexedDraw>| {
+            let mut add = |kind, [outside, single]: [bool; 2], draws: Vec<IndexedDraw>| {
                 let mut variant = variants[n].seen_from_outside(outside);
-                variant.speciality.few = few;
+                variant.speciality.single = single;
                 let variant = variant.of_kind(kind);
                 let layer = layers.of(objects, n as u32, (variant, kind));
                 layers.all[layer].draws.extend(draws);
@@ -259,27 +259,28 @@ impl FramePlan {
                     let corners = |frusta: usize| 6 * RING_CORNERS * frusta as u32;
                     let hull = of.surface().and_then(|s| s.hull());
                     let frusta = hull.map(|made| made.hull.frusta.as_slice());
-                    let is_few = |f: &Frustum| f.count <= FEW_PATCHES;
-                    // The draws of the parts of a run whose cells have few patches, or many.
-                    let of_run = |run: &Range<u32>, few: bool| {
+                    let is_single = |f: &Frustum| f.count == 1;
+                    // The draws of the parts of a run whose cells have one patch, or several.
+                    let of_run = |run: &Range<u32>, single: bool| {
                         let mut begin = run.start as usize;
                         let frusta = &frusta.unwrap_or_default()[begin..run.end as usize];
-                        let parts = frusta.chunk_by(|a, b| is_few(a) == is_few(b));
+                        let parts = frusta.chunk_by(|a, b| is_single(a) == is_single(b));
                         let draws = parts.filter_map(|part| {
                             let first = BOX_INDICES + corners(begin);
                             begin += part.len();
-                            (is_few(&part[0]) == few).then(|| draw(corners(part.len()), first))
+                            (is_single(&part[0]) == single)
+                                .then(|| draw(corners(part.len()), first))
                         });
                         draws.collect::<Vec<_>>()
                     };
                     self.parts[n][Part::Frusta as usize] = true;
                     self.parts[n][Part::Tables as usize] = !cut.is_empty();
                     for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
-                        for few in [true, false] {
+                        for single in [true, false] {
                             let draws: Vec<_> =
-                                runs.iter().flat_map(|run| of_run(run, few)).collect();
+                                runs.iter().flat_map(|run| of_run(run, single)).collect();
                             if !draws.is_empty() {
-                                add(kind, [false, few], draws);
+                                add(kind, [false, single], draws);
                             }
                         }
                     }

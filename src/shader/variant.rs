@@ -155,14 +155,14 @@ pub struct Speciality {
     pub outside: Outside,
     /// Compute stage: false if each pixel is drawn once, so no depth is compared or kept.
     pub depths: bool,
-    /// Cells: true if none has more than [`FEW_PATCHES`](g::FEW_PATCHES) patches.
-    pub few: bool,
+    /// Cells: true if each has one patch.
+    pub single: bool,
 }
 
 /// The names of the members of [`Speciality`], in order.
 #[cfg(feature = "other-shaders")]
 pub(crate) const SPECIALITIES: [&str; 5] =
-    ["lights", "one-object", "outside", "depths", "few-patches"];
+    ["lights", "one-object", "outside", "depths", "single-cells"];
 
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
@@ -185,7 +185,7 @@ impl Speciality {
         |to, from| to.drawn = from.drawn,
         |to, from| to.outside = from.outside,
         |to, from| to.depths = from.depths,
-        |to, from| to.few = from.few,
+        |to, from| to.single = from.single,
     ];
 
     /// Promises nothing.
@@ -194,7 +194,7 @@ impl Speciality {
         drawn: Drawn::Objects,
         outside: Outside::Some,
         depths: true,
-        few: false,
+        single: false,
     };
 }
 
@@ -247,7 +247,7 @@ impl Variant {
             speciality.outside = Outside::None;
         }
         speciality.depths |= !kind.draws_in_compute();
-        speciality.few &= cells;
+        speciality.single &= cells;
         Self {
             technique: if lists { Technique::LISTS } else { technique },
             speciality,
@@ -328,7 +328,7 @@ impl Variant {
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
             (g::OUTSIDE_ID, speciality.outside as u32),
             (g::ONE_OBJECT_ID, speciality.drawn as u32),
-            (g::FEW_IN_CELLS_ID, speciality.few.into()),
+            (g::SINGLE_CELLS_ID, speciality.single.into()),
         ]
     }
 }

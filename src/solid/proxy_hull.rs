@@ -1,6 +1,6 @@
 //! Proxy hulls in the form that the vertex shader expands.
 
-use crate::shader::generated::{FEW_PATCHES, FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS};
+use crate::shader::generated::{FRUSTUM_VECTORS, PATCHES_PER_CELL, RING_CORNERS};
 use crate::surface::{GpuPatch, ProxyHull, ProxyHullOptions, QuadricPatch};
 
 /// Components that a hull's vertices pass to its fragments: the common ones, then a cell's quadrics
@@ -24,7 +24,6 @@ impl GpuProxyHull {
         let options = ProxyHullOptions {
             sides: RING_CORNERS,
             patches_per_cell: PATCHES_PER_CELL,
-            few: FEW_PATCHES,
             ..ProxyHullOptions::default()
         };
         let hull = ProxyHull::new(patches, &options);

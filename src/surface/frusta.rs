@@ -25,8 +25,6 @@ pub struct ProxyHullOptions {
     pub sides: u32,
     /// Most patches of a cell, all of which a fragment tests.
     pub patches_per_cell: u32,
-    /// Most patches of a cell that is drawn by a faster pipeline.
-    pub few: u32,
     /// Largest distance of the surface below a frustum before the frustum is divided, object units.
     pub gap: f64,
     /// Distance by which frusta are moved outwards beyond touching, object units: a rasteriser
@@ -41,7 +39,6 @@ impl Default for ProxyHullOptions {
         Self {
             sides: 12,
             patches_per_cell: 8,
-            few: 1,
             gap: 0.03,
             margin: 1e-4,
         }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use revmap::profile::{Outline, Profile};
 use revmap::scene::Offset;
 use revmap::surface::{ContourSource, FitOptions, Frustum, ProxyHull, QuadricPatch, fit_patches};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Height beyond floor and ceiling from which on guards admit other sheets of a quadric.
 const HEIGHT_SLACK: f64 = 1e-3;
@@ -248,6 +248,47 @@ fn rims_and_ledges_lose_no_ray() {
             assert!(hits > 1000 && lost == 0, "{what}");
         }
     }
+}
+
+/// Some rasterisers round corners to a sixteenth of a pixel. The flat sides of a record reach 0.0002 of
+/// their radius past their rims: that much, where its diameter is 600 pixels.
+#[test]
+fn flat_sides_of_wide_solids_reach_past_their_rims() {
+    let record = [
+        [1.8, 0.1],
+        [25.0, 0.1],
+        [25.5, 0.25],
+        [73.0, 0.25],
+        [75.0, 0.2],
+        [75.0, 0.8],
+        [73.0, 0.75],
+        [25.5, 0.75],
+        [25.0, 0.9],
+        [1.8, 0.9],
+    ];
+    let solid = Solid::of(&record, 8);
+    let patches = (0u32..).zip(&solid.patches);
+    let level = patches.filter(|(_, patch)| patch.start.y == patch.end.y);
+    let mut compared = 0;
+    for (n, patch) in level {
+        let own = (solid.hull.frusta.iter()).filter(|f| (f.first, f.count) == (n, 1));
+        let radii: Vec<f64> = own
+            .flat_map(|f| [f.from[0], f.to[0]].map(f64::from))
+            .collect();
+        if radii.is_empty() {
+            continue;
+        }
+        compared += 1;
+        let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = radii.iter().copied().fold(0.0, f64::max) * (PI / 12.0).cos();
+        let rims = [
+            patch.start.x.min(patch.end.x),
+            patch.start.x.max(patch.end.x),
+        ];
+        assert!(least < rims[0] * (1.0 - 1.9e-4), "{patch:?}: {least}");
+        assert!(most > rims[1] * (1.0 + 1.9e-4), "{patch:?}: {most}");
+    }
+    assert!(compared >= 2, "{compared}");
 }
 
 /// A flat underside around a narrow hollow, 30 to 1,000 times as wide as high: it ends at the

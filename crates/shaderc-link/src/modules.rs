@@ -73,7 +73,7 @@ impl Modules<'_> {
         writeln!(
             text,
             "/// Each module, packed, in the order of the list.\npub(crate) static MODULES: &[&[u8]] = &[{list}];\n\n\
-             /// FNV-1a of the names and texts of all sources, without comments.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
+             /// FNV-1a of all sources without comments.\npub const SOURCES_HASH: u64 = {hash:#018x};\n\n\
              /// FNV-1a of what the compiler makes of a fixed probe: tells compilers apart; 0 where none was used.\n\
              pub const COMPILER_HASH: u64 = {compiler:#018x};\n"
         )?;

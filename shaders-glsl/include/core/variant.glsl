@@ -77,7 +77,7 @@ layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one obje
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
-layout(constant_id = 19) const uint FEW_IN_CELLS = 0u; // 1: no cell of the draw has more than FEW_PATCHES patches
+layout(constant_id = 19) const uint SINGLE_CELLS = 0u; // 1: each cell of the draw has one patch
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
@@ -118,7 +118,6 @@ const uint PATCH_ROWS = 256u; // rows of a solid's tables, a power of 4
 const uint PATCH_NODES = 340u; // nodes of the tree over the rows: 256 + 64 + 16 + 4
 const uint RING_CORNERS = 12u; // corners of a frustum's rings
 const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a cell
-const uint FEW_PATCHES = 1u; // upper limit on patches of a cell with few
 const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
 const uint TREE_BIN = 4u; // bin of tiles that use the tree; before it, one bin for each length of a list of patches

@@ -23,7 +23,7 @@ bool trace_cell(vec2 pixel, out Hit hit)
         row.least -= SIDE_SLACK * inversesqrt(row.m.a + row.m.v.z * row.m.v.z);
     }
     bool entered = false;
-    const uint TESTS = FEW_IN_CELLS != 0u ? FEW_PATCHES : PATCHES_PER_CELL;
+    const uint TESTS = SINGLE_CELLS != 0u ? 1u : PATCHES_PER_CELL;
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * TESTS; ++k) {
         uint at = (floatBitsToUint(window_record.w) & ~INDEX_BITS) + 2u * k;
@@ -32,12 +32,10 @@ bool trace_cell(vec2 pixel, out Hit hit)
         entered = take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric) || entered;
     }
     if (FETCHED_CELLS == 0u) {
-        [[unroll]] for (uint k = 0u; k < FEW_PATCHES; ++k) {
-            entered = take_nearer(row.m, cell_quadric[k], cell_guard[k], row.least, row.best, row.quadric) || entered;
-        }
+        entered = take_nearer(row.m, cell_quadric[0], cell_guard[0], row.least, row.best, row.quadric);
     }
-    if (FETCHED_CELLS == 0u && FEW_IN_CELLS == 0u) {
-        [[unroll]] for (uint k = FEW_PATCHES; k < PATCHES_PER_CELL; ++k) {
+    if (FETCHED_CELLS == 0u && SINGLE_CELLS == 0u) {
+        [[unroll]] for (uint k = 1u; k < PATCHES_PER_CELL; ++k) {
             entered = take_nearer(row.m, cell_quadric[k], cell_guard[k], row.least, row.best, row.quadric) || entered;
         }
     }
