@@ -30,7 +30,7 @@ void main()
         bool found = nearest_copy(tile, bit_of(pixel), vec2(pixel), depth, index, hit);
         count_steps(pixel, hit);
         if (found) {
-            Instance i = instances[index];
+            Instance i = instance_at(index);
             load(i);
             store(pixel, depth, shade(look_of(i, index), pixel_rays(i), pixel, hit));
         }

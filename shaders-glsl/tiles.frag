@@ -23,7 +23,7 @@ void main()
     if (!found) {
         discard;
     }
-    Instance i = instances[index];
+    Instance i = instance_at(index);
     load(i);
     draw(look_of(i, index), pixel_rays(i), pixel, hit);
     gl_FragDepth = buffer_depth_of(clamp(frame.depth_sense * depth, 0.0, 1.0));

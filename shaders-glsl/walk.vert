@@ -10,7 +10,7 @@ void main()
     load_frame(0u);
     uint root = uint(gl_VertexIndex) / 6u;
     uint bit = 1u << (uint(gl_VertexIndex) % 6u);
-    uvec3 box = walk_nodes[root + 1u].bounds;
+    uvec3 box = node_at(root + 1u).bounds;
     vec3 begin = (vec3(box & 0xffffu) - frame_block.eye.grid_low) * frame_block.eye.grid_unit;
     vec3 end = (vec3(box >> 16) - frame_block.eye.grid_high) * frame_block.eye.grid_unit;
     vec3 middle = 0.5 * (begin + end);
@@ -32,5 +32,5 @@ void main()
     vec2 corner = mix(low, high, bvec2((0x32u & bit) != 0u, (0x2cu & bit) != 0u));
     float depth = clip_depth_of(max(near * (1.0 - 1e-5), 1e-30)); // the nearest that a fragment can have
     gl_Position = vec4(corner, depth, 1.0);
-    walk_root = uvec2(root, instances[walk_nodes[root + walk_nodes[root].index].index].object);
+    walk_root = uvec2(root, instances[node_at(root + node_at(root).index).index].object);
 }

@@ -56,7 +56,12 @@ fn a_variant_sets_every_specialisation_constant() {
         .iter()
         .map(|(id, _)| *id)
         // Constants of the device and of the pass.
-        .chain([g::OWN_VECTORS_ID, g::LARGE_POINTS_ID, g::FETCHED_CELLS_ID])
+        .chain([
+            g::OWN_VECTORS_ID,
+            g::LARGE_POINTS_ID,
+            g::FETCHED_CELLS_ID,
+            g::TEXELS_ID,
+        ])
         .chain([g::SLOPE_BIAS_ID, g::SLOPE_BIAS_LIMIT_ID])
         .collect();
     let mut all = BTreeSet::new();
@@ -81,7 +86,7 @@ fn modules_are_few_and_small() {
     let packed = |module: &Module| format!("{folder}/{}.spv.z", module.name());
     let bytes = |module| std::fs::metadata(packed(module)).unwrap().len();
     let packed: u64 = all.iter().map(bytes).sum();
-    assert!(packed < 590_000, "{packed} bytes in all");
+    assert!(packed < 660_000, "{packed} bytes in all");
 }
 
 /// Only shadows of searches on maps index an array of textures by a number that varies. Devices

@@ -1,7 +1,7 @@
 // Blocks of the frame, of objects and of copies, and the values of the current ones.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
-#include "core/structures.glsl"
+#include "core/words.glsl"
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
     FrameData frame_block;
@@ -34,6 +34,64 @@ layout(set = 0, binding = 3, std430) readonly buffer WalkBlock {
 layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {
     LastCopy last_copies[];
 };
+
+// Vectors of the objects, of the instances and of the nodes. Software drivers read a storage buffer in a loop over the
+// lanes, but such a view without one; so they read these where lanes read different places (src/gpu/device/report.rs).
+layout(set = 0, binding = 7) uniform usamplerBuffer object_texels;
+layout(set = 0, binding = 8) uniform usamplerBuffer instance_texels;
+layout(set = 0, binding = 9) uniform usamplerBuffer node_texels;
+
+uvec4 instance_words(uint number, int at)
+{
+    return texelFetch(instance_texels, int(INSTANCE_WORDS / 4u * number) + at);
+}
+
+Instance instance_at(uint number)
+{
+    if (TEXELS == 0u) {
+        return instances[number];
+    }
+    return instance_of(uintBitsToFloat(instance_words(number, 0)), uintBitsToFloat(instance_words(number, 1)),
+                       uintBitsToFloat(instance_words(number, 2)), uintBitsToFloat(instance_words(number, 3)),
+                       instance_words(number, 4));
+}
+
+WalkNode node_at(uint number)
+{
+    if (TEXELS == 0u) {
+        return walk_nodes[number];
+    }
+    uvec4 words = texelFetch(node_texels, int(number));
+    return WalkNode(words.xyz, words.w);
+}
+
+uvec4 object_words(uint number, int at)
+{
+    return texelFetch(object_texels, int(OBJECT_STRIDE_WORDS / 4u * number) + at);
+}
+
+vec4 object_floats(uint number, int at)
+{
+    return uintBitsToFloat(object_words(number, at));
+}
+
+Shape shape_at(uint number)
+{
+    if (TEXELS == 0u) {
+        return objects[number].object.shape;
+    }
+    return shape_of(object_floats(number, 0), object_floats(number, 1), object_floats(number, 2), object_words(number, 3),
+                    object_words(number, 4), object_words(number, 5), object_words(number, 6));
+}
+
+Appearance appearance_at(uint number)
+{
+    if (TEXELS == 0u) {
+        return objects[number].object.appearance;
+    }
+    return appearance_of(object_words(number, 7), object_floats(number, 8), object_floats(number, 9),
+                         object_words(number, 10));
+}
 
 // Set by load_frame() first and then by load(). The order matters: software drivers read uniform buffers once for all
 // lanes at the very start of a shader, but lane by lane wherever lanes may be inactive. Unused copies cost nothing.
@@ -89,7 +147,7 @@ void load_level(Instance i)
 void load_shape(Instance i)
 {
     if (ONE_OBJECT == 0u) {
-        shape = objects[i.object].object.shape;
+        shape = shape_at(i.object);
     }
     load_level(i);
 }
@@ -99,7 +157,7 @@ void load(Instance i)
 {
     load_shape(i);
     if (ONE_OBJECT == 0u) {
-        appearance = objects[i.object].object.appearance;
+        appearance = appearance_at(i.object);
     }
 }
 

@@ -12,6 +12,7 @@
 layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
+layout(set = 0, binding = 10) uniform usamplerBuffer table_texels;
 
 // Tables of a draw or dispatch that has one object, of all its levels; for listed patches, their table. Software
 // drivers gather from uniform buffers several times faster.
@@ -19,33 +20,41 @@ layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
     uvec4 own_patch_tables[OWN_VECTORS];
 };
 
+uvec4 stored_vector(uint vector)
+{
+    if (TEXELS == 0u) {
+        return patch_tables[vector];
+    }
+    return texelFetch(table_texels, int(vector));
+}
+
 const uint RUN_BITS = 12u;
 const uint FIRST_RECORD = (PATCH_NODES + PATCH_ROWS) / 4u;
 
 uint patch_word(uint at)
 {
     uint vector = shape.table + (at >> 2);
-    return OWN_TABLES ? own_patch_tables[vector][at & 3u] : patch_tables[vector][at & 3u];
+    return OWN_TABLES ? own_patch_tables[vector][at & 3u] : stored_vector(vector)[at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
     uint vector = shape.table + at;
-    return uintBitsToFloat(OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector]);
+    return uintBitsToFloat(OWN_TABLES ? own_patch_tables[vector] : stored_vector(vector));
 }
 
 // Returns a vector of the table of listed patches.
 uvec4 listed_table(uint at)
 {
     uint vector = shape.listed + at;
-    return OWN_TABLES ? own_patch_tables[vector] : patch_tables[vector];
+    return OWN_TABLES ? own_patch_tables[vector] : stored_vector(vector);
 }
 
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
     uint vector = shape.listed + at;
-    return OWN_TABLES ? own_patch_tables[vector][k] : patch_tables[vector][k];
+    return OWN_TABLES ? own_patch_tables[vector][k] : stored_vector(vector)[k];
 }
 
 // Returns the least and largest r^2 of a node.

@@ -59,7 +59,7 @@ Instance placed(Instance i)
 // Returns instance `number` as the view has it, whoever places it.
 Instance walked_instance(uint number)
 {
-    Instance i = instances[number];
+    Instance i = instance_at(number);
     if (i.table == PLACED) {
         i = placed(i);
     }

@@ -121,10 +121,10 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, inout u
     // The cone is made anew for each copy, since it would take 8 registers while rays are traced.
     Cone cone = cone_to(disc, origin, point);
     uint root = frame_block.casters.root;
-    uint leaves = walk_nodes[root].index;
+    uint leaves = node_at(root).index;
     vec3 half_unit = 0.5 * frame_block.eye.grid_unit;
     while (met == INNER_NODE && k != 0u) {
-        WalkNode node = walk_nodes[root + k];
+        WalkNode node = node_at(root + k);
         uvec3 low = node.bounds & 0xffffu;
         uvec3 high = node.bounds >> 16;
         bool meets = may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
@@ -162,7 +162,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             if (met == INNER_NODE) {
                 break;
             }
-            Instance i = instances[met];
+            Instance i = instance_at(met);
             if (PLACED_CASTERS != 0u) {
                 i = walked_instance(met);
             }

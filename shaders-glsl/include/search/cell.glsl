@@ -27,8 +27,8 @@ bool trace_cell(vec2 pixel, out Hit hit)
     // SwiftShader skips a loop without rounds, but executes both sides of a branch.
     for (uint k = 0u; k < FETCHED_CELLS * TESTS; ++k) {
         uint at = (floatBitsToUint(window_record.w) & ~INDEX_BITS) + 2u * k;
-        vec4 quadric = uintBitsToFloat(patch_tables[at + 1u]);
-        vec4 guard = uintBitsToFloat(patch_tables[at + 2u]);
+        vec4 quadric = uintBitsToFloat(stored_vector(at + 1u));
+        vec4 guard = uintBitsToFloat(stored_vector(at + 2u));
         entered = take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric) || entered;
     }
     if (FETCHED_CELLS == 0u) {

@@ -55,7 +55,7 @@ vec2 node_span(Beam beam, uint k)
     // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
     uint at = SPAN_FIRST + k;
     uint first = shape.table + (OWN_TABLES ? shape.table_window : 0u);
-    float most = node_extent(patch_tables[first + (at >> 2)][at & 3u]).y;
+    float most = node_extent(stored_vector(first + (at >> 2))[at & 3u]).y;
     float radius = sqrt(max(most, 0.0)) + beam.width.x;
     float low = (float(k) / float(SPAN_NODES) - beam.width.y - beam.o.z) * beam.per_z;
     float high = (float(k + 1u) / float(SPAN_NODES) + beam.width.y - beam.o.z) * beam.per_z;

@@ -52,7 +52,7 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
         if (sense * queue_depth_of(max(copy.near, 1e-30), depth_terms()) >= depth) {
             break;
         }
-        Instance i = instances[copy.instance];
+        Instance i = instance_at(copy.instance);
         load_shape(i);
         PixelRays rays = pixel_rays(i);
         Hit hit;

@@ -5,10 +5,10 @@
 #include "stage/tile.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer InstanceWords {
-    uint instance_words[];
+    uint words_of_instances[];
 };
 layout(set = 0, binding = 1, std430) readonly buffer ObjectWords {
-    uint object_words[];
+    uint words_of_objects[];
 };
 shared uint shared_words[INSTANCE_WORDS + OBJECT_WORDS];
 
@@ -18,11 +18,11 @@ void share_object()
 {
     uint self = gl_LocalInvocationIndex;
     if (ONE_OBJECT != 2u && self < INSTANCE_WORDS) {
-        shared_words[self] = instance_words[INSTANCE_WORDS * tile.instance + self];
+        shared_words[self] = words_of_instances[INSTANCE_WORDS * tile.instance + self];
     }
     if (ONE_OBJECT == 0u && self < OBJECT_WORDS) {
         uint object = instances[tile.instance].object;
-        shared_words[INSTANCE_WORDS + self] = object_words[OBJECT_STRIDE_WORDS * object + self];
+        shared_words[INSTANCE_WORDS + self] = words_of_objects[OBJECT_STRIDE_WORDS * object + self];
     }
 }
 
@@ -38,28 +38,19 @@ vec4 shared_floats(uint n)
     return uintBitsToFloat(shared_vector(n));
 }
 
-// Reads the shared words: members in the order of structures.glsl.
+// Reads the shared words.
 void load_shared()
 {
     if (ONE_OBJECT == 2u) {
         tile_instance = instances[pushed.instance];
     } else {
-        vec4 position_depth = shared_floats(0u), scale_clip = shared_floats(1u), origin_clip = shared_floats(3u);
-        uvec4 places = shared_vector(4u);
-        tile_instance = Instance(position_depth.xyz, position_depth.w, scale_clip.xyz, scale_clip.w, shared_floats(2u),
-                                 origin_clip.xyz, origin_clip.w, places.x, places.y, places.z, uintBitsToFloat(places.w));
+        tile_instance = instance_of(shared_floats(0u), shared_floats(1u), shared_floats(2u), shared_floats(3u), shared_vector(4u));
     }
     if (ONE_OBJECT == 0u) {
-        vec4 map = shared_floats(5u), clip = shared_floats(6u), offset = shared_floats(7u);
-        uvec4 axis = shared_vector(8u), replicas = shared_vector(9u), table = shared_vector(10u);
-        shape = Shape(map.xy, map.z, map.w, clip.x, clip.y, clip.z, clip.w, offset.x, offset.y, offset.z, offset.w,
-                      uintBitsToFloat(axis.xy), axis.z, axis.w, replicas.xyz, replicas.w, table.x, table.y, table.z, table.w,
-                      0u, 0u, 0u, 0u);
-        uvec4 color = shared_vector(12u);
-        vec4 gloss = shared_floats(13u), tiling = shared_floats(14u);
-        uvec4 last = shared_vector(15u);
-        appearance = Appearance(uintBitsToFloat(color.xyz), color.w, gloss.x, gloss.y, gloss.z, gloss.w, tiling.xy,
-                                tiling.z, tiling.w, uintBitsToFloat(last.x), last.y, uintBitsToFloat(last.zw));
+        // load_level() sets the last members of a shape.
+        shape = shape_of(shared_floats(5u), shared_floats(6u), shared_floats(7u), shared_vector(8u), shared_vector(9u),
+                         shared_vector(10u), uvec4(0u));
+        appearance = appearance_of(shared_vector(12u), shared_floats(13u), shared_floats(14u), shared_vector(15u));
     }
     load_level(tile_instance);
 }

@@ -71,12 +71,12 @@ void walk(uint root, vec2 at, inout Nearest nearest)
     vec3 inverse = frame_block.eye.grid_unit / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     if (ONE_OBJECT == 2u) {
         // The only copy is the same for all invocations.
-        if (entry_of(walk_nodes[root + 1u], inverse, NEVER) < NEVER) {
-            take_nearer(walk_nodes[root + 1u].index, at, nearest);
+        if (entry_of(node_at(root + 1u), inverse, NEVER) < NEVER) {
+            take_nearer(node_at(root + 1u).index, at, nearest);
         }
         return;
     }
-    uint leaves = walk_nodes[root].index;
+    uint leaves = node_at(root).index;
     uint k = 1u; // the current node; 0 at the end
     uint trail = 0u; // bit n: the sibling of the node n levels above is still to be visited
     for (;;) {
@@ -85,8 +85,8 @@ void walk(uint root, vec2 at, inout Nearest nearest)
         while (met == INNER_NODE && k != 0u) {
             bool ends = k >= leaves;
             uint pair = root + (ends ? k : 2u * k);
-            WalkNode first = walk_nodes[pair];
-            WalkNode second = walk_nodes[pair + 1u];
+            WalkNode first = node_at(pair);
+            WalkNode second = node_at(pair + 1u);
             float to_first = entry_of(first, inverse, nearest.most);
             float to_second = entry_of(second, inverse, nearest.most);
             bool swaps = to_second < to_first;

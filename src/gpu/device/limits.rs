@@ -12,7 +12,8 @@ use vk::ShaderStageFlags as Stages;
 const UNIFORMS: &[Kind] = &[Kind::UNIFORM_BUFFER, Kind::UNIFORM_BUFFER_DYNAMIC];
 const DYNAMIC: &[Kind] = &[Kind::UNIFORM_BUFFER_DYNAMIC];
 const BUFFERS: &[Kind] = &[Kind::STORAGE_BUFFER];
-const SAMPLED: &[Kind] = &[Kind::COMBINED_IMAGE_SAMPLER];
+const SAMPLERS: &[Kind] = &[Kind::COMBINED_IMAGE_SAMPLER];
+const SAMPLED: &[Kind] = &[Kind::COMBINED_IMAGE_SAMPLER, Kind::UNIFORM_TEXEL_BUFFER];
 const IMAGES: &[Kind] = &[Kind::STORAGE_IMAGE];
 
 /// The number of descriptors of some kinds in all sets, of the stage that may read the most.
@@ -59,7 +60,7 @@ pub(crate) fn lacking(l: &vk::PhysicalDeviceLimits) -> Vec<String> {
         ),
         stage(
             "DescriptorSamplers",
-            SAMPLED,
+            SAMPLERS,
             l.max_per_stage_descriptor_samplers,
         ),
         stage(
@@ -88,7 +89,7 @@ pub(crate) fn lacking(l: &vk::PhysicalDeviceLimits) -> Vec<String> {
             BUFFERS,
             l.max_descriptor_set_storage_buffers,
         ),
-        layout("Samplers", SAMPLED, l.max_descriptor_set_samplers),
+        layout("Samplers", SAMPLERS, l.max_descriptor_set_samplers),
         layout(
             "SampledImages",
             SAMPLED,

@@ -89,11 +89,16 @@ impl Candidate {
 
     /// The constants of all pipelines.
     pub fn constants(&self) -> DeviceConstants {
-        let most = self.properties.limits.max_uniform_buffer_range / 16;
+        let limits = &self.properties.limits;
+        let most = limits.max_uniform_buffer_range / 16;
+        let is_software = self.properties.device_type == vk::PhysicalDeviceType::CPU;
         DeviceConstants {
             own_vectors: most.clamp(PATCH_VECTORS, MOST_OWN_VECTORS),
             large_points: self.large_points(),
-            fetched_cells: self.properties.device_type != vk::PhysicalDeviceType::CPU,
+            fetched_cells: !is_software,
+            // SwiftShader's views hold 65,536 vectors.
+            texels: is_software
+                && limits.max_texel_buffer_elements >= limits.max_storage_buffer_range / 16,
             indexes_textures: self.features.shader_sampled_image_array_dynamic_indexing == vk::TRUE,
         }
     }

@@ -27,6 +27,9 @@ pub struct Buffer {
     pub raw: vk::Buffer,
     /// The size in bytes.
     pub bytes: u64,
+    /// A view of its vectors of four words, as many as the device's views hold; null for buffers
+    /// that shaders do not read so.
+    pub texels: vk::BufferView,
     allocation: Option<Allocation>,
     device: Arc<Shared>,
 }
@@ -64,6 +67,7 @@ impl Buffer {
         let mut buffer = Self {
             raw,
             bytes,
+            texels: vk::BufferView::null(),
             allocation: None,
             device: device.clone(),
         };
@@ -77,6 +81,16 @@ impl Buffer {
         let (memory, offset) = bound(&mut buffer.allocation, allocation);
         // SAFETY: the allocation meets the buffer's requirements and is bound once.
         unsafe { device.raw.bind_buffer_memory(raw, memory, offset) }.call("vkBindBufferMemory")?;
+        if usage.contains(B::UNIFORM_TEXEL_BUFFER) {
+            let most = 16 * u64::from(device.limits().max_texel_buffer_elements);
+            let info = vk::BufferViewCreateInfo::default()
+                .buffer(raw)
+                .format(vk::Format::R32G32B32A32_UINT)
+                .range((bytes - bytes % 16).min(most));
+            // SAFETY: the buffer has memory; the view is destroyed before it.
+            buffer.texels =
+                unsafe { device.raw.create_buffer_view(&info, None) }.call("vkCreateBufferView")?;
+        }
         Ok(buffer)
     }
 
@@ -134,7 +148,10 @@ impl Buffer {
 impl Drop for Buffer {
     fn drop(&mut self) {
         // SAFETY: users wait for the GPU before they drop a buffer.
-        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
+        unsafe {
+            self.device.raw.destroy_buffer_view(self.texels, None);
+            self.device.raw.destroy_buffer(self.raw, None);
+        };
         free(&self.device, self.allocation.take());
     }
 }
@@ -162,7 +179,7 @@ impl Use {
     fn usage(self) -> B {
         match self {
             Self::Uniform => B::UNIFORM_BUFFER,
-            Self::Storage => B::STORAGE_BUFFER | B::UNIFORM_BUFFER,
+            Self::Storage => B::STORAGE_BUFFER | B::UNIFORM_BUFFER | B::UNIFORM_TEXEL_BUFFER,
             Self::Draws => B::INDIRECT_BUFFER,
             Self::Indices => B::INDEX_BUFFER,
             Self::Bins => B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST,

@@ -323,6 +323,7 @@ impl FrameSlot {
         }
         let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
         let own = |buffer| whole(self.buffer(buffer));
+        let texels = |buffer| Resource::Texels(self.buffer(buffer).texels);
         let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
         let object = size_of::<ObjectBlock>() as u64;
         let frame = [
@@ -333,6 +334,10 @@ impl FrameSlot {
             whole(tables),
             Resource::Buffer(tables.raw, window),
             Resource::Buffer(self.buffer(SlotBuffer::Objects).raw, object),
+            texels(SlotBuffer::Objects),
+            texels(SlotBuffer::Instances),
+            texels(SlotBuffer::Nodes),
+            Resource::Texels(tables.texels),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
         let mut of_target = vec![(1, own(SlotBuffer::Tiles)), (6, own(SlotBuffer::Bins))];

@@ -48,6 +48,10 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(Kind::STORAGE_BUFFER, EVERY),         // tables of all solids
         one(Kind::UNIFORM_BUFFER_DYNAMIC, PIXEL), // the only tables
         one(Kind::UNIFORM_BUFFER_DYNAMIC, EVERY), // the only object
+        one(Kind::UNIFORM_TEXEL_BUFFER, EVERY),   // vectors of the objects
+        one(Kind::UNIFORM_TEXEL_BUFFER, PIXEL),   // of the instances
+        one(Kind::UNIFORM_TEXEL_BUFFER, EVERY),   // of the hierarchies
+        one(Kind::UNIFORM_TEXEL_BUFFER, EVERY),   // of the tables
     ],
     &[
         TEXTURE, // shape map
@@ -140,6 +144,8 @@ pub(crate) fn allocate(
 pub(crate) enum Resource {
     /// A buffer and the number of bytes to bind.
     Buffer(vk::Buffer, u64),
+    /// Vectors of a buffer.
+    Texels(vk::BufferView),
     /// A storage image.
     Image(vk::ImageView),
 }
@@ -161,11 +167,15 @@ pub(crate) unsafe fn write(
             .dst_set(set)
             .dst_binding(binding)
             .descriptor_type(kind);
-        let (buffer, image);
+        let (buffer, image, texels);
         let to = match resource {
             Resource::Buffer(raw, range) => {
                 buffer = [vk::DescriptorBufferInfo::default().buffer(raw).range(range)];
                 to.buffer_info(&buffer)
+            }
+            Resource::Texels(view) => {
+                texels = [view];
+                to.texel_buffer_view(&texels)
             }
             Resource::Image(view) => {
                 let layout = vk::ImageLayout::GENERAL;
@@ -233,6 +243,7 @@ mod tests {
                 }
                 use ash::vk::DescriptorType as T;
                 let wanted: &[T] = match (w[2], of.0) {
+                    (_, SAMPLED) if is_view(defined(of.1[1])) => &[T::UNIFORM_TEXEL_BUFFER],
                     (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
                     (_, IMAGE) => &[T::STORAGE_IMAGE],
                     (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
@@ -253,6 +264,12 @@ mod tests {
             let known = SETS[set as usize][binding as usize].stages;
             assert_eq!(known, stages, "{set}, {binding}");
         }
+    }
+
+    /// True if an image is a view of a buffer.
+    fn is_view((_, image): &(u32, Vec<u32>)) -> bool {
+        const BUFFER: u32 = 5;
+        image[2] == BUFFER
     }
 
     /// True if an opcode defines a type.

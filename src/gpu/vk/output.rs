@@ -3,7 +3,7 @@
 
 use crate::error::{Error, ErrorKind, Result, usage};
 use crate::frame::srgb_from_linear;
-use crate::gpu::vk::descriptors::{HOST_TEXTURES, SETS};
+use crate::gpu::vk::descriptors::{EVERY, HOST_TEXTURES, SETS, count};
 use crate::maps::MapFormat;
 use crate::plan::DepthOrder;
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings};
@@ -325,7 +325,8 @@ impl HostShading {
                 return usage("set_layout", message);
             }
         }
-        let needed = HOST_TEXTURES.len() as u32 + self.shading.textures(HOST_SET);
+        let views = count(&[vk::DescriptorType::UNIFORM_TEXEL_BUFFER], EVERY);
+        let needed = HOST_TEXTURES.len() as u32 + views + self.shading.textures(HOST_SET);
         let has = (limits.max_per_stage_descriptor_samplers)
             .min(limits.max_per_stage_descriptor_sampled_images);
         if needed > has {

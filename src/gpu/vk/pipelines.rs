@@ -13,7 +13,7 @@ use crate::gpu::vk::output::{HostShading, Output, PassFormats, PassKind};
 use crate::shader::Pushed;
 #[cfg(feature = "other-shaders")]
 use crate::shader::SPECIALITIES;
-use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID};
+use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID, TEXELS_ID};
 use crate::shader::{Kind, Variant};
 use crate::shading::Shading;
 use ash::vk;
@@ -31,6 +31,9 @@ pub(crate) struct DeviceConstants {
     /// True if fragments fetch the patches of their cell. Otherwise vertices pass them: 112 registers
     /// on RDNA2 in place of 48. Software drivers would read storage buffers lane by lane.
     pub fetched_cells: bool,
+    /// True if shaders read vectors at places that differ between invocations through views of
+    /// buffers.
+    pub texels: bool,
     /// True if shaders may index arrays of textures by numbers that vary; otherwise they switch over
     /// constants, which takes 1.3 of the code of shadows on RDNA2. No constant of theirs.
     pub indexes_textures: bool,
@@ -38,11 +41,12 @@ pub(crate) struct DeviceConstants {
 
 impl DeviceConstants {
     /// `(constant_id, value)`.
-    pub fn values(self) -> [(u32, u32); 3] {
+    pub fn values(self) -> [(u32, u32); 4] {
         [
             (OWN_VECTORS_ID, self.own_vectors),
             (LARGE_POINTS_ID, u32::from(self.large_points)),
             (FETCHED_CELLS_ID, u32::from(self.fetched_cells)),
+            (TEXELS_ID, u32::from(self.texels)),
         ]
     }
 }
