@@ -60,8 +60,8 @@ fn a_device_that_lacks_something_is_refused_by_name() {
             "lacks maxPerStageDescriptorStorageBuffers of",
         ),
         (
-            limit!(max_per_stage_descriptor_samplers, 15),
-            "maxPerStageDescriptorSamplers of 16 (it has 15)",
+            limit!(max_per_stage_descriptor_samplers, 11),
+            "maxPerStageDescriptorSamplers of 12 (it has 11)",
         ),
         (
             limit!(max_per_stage_descriptor_sampled_images, 15),

@@ -325,15 +325,23 @@ impl HostShading {
                 return usage("set_layout", message);
             }
         }
+        let textures = HOST_TEXTURES.len() as u32 + self.shading.textures(HOST_SET);
         let views = count(&[vk::DescriptorType::UNIFORM_TEXEL_BUFFER], EVERY);
-        let needed = HOST_TEXTURES.len() as u32 + views + self.shading.textures(HOST_SET);
-        let has = (limits.max_per_stage_descriptor_samplers)
-            .min(limits.max_per_stage_descriptor_sampled_images);
-        if needed > has {
-            let message = format!(
-                "reads textures; the device lacks maxPerStageDescriptorSamplers and maxPerStageDescriptorSampledImages of {needed} (it has {has})"
-            );
-            return Err(Error::new(ErrorKind::Unsupported, message).at_key("shading"));
+        let samplers = limits.max_per_stage_descriptor_samplers;
+        let images = limits.max_per_stage_descriptor_sampled_images;
+        for (name, needed, has) in [
+            ("maxPerStageDescriptorSamplers", textures, samplers),
+            (
+                "maxPerStageDescriptorSampledImages",
+                textures + views,
+                images,
+            ),
+        ] {
+            if needed > has {
+                let message =
+                    format!("reads textures; the device lacks {name} of {needed} (it has {has})");
+                return Err(Error::new(ErrorKind::Unsupported, message).at_key("shading"));
+            }
         }
         Ok(())
     }
