@@ -35,8 +35,8 @@ layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {
     LastCopy last_copies[];
 };
 
-// Vectors of the objects, of the instances and of the nodes. Software drivers read a storage buffer in a loop over the
-// lanes, but such a view without one; so they read these where lanes read different places (src/gpu/device/report.rs).
+// The vectors of the objects, of the instances and of the nodes. Lavapipe reads a storage buffer in a loop over the
+// lanes, and such a view without a loop. So it reads these where lanes read different places.
 layout(set = 0, binding = 7) uniform usamplerBuffer object_texels;
 layout(set = 0, binding = 8) uniform usamplerBuffer instance_texels;
 layout(set = 0, binding = 9) uniform usamplerBuffer node_texels;
@@ -80,8 +80,8 @@ Shape shape_at(uint number)
     if (TEXELS == 0u) {
         return objects[number].object.shape;
     }
-    return shape_of(object_floats(number, 0), object_floats(number, 1), object_floats(number, 2), object_words(number, 3),
-                    object_words(number, 4), object_words(number, 5), object_words(number, 6));
+    return shape_of(object_floats(number, 0), object_floats(number, 1), object_floats(number, 2),
+                    object_words(number, 3), object_words(number, 4), object_words(number, 5), object_words(number, 6));
 }
 
 Appearance appearance_at(uint number)

@@ -76,7 +76,7 @@ layout(constant_id = 12) const uint OUTSIDE = 0u; // 1: the blocks of all object
 layout(constant_id = 14) const uint ONE_OBJECT = 0u; // 1: the draw has one object; uniform buffers hold its block and its tables; 2: and one copy of it
 layout(constant_id = 13) const uint OWN_VECTORS = 1024u; // capacity of the uniform buffer of tables, vectors
 layout(constant_id = 15) const uint LARGE_POINTS = 1u; // 1: the device draws points of 1 to 8 pixels a side
-layout(constant_id = 20) const uint TEXELS = 0u; // 1: vectors at places that differ between invocations are read through views
+layout(constant_id = 20) const uint TEXELS = 0u; // 1: views of buffers are read where invocations read different places
 layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch the patches of their cell; 0: vertices pass them
 layout(constant_id = 19) const uint SINGLE_CELLS = 0u; // 1: each cell of the draw has one patch
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)

@@ -10,8 +10,8 @@ Instance instance_of(vec4 a, vec4 b, vec4 c, vec4 d, uvec4 e)
 
 Shape shape_of(vec4 a, vec4 b, vec4 c, uvec4 d, uvec4 e, uvec4 f, uvec4 g)
 {
-    return Shape(a.xy, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, uintBitsToFloat(d.xy), d.z, d.w, e.xyz, e.w, f.x,
-                 f.y, f.z, f.w, g.x, g.y, g.z, g.w);
+    return Shape(a.xy, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, uintBitsToFloat(d.xy), d.z, d.w, e.xyz, e.w,
+                 f.x, f.y, f.z, f.w, g.x, g.y, g.z, g.w);
 }
 
 Appearance appearance_of(uvec4 a, vec4 b, vec4 c, uvec4 d)

@@ -44,7 +44,8 @@ void load_shared()
     if (ONE_OBJECT == 2u) {
         tile_instance = instances[pushed.instance];
     } else {
-        tile_instance = instance_of(shared_floats(0u), shared_floats(1u), shared_floats(2u), shared_floats(3u), shared_vector(4u));
+        tile_instance = instance_of(shared_floats(0u), shared_floats(1u), shared_floats(2u), shared_floats(3u),
+                                    shared_vector(4u));
     }
     if (ONE_OBJECT == 0u) {
         // load_level() sets the last members of a shape.
