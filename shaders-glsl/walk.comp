@@ -4,19 +4,33 @@
 #define SINGLE
 #include "stage/stores.glsl"
 #include "stage/walk.glsl"
+#include "stage/walk_lists.glsl"
+
+// Returns a pixel of a tile. Eight invocations that run together have 4 x 2 pixels, of which fewer are at an outline.
+uvec2 pixel_of_tile(uint k)
+{
+    return uvec2(k & 3u | k >> 1 & 4u, k >> 2 & 1u | k >> 3 & 6u);
+}
 
 void main()
 {
     load_frame(pushed.object);
+    load_grid();
     uint number = pushed.first + gl_WorkGroupID.x;
-    uvec2 tile = uvec2(number % pushed.count, number / pushed.count);
-    uvec2 pixel = GROUP_PIXELS * tile + gl_LocalInvocationID.xy;
+    TileWalk tile = FROM_ROOT;
+    if (ONE_OBJECT != 2u && pushed.bin != 0u) {
+        uint at = pushed.tiles + TILE_WALK_VECTORS * gl_WorkGroupID.x;
+        uvec4 rest = tile_walks[at + 1u];
+        number = rest.w;
+        tile = TileWalk(tile_walks[at], rest.x, rest.y, uintBitsToFloat(rest.z), 0.0);
+    }
+    uvec2 pixel = GROUP_PIXELS * uvec2(number % pushed.count, number / pushed.count) + pixel_of_tile(gl_LocalInvocationIndex);
     if (all(lessThan(pixel, frame.size))) {
         Nearest nearest = nothing_nearer_than(drawn_depth(pixel));
-        walk(pushed.heads, vec2(pixel), nearest);
+        walk(pushed.heads, vec2(pixel), tile, nearest);
         count_steps(pixel, nearest.hit);
         if (nearest.found) {
-            Instance i = walked_instance(nearest.index);
+            Instance i = instance_at(nearest.index);
             load(i);
             store(pixel, nearest.depth, shade(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit));
         }

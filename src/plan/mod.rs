@@ -6,7 +6,7 @@
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod levels;
-mod path;
+pub(crate) mod path;
 pub(crate) mod precedence;
 pub(crate) mod proxy;
 mod tile_steps;
@@ -51,6 +51,8 @@ pub(crate) struct FramePlan {
     pub bin_vectors: u32,
     /// Heads of the bins, a vector each, which come first and are zeroed before that.
     pub bin_heads: u32,
+    /// The pixels that walks may draw: left and upper edge, width, height.
+    pub picture: [u32; 4],
     /// One path per object.
     pub paths: Vec<DrawPath>,
     /// The copies of each object that are read; none if all are.
@@ -82,6 +84,8 @@ pub(crate) enum Call {
     Draws(Range<u32>),
     /// Quads or tiles, for fragments.
     Tiles(Range<u32>),
+    /// Points over tiles, for fragments that walk the hierarchy of this index.
+    Walk(Range<u32>, u32),
     /// Work groups; this head of the bins holds their number.
     Indirect(u32, Pushed),
     /// This many work groups.
@@ -110,6 +114,7 @@ pub(crate) fn plan(
     };
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
+    plan.add_heads(view, objects, (walks, with));
     plan.add_tiles(view, objects, (&paths, &variants), (with, open));
     plan.add_walks(view, objects, &variants, (walks, with));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {

@@ -111,7 +111,7 @@ const MOST_PROXIES: [usize; 2] = [64, 64];
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
 /// of the tree's instructions. Lists on llvmpipe, which has 8, take 0.70 to 0.94.
-const LEAST_SUBGROUP: u32 = 8;
+pub(crate) const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
 /// shades. Rows: subgroups of at least [`LEAST_SUBGROUP`], smaller ones, which take three times as
@@ -281,7 +281,9 @@ impl Conditions {
             return taken.map(|(kind, _)| kind).collect();
         }
         let mut all = vec![Kind::TileTree, Kind::TileCopies];
-        all.extend(self.may_walk(technique).then_some(Kind::WalkTiles));
+        if self.may_walk(technique) {
+            all.extend([Kind::WalkLists, Kind::WalkTiles]);
+        }
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
             all.extend(LIST_LENGTHS.map(Kind::TilePatches));

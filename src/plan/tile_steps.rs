@@ -100,10 +100,10 @@ impl FramePlan {
     /// share no pixels. Tiles of several copies follow, layer by layer.
     fn dispatch(&mut self, layers: &[Layer], tiles: &[LayerTiles], objects: &[PlanObject]) {
         let heads = |t: &LayerTiles| t.listed.len().div_ceil(MOST_GROUPS as usize) as u32;
-        self.bin_heads = TILE_BINS * tiles.iter().map(heads).sum::<u32>();
+        let mut head = self.bin_heads;
+        self.bin_heads += TILE_BINS * tiles.iter().map(heads).sum::<u32>();
         let mut phase = 2;
         let mut later = Vec::new();
-        let mut head = 0;
         self.bin_vectors = self.bin_heads;
         for (layer, tiles) in layers.iter().zip(tiles) {
             let base = layer.variant;

@@ -8,7 +8,7 @@
 use super::tiles::Cylinder;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::scene::Placement;
-use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS};
+use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS, TILE_WALK_VECTORS};
 use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
 use crate::solid::offset_surface::Part;
 use glam::{DMat3, DVec3};
@@ -267,6 +267,20 @@ fn leaves(objects: &[PlanObject], numbers: &[u32]) -> Vec<Leaf> {
 }
 
 impl FramePlan {
+    /// Takes the first heads of the bins for the lists of walks.
+    pub(super) fn add_heads(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        (walks, with): (&Walks, &Conditions),
+    ) {
+        if with.compute {
+            let [across, down] = projector(view, objects, with).tiles();
+            let chunks = (across * down).div_ceil(MOST_GROUPS);
+            self.bin_heads = chunks * walks.layers.len() as u32;
+        }
+    }
+
     /// The walks, after all else.
     pub(super) fn add_walks(
         &mut self,
@@ -275,16 +289,19 @@ impl FramePlan {
         variants: &[Variant],
         (walks, with): (&Walks, &Conditions),
     ) {
-        let kind = if with.compute {
-            Kind::WalkTiles
-        } else {
-            Kind::Walk
-        };
         let last = self.steps.iter().map(|step| step.phase).max();
         let mut phase = last.unwrap_or(1).max(1);
         let projector = projector(view, objects, with);
         let [across, down] = projector.tiles();
-        let tiles = projector.picture()[1] / GROUP_PIXELS * across..down * across;
+        let [left, top, right, bottom] = projector.picture();
+        if across > 0 {
+            self.picture = [left, top, right + 1 - left, bottom + 1 - top];
+        }
+        let tiles = top / GROUP_PIXELS * across..down * across;
+        // What is drawn by one walk needs no depths.
+        let alone = self.steps.is_empty() && walks.layers.len() == 1 && !with.host_depths;
+        let mut lists_first = Vec::new();
+        let mut head = 0;
         for layer in &walks.layers {
             let object = layer.objects[0];
             for &n in &layer.objects {
@@ -294,39 +311,69 @@ impl FramePlan {
             if layer.objects.len() > 1 {
                 variant.speciality.drawn = Drawn::Objects;
             }
+            variant.speciality.depths &= !alone;
             let of = &objects[object as usize];
             let apart = |surface: &Arc<_>| proxy::is_seen_from_outside(of.object, surface, view);
-            let outside =
-                variant.speciality.drawn == Drawn::OneCopy && of.surface().is_some_and(apart);
+            let only = variant.speciality.drawn == Drawn::OneCopy;
+            let outside = only && of.surface().is_some_and(apart);
             self.outside[object as usize] = outside;
             let variant = variant.seen_from_outside(outside);
             let root = layer.root;
             // Each layer compares its depths with those of the layers before it.
             phase += u32::from(with.compute);
-            let step = |call| Step {
-                phase: if with.compute { phase } else { 0 },
+            let step = |phase, kind, call| Step {
+                phase,
                 variant: variant.of_kind(kind),
                 kind,
                 object,
                 call,
             };
             if !with.compute {
-                self.steps.push(step(Call::Tiles(root..root + 1)));
+                let [_, _, width, height] = self.picture;
+                let call = Call::Walk(0..points(width, height), root);
+                self.steps.push(step(0, Kind::Walk, call));
                 continue;
             }
-            for begin in tiles.clone().step_by(MOST_GROUPS as usize) {
+            self.bin_vectors = self.bin_vectors.max(self.bin_heads);
+            let vectors = TILE_WALK_VECTORS * tiles.len() as u32;
+            let lists = !only && u64::from(16 * (self.bin_vectors + vectors)) <= with.room();
+            for first in tiles.clone().step_by(MOST_GROUPS as usize) {
+                let end = tiles.end.min(first + MOST_GROUPS);
                 let pushed = Pushed {
-                    first: begin,
+                    first,
                     count: across,
                     heads: root,
+                    tiles: self.bin_vectors,
+                    bin: if lists { end } else { 0 },
+                    gathered: head,
                     object: of.number,
                     ..Pushed::default()
                 };
-                let groups = MOST_GROUPS.min(tiles.end - begin);
-                self.steps.push(step(Call::Groups(groups, pushed)));
+                let call = if lists {
+                    let groups = (end - first).div_ceil(GROUP_PIXELS * GROUP_PIXELS);
+                    lists_first.push(step(0, Kind::WalkLists, Call::Groups(groups, pushed)));
+                    self.bin_vectors += TILE_WALK_VECTORS * (end - first);
+                    Call::Indirect(head, pushed)
+                } else {
+                    Call::Groups(end - first, pushed)
+                };
+                head += u32::from(!only);
+                self.steps.push(step(phase, Kind::WalkTiles, call));
             }
         }
+        // Lists come before everything else.
+        lists_first.append(&mut self.steps);
+        self.steps = lists_first;
     }
+}
+
+/// The number of points over a picture, as in `walk.vert`.
+fn points(width: u32, height: u32) -> u32 {
+    let side = match width.min(height) {
+        ..GROUP_PIXELS => 1,
+        _ => GROUP_PIXELS,
+    };
+    width.div_ceil(side) * height.div_ceil(side)
 }
 
 #[cfg(test)]

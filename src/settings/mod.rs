@@ -36,7 +36,8 @@ impl DrawStage {
 /// Where the copies that a pixel may show are found, for objects with more than 64 copies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Planning {
-    /// On the device if it is a GPU, else on the host.
+    /// On the device, but for software drivers on the host where that is faster: in the compute stage,
+    /// and with subgroups of fewer than 8.
     #[default]
     Auto,
     /// The CPU finds the copies of each tile of the screen, for every view.

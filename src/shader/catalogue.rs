@@ -27,7 +27,11 @@ pub enum Entry {
     TileTree,
     /// Pixels of tiles of several copies.
     TileCopies,
-    /// Corners of the rectangle of a walk.
+    /// Places of copies in a view.
+    Place,
+    /// Lists of the first copies that rays of tiles may meet.
+    WalkLists,
+    /// Tiles of the picture, each with the first copies of a walk.
     WalkVertex,
     /// Fragments that walk a hierarchy of copies.
     Walk,
@@ -51,16 +55,18 @@ impl Entry {
             Self::TilePatches => "tile_patches.comp",
             Self::TileTree => "tile_tree.comp",
             Self::TileCopies => "tile_copies.comp",
+            Self::Place => "place.comp",
+            Self::WalkLists => "walk_lists.comp",
             Self::WalkVertex => "walk.vert",
             Self::Walk => "walk.frag",
             Self::WalkTiles => "walk.comp",
         }
     }
 
-    /// True if it lists what other entries draw.
+    /// True if it makes what other entries draw from.
     #[must_use]
     pub const fn makes_lists(self) -> bool {
-        matches!(self, Self::TileLists)
+        matches!(self, Self::TileLists | Self::WalkLists | Self::Place)
     }
 
     /// True if its invocations shade hits. Build scripts do not call this.
@@ -201,6 +207,8 @@ pub fn modules() -> Vec<Module> {
     use Stored::{Color, Depth, List, Planes};
     let plain = [
         Entry::TileLists,
+        Entry::Place,
+        Entry::WalkLists,
         Entry::BoxVertex,
         Entry::CellVertex,
         Entry::QuadVertex,

@@ -8,7 +8,7 @@ use super::external::External;
 use super::generated as g;
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{BumpForm, Lighting, Object, Shadow, Texturing};
-use crate::settings::{Planes, Planning, SearchSettings, Solver};
+use crate::settings::{Planes, SearchSettings, Solver};
 
 /// Properties of the objects that a shadow's ray may meet. The code of the object at which the ray
 /// starts must handle them.
@@ -47,8 +47,6 @@ pub struct Technique {
     pub replicas: bool,
     /// One of `SHADOW_*`.
     pub shadow: u32,
-    /// True if the device may place copies that throw shadows.
-    pub placed_casters: bool,
     /// True if surfaces reflect an environment.
     pub environment: bool,
     /// True if colours come from a map.
@@ -86,7 +84,6 @@ impl Technique {
         output: Stored::Color,
         replicas: false,
         shadow: g::SHADOW_OFF,
-        placed_casters: false,
         environment: false,
         color_map: false,
         bump: g::BUMP_OFF,
@@ -148,10 +145,8 @@ impl Technique {
         if output == Stored::Depth {
             return technique;
         }
-        let places = settings.planning == Planning::Device;
         Self {
             shadow,
-            placed_casters: places && casts && technique.search == SearchCode::Quadric,
             environment: lighting.environment.is_some() && !host.shading,
             color_map,
             bump,

@@ -20,7 +20,7 @@ mod kept;
 use kept::assert_kept;
 
 /// The number of modules.
-const MODULES: usize = 32;
+const MODULES: usize = 34;
 
 fn any(solver: Solver, planes: Planes) -> Technique {
     let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
@@ -125,6 +125,8 @@ fn reachable_variants_have_modules() {
         Kind::TilePatches(g::LONGEST_LIST),
         Kind::TileTree,
         Kind::TileCopies,
+        Kind::Place,
+        Kind::WalkLists,
         Kind::Walk,
         Kind::WalkTiles,
     ];

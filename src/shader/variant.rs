@@ -30,7 +30,11 @@ pub enum Kind {
     TileTree,
     /// Compute: tiles and pixels with queues of copies.
     TileCopies,
-    /// A rectangle; fragments walk a hierarchy of copies.
+    /// Compute: places of copies in a view.
+    Place,
+    /// Compute: lists of the first copies of a walk that rays of tiles may meet.
+    WalkLists,
+    /// Tiles of the picture, rasterised; fragments walk a hierarchy of copies.
     Walk,
     /// Compute: tiles of the picture, which walk a hierarchy of copies.
     WalkTiles,
@@ -50,6 +54,8 @@ impl Kind {
             Self::TilePatches(_) => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
             Self::TileCopies => c"revmap tiles of several copies",
+            Self::Place => c"revmap places of copies",
+            Self::WalkLists => c"revmap lists of copies",
             Self::Walk => c"revmap walk",
             Self::WalkTiles => c"revmap walk of tiles",
         }
@@ -72,7 +78,7 @@ impl Kind {
         }
     }
 
-    /// True if it lists what other kinds draw.
+    /// True if it makes what other kinds draw from.
     #[must_use]
     pub const fn makes_lists(self) -> bool {
         self.entry().makes_lists()
@@ -88,6 +94,8 @@ impl Kind {
             Self::TilePatches(_) => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
             Self::TileCopies => Entry::TileCopies,
+            Self::Place => Entry::Place,
+            Self::WalkLists => Entry::WalkLists,
             Self::Walk => Entry::Walk,
             Self::WalkTiles => Entry::WalkTiles,
         }
@@ -246,6 +254,9 @@ impl Variant {
         if !lists && (cells || !patches) {
             speciality.outside = Outside::None;
         }
+        if matches!(kind, Kind::Place | Kind::WalkLists) {
+            speciality = Speciality::GENERAL;
+        }
         speciality.depths |= !kind.draws_in_compute();
         speciality.single &= cells;
         Self {
@@ -306,13 +317,12 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 18] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
             (g::REPLICAS_ID, technique.replicas.into()),
             (g::SHADOW_ID, technique.shadow),
-            (g::PLACED_CASTERS_ID, technique.placed_casters.into()),
             (g::ENVIRONMENT_ID, technique.environment.into()),
             (g::COLOR_MAP_ID, technique.color_map.into()),
             (g::BUMP_ID, technique.bump),

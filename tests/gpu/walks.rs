@@ -64,6 +64,28 @@ fn walks_see_what_tiles_see() {
     }
 }
 
+/// Pictures of any few pixels show what tiles show: points over squares of pixels are drawn only if
+/// their middle is in the picture.
+#[test]
+fn narrow_pictures_are_walked() {
+    let (_, mut scene) = seen(&army(200)).nth(1).unwrap();
+    scene.camera.fov_y = 20.0;
+    for (width, height) in [(1, 1), (3, 90), (90, 7), (8, 8), (9, 17), (31, 64)] {
+        for stage in STAGES {
+            let [host, device] = [Planning::Host, Planning::Device].map(|planning| Settings {
+                width,
+                height,
+                ..settings(stage, Tolerance::EXACT, planning)
+            });
+            let tiles = drawn(&scene, &host, DrawPath::Tiles);
+            let walk = drawn(&scene, &device, DrawPath::Walk);
+            let (_, differ) = differing(&tiles, &walk);
+            assert_eq!(differ, 0, "{width} x {height}, {stage:?}");
+        }
+    }
+    device().check().unwrap();
+}
+
 /// The count that the other tests bound sees one copy in ten that is a hundredth of its size higher.
 #[test]
 fn moved_copies_are_noticed() {

@@ -22,7 +22,16 @@ layout(set = 0, binding = 6, std140) uniform OwnObject {
     Object own_object;
 };
 
-layout(set = 0, binding = 2, std430) readonly buffer InstanceBlock {
+#ifndef PLACES
+#define INSTANCE_ACCESS readonly
+#else
+#define INSTANCE_ACCESS writeonly
+// The instances as the host wrote them.
+layout(set = 0, binding = 11, std430) readonly buffer WrittenBlock {
+    Instance written[];
+};
+#endif
+layout(set = 0, binding = 2, std430) INSTANCE_ACCESS buffer InstanceBlock {
     Instance instances[];
 };
 
@@ -46,6 +55,7 @@ uvec4 instance_words(uint number, int at)
     return texelFetch(instance_texels, int(INSTANCE_WORDS / 4u * number) + at);
 }
 
+#ifndef PLACES
 Instance instance_at(uint number)
 {
     if (TEXELS == 0u) {
@@ -55,6 +65,7 @@ Instance instance_at(uint number)
                        uintBitsToFloat(instance_words(number, 2)), uintBitsToFloat(instance_words(number, 3)),
                        instance_words(number, 4));
 }
+#endif
 
 WalkNode node_at(uint number)
 {

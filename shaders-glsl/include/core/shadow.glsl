@@ -1,7 +1,7 @@
 // The parts of a light that a point sees, by rays towards the light that are traced against every solid of the scene.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#include "core/placed.glsl"
+#include "core/pixel_ray.glsl"
 #include "core/trace.glsl"
 
 // Rays per light: one, or several in a spiral over its disc (Vogel 1979) that each pixel rotates by its own angle. Ray
@@ -123,21 +123,23 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, inout u
     uint root = frame_block.casters.root;
     uint leaves = node_at(root).index;
     vec3 half_unit = 0.5 * frame_block.eye.grid_unit;
-    while (met == INNER_NODE && k != 0u) {
+    bool seeks = met == INNER_NODE && k != 0u;
+    do {
         WalkNode node = node_at(root + k);
         uvec3 low = node.bounds & 0xffffu;
         uvec3 high = node.bounds >> 16;
         bool meets = may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
         bool ends = k >= leaves;
-        met = meets && ends ? node.index : INNER_NODE;
+        met = seeks ? meets && ends ? node.index : INNER_NODE : met;
 #if READS_MAP
         if (met != INNER_NODE && objects[instances[met].object].object.shape.shadow_map != map) {
             met = INNER_NODE;
         }
 #endif
         uint next = k + 1u >> findLSB(k + 1u);
-        k = meets && !ends ? 2u * k : next == 1u ? 0u : next;
-    }
+        k = !seeks ? k : meets && !ends ? 2u * k : next == 1u ? 0u : next;
+        seeks = met == INNER_NODE && k != 0u;
+    } while (seeks);
     return met;
 }
 
@@ -157,15 +159,14 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
     for (uint map = 0u; map < maps; ++map) {
         uint k = meets && only == INNER_NODE ? 2u : 0u;
         // All invocations first find a copy each (Aila and Laine 2009), then trace together.
-        for (uint met = only; left != 0u; met = INNER_NODE) {
-            met = next_caster(origin, point, disc, map, met, k);
-            if (met == INNER_NODE) {
-                break;
-            }
+        uint met = left != 0u ? next_caster(origin, point, disc, map, only, k) : INNER_NODE;
+        if (met == INNER_NODE) {
+            continue;
+        }
+        // Loops end at their end: software drivers execute a body once more after the last invocation has left at its
+        // begin.
+        do {
             Instance i = instance_at(met);
-            if (PLACED_CASTERS != 0u) {
-                i = walked_instance(met);
-            }
             load_shape(i);
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load
@@ -173,7 +174,8 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             shadow_map = int(objects[i.object].object.shape.shadow_map);
 #endif
             left = unstopped_by(i, origin, point, disc, begin, left);
-        }
+            met = left != 0u ? next_caster(origin, point, disc, map, INNER_NODE, k) : INNER_NODE;
+        } while (met != INNER_NODE);
     }
     return left;
 }
@@ -186,12 +188,14 @@ uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
-    for (uint pass = 0u; asked != 0u; ++pass) {
+    uint pass = 0u;
+    do {
         uint left = unstopped(origin, point, disc, pass == 0u ? RIM_BEGIN : SPIRAL_BEGIN, open & asked);
         bool agree = pass == 0u && (left == asked || left == 0u);
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
-    }
+        ++pass;
+    } while (asked != 0u);
     traces_caster = false;
     start_is_known = false;
     return lit & open;

@@ -44,8 +44,8 @@ struct CasterRoot {
     uint only_copy; // index of the only copy, or INNER_NODE
 };
 
-// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (core/placed.glsl), and
-// the eye in the grid of the hierarchies that rays walk (stage/walk.glsl).
+// The eye and the ray of pixel (0, 0) in double precision, for copies that the device places (place.comp), and
+// the eye in the grid of the hierarchies that rays walk (stage/tile_walk.glsl).
 struct PlacedEye {
     vec3 high; // the eye is high + middle + low, world axes
     float unused_0;
@@ -72,6 +72,7 @@ struct FrameData {
     Frame frame;
     CasterRoot casters;
     PlacedEye eye;
+    uvec4 picture; // left and upper edge, width, height, pixels
     float first_depth; // the depth buffer's value of depth 0 in clip space
     float depth_range; // its value of depth 1, minus first_depth
     float far_depth; // depth in clip space of the far plane
@@ -86,8 +87,8 @@ struct FrameData {
 
 // A copy of an object, relative to the eye. The CPU computes it in double precision for each view, so that no rounding
 // error grows with the distance from the world's origin or from the eye. Copies whose `table` is PLACED have no view:
-// their position in the world is the sum of `position`, `origin` and (depth, clip_x, clip_y), and core/placed.glsl
-// makes the other members.
+// their position in the world is the sum of `position`, `origin` and (depth, clip_x, clip_y), and place.comp makes the
+// other members.
 struct Instance {
     vec3 position; // middle of the box's lower face, from the eye, world axes
     float depth; // depth of the box's middle
@@ -224,12 +225,14 @@ struct BinTile {
 
 // Push constants of a dispatch.
 struct Pushed {
-    uint first; // index of the first tile, or of the first gathered pixel; walks: of the first tile, row by row
-    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: of tiles in a row
+    uint first; // index of the first tile, or of the first gathered pixel; walks: of the first tile, row by row; of the
+                // first instance that is placed
+    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: of tiles in a row; of
+                // instances
     uint heads; // index of the first head of their bins; walks: of the hierarchy
-    uint tiles; // index of the first tile of their bins
-    uint bin; // number of the bin that is read
-    uint gathered; // 1 if a work group's pixels come from several tiles
+    uint tiles; // index of the first tile of their bins; walks: of the first vector of the tiles' walks
+    uint bin; // number of the bin that is read; walks: end of the tiles that are listed, 0 if none is
+    uint gathered; // 1 if a work group's pixels come from several tiles; lists of walks: index of their head
     uint object; // index of the only object
     uint instance; // index of its only copy
 };

@@ -46,11 +46,6 @@ const uint SHADOW = 0u;
 #else
 layout(constant_id = 1) const uint SHADOW = 0u; // one of SHADOW_*
 #endif
-#ifdef UNSHADOWED
-const uint PLACED_CASTERS = 0u;
-#else
-layout(constant_id = 17) const uint PLACED_CASTERS = 0u; // 1: the device may place copies that throw shadows
-#endif
 layout(constant_id = 7) const uint ENVIRONMENT = 0u; // 1: surfaces reflect the sky
 layout(constant_id = 2) const uint COLOR_MAP = 0u; // 1: colours come from a map
 layout(constant_id = 3) const uint BUMP = 0u; // BUMP_*
@@ -130,6 +125,7 @@ const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_MAPS = 8u; // upper limit on shape maps of a scene with shadows, for searches on maps
 const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of hierarchies that have none
 const uint PLACED = 4294967295u; // in place of a copy's table: the device places it
+const uint TILE_WALK_VECTORS = 2u; // vectors of a tile's walk
 const uint LEVEL_WORDS = 12u; // words of LevelTables
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
 const uint QUAD_BITS = 15u; // bits of each coordinate of a square's corner

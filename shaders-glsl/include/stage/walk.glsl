@@ -1,11 +1,10 @@
-// Finds the nearest hit of a pixel among all copies of a hierarchy. Rays walk its boxes, nearest first.
+// Finds the nearest hit of a pixel among all copies of a hierarchy. Rays try the copies that their tile lists, then walk
+// the boxes of the others, nearest first.
 // A walk needs no stack: a bit for each level says whether the sibling of the way's node is still to be visited.
 #ifndef WALK_GLSL
 #define WALK_GLSL
-#include "core/placed.glsl"
 #include "core/trace.glsl"
-
-const float NEVER = 3e38; // in place of the depth at which a ray enters a box
+#include "stage/tile_walk.glsl"
 
 // Returns a depth as copies are compared by. Fragments read no depths of a buffer, so theirs are in clip space.
 float walk_depth_of(float t)
@@ -22,8 +21,8 @@ float walk_depth_of(float t)
 // direction.
 float entry_of(WalkNode node, vec3 inverse, float most)
 {
-    vec3 a = (vec3(node.bounds & 0xffffu) - frame_block.eye.grid_low) * inverse;
-    vec3 b = (vec3(node.bounds >> 16) - frame_block.eye.grid_high) * inverse;
+    vec3 a = (vec3(node.bounds & 0xffffu) - grid_low) * inverse;
+    vec3 b = (vec3(node.bounds >> 16) - grid_high) * inverse;
     vec3 near = min(a, b);
     vec3 far = max(a, b);
     float enter = max(max(near.x, near.y), max(near.z, 0.0));
@@ -47,7 +46,7 @@ Nearest nothing_nearer_than(float depth)
 // Traces a copy. Of equal depths, the first copy wins.
 void take_nearer(uint number, vec2 at, inout Nearest nearest)
 {
-    Instance i = walked_instance(number);
+    Instance i = instance_at(number);
     load_shape(i);
     PixelRays rays = pixel_rays(i);
     Hit hit;
@@ -64,44 +63,60 @@ void take_nearer(uint number, vec2 at, inout Nearest nearest)
     nearest.hit.exhausted = exhausted;
 }
 
-// Finds the nearest hit among the copies of a hierarchy. `root`: its index; `at`: position of the ray (pixel_ray.glsl).
-void walk(uint root, vec2 at, inout Nearest nearest)
+// Returns the next copy that a ray may meet before depth `most`, or INNER_NODE. `tile`: what is left of its walk;
+// `leaves`: the first node without children.
+uint next_copy(uint root, uint leaves, vec3 inverse, float most, inout TileWalk tile)
+{
+    uint met;
+    bool more;
+    do {
+        bool listed = tile.first.x != 0u;
+        uint node = listed ? tile.first.x : tile.node;
+        bool ends = node >= leaves;
+        uint pair = root + (ends ? node : 2u * node);
+        WalkNode first = node_at(pair);
+        float to_first = entry_of(first, inverse, most);
+        float to_second = entry_of(node_at(pair + 1u), inverse, most);
+        bool swaps = to_second < to_first;
+        bool both = max(to_first, to_second) < NEVER;
+        bool down = node != 0u && !ends && min(to_first, to_second) < NEVER;
+        met = ends && to_first < NEVER ? first.index : INNER_NODE;
+        uint trail = tile.trail;
+        uint next = next_node(node, trail);
+        trail = down ? tile.trail << 1 | uint(both) : trail;
+        next = down ? 2u * node + uint(swaps) : next;
+        tile.trail = listed ? tile.trail : trail;
+        tile.node = listed ? tile.node : next;
+        tile.first = listed ? uvec4(tile.first.yzw, 0u) : tile.first;
+        more = tile.first.x != 0u || (tile.node != 0u && tile.rest < most);
+    } while (met == INNER_NODE && more);
+    return met;
+}
+
+// Finds the nearest hit among the copies of a hierarchy. `root`: its index; `at`: position of the ray (pixel_ray.glsl);
+// `tile`: where its walk begins.
+void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
 {
     vec3 direction = frame.dir_00 + at.x * frame.dir_x + at.y * frame.dir_y;
-    vec3 inverse = frame_block.eye.grid_unit / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+    vec3 inverse = grid_unit / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
+#ifndef CLIP_DEPTHS
     if (ONE_OBJECT == 2u) {
-        // The only copy is the same for all invocations.
+        // The only copy, which compute alone walks to, is the same for all invocations.
         if (entry_of(node_at(root + 1u), inverse, NEVER) < NEVER) {
             take_nearer(node_at(root + 1u).index, at, nearest);
         }
         return;
     }
+#endif
     uint leaves = node_at(root).index;
-    uint k = 1u; // the current node; 0 at the end
-    uint trail = 0u; // bit n: the sibling of the node n levels above is still to be visited
-    for (;;) {
-        uint met = INNER_NODE;
-        // Invocations meet behind this loop, each with the next copy of its own pixel.
-        while (met == INNER_NODE && k != 0u) {
-            bool ends = k >= leaves;
-            uint pair = root + (ends ? k : 2u * k);
-            WalkNode first = node_at(pair);
-            WalkNode second = node_at(pair + 1u);
-            float to_first = entry_of(first, inverse, nearest.most);
-            float to_second = entry_of(second, inverse, nearest.most);
-            bool swaps = to_second < to_first;
-            bool both = max(to_first, to_second) < NEVER;
-            bool down = !ends && min(to_first, to_second) < NEVER;
-            met = ends && to_first < NEVER ? first.index : INNER_NODE;
-            uint up = uint(max(findLSB(trail), 0));
-            uint next = trail == 0u ? 0u : k >> up ^ 1u;
-            k = down ? 2u * k + uint(swaps) : next;
-            trail = down ? trail << 1 | uint(both) : trail >> up & ~1u;
-        }
-        if (met == INNER_NODE) {
-            break;
-        }
-        take_nearer(met, at, nearest);
+    // Loops end at their end: software drivers execute a body once more after the last invocation has left at its
+    // begin.
+    uint met = next_copy(root, leaves, inverse, nearest.most, tile);
+    if (met != INNER_NODE) {
+        do {
+            take_nearer(met, at, nearest);
+            met = next_copy(root, leaves, inverse, nearest.most, tile);
+        } while (met != INNER_NODE);
     }
 }
 

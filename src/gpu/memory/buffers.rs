@@ -2,7 +2,7 @@
 //!
 //! | use | the host | the device | memory |
 //! |---|---|---|---|
-//! | [`Bins`](Use::Bins) | never touches it | writes and reads it | of the device |
+//! | [`Bins`](Use::Bins), [`Placed`](Use::Placed) | never touches it | writes and reads it | of the device |
 //! | [`Upload`](Use::Upload) | writes it once | copies from it | of the host |
 //! | [`Mark`](Use::Mark) | reads it every frame | writes it | of the host |
 //! | others | writes it every frame | reads it | of the device, seen by the host |
@@ -169,6 +169,8 @@ pub(crate) enum Use {
     Indices,
     /// Bins of tiles, which the device fills and counts.
     Bins,
+    /// Instances that the device places.
+    Placed,
     /// Bytes that are copied to the device.
     Upload,
     /// A word that commands write, by which the host learns that they have run.
@@ -182,6 +184,7 @@ impl Use {
             Self::Storage => B::STORAGE_BUFFER | B::UNIFORM_BUFFER | B::UNIFORM_TEXEL_BUFFER,
             Self::Draws => B::INDIRECT_BUFFER,
             Self::Indices => B::INDEX_BUFFER,
+            Self::Placed => B::STORAGE_BUFFER | B::UNIFORM_TEXEL_BUFFER,
             Self::Bins => B::STORAGE_BUFFER | B::INDIRECT_BUFFER | B::TRANSFER_DST,
             Self::Upload => B::TRANSFER_SRC,
             Self::Mark => B::TRANSFER_DST,
@@ -190,7 +193,7 @@ impl Use {
 
     fn location(self) -> MemoryLocation {
         match self {
-            Self::Bins => MemoryLocation::GpuOnly,
+            Self::Bins | Self::Placed => MemoryLocation::GpuOnly,
             Self::Mark => MemoryLocation::GpuToCpu,
             _ => MemoryLocation::CpuToGpu,
         }

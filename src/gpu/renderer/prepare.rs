@@ -90,9 +90,10 @@ impl Renderer {
     ///
     /// # Safety
     /// The call writes to memory that the previous frame in `slot` read. Image copies, a fill of one
-    /// word that marks them, and barriers of both are recorded into `cmd`. Resources that only the
-    /// previous frame held are dropped; those of copies live until the slot is prepared again after
-    /// the copies have run.
+    /// word that marks them, a dispatch that places the copies of crowds, and barriers of these are
+    /// recorded into `cmd`; the dispatch binds a compute pipeline and set 0. Resources that only the
+    /// previous frame held are dropped; those that commands of `prepare` read live until the slot is
+    /// prepared again after these have run.
     ///
     /// The caller must ensure that
     /// * `cmd` is recording, outside of a render pass, for a queue of the device's family;
@@ -129,13 +130,14 @@ impl Renderer {
                 self.write(slot, &plan)?;
             }
             let to = &mut self.slots[slot];
-            to.name(&bound.buffers.tables, self.content.target.as_ref());
+            to.name(&bound.buffers.tables, self.content.target.as_ref())?;
             to.bound = Some(bound);
         }
         let to = &mut self.slots[slot];
         let snapshot = &plan.snapshot;
         let (output, lighting) = (&self.content.output, &self.content.lighting);
         let mut block = frame_block(view, output, lighting, snapshot.instances);
+        block.picture = plan.frame.picture;
         let maps = snapshot.facts.shadow_maps.maps.len();
         block.casters = caster_root(&plan.walks, view.eye, maps);
         if !plan.walks.nodes.is_empty() {
@@ -144,6 +146,11 @@ impl Renderer {
         to.write(SlotBuffer::Frame, 0, &block)?;
         to.serial += 1;
         // Last, so that a failed call records nothing.
+        if self.slots[slot].placed > 0 {
+            self.record_places(cmd, &self.slots[slot])?;
+            self.slots[slot].keep();
+        }
+        let to = &mut self.slots[slot];
         to.record_uploads(cmd, &mut self.content.textures.uploads);
         Ok(PreparedFrame {
             renderer: self.content.objects.renderer,
@@ -244,6 +251,15 @@ impl Renderer {
         let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
         let bytes = records * size_of::<InstanceBlock>() as u64;
         let are_placed = to.write_walks(&plan.walks, bytes)?;
+        let walks = |path: &DrawPath| *path == DrawPath::Walk;
+        let places = plan.objects.iter().zip(&plan.frame.paths);
+        let places = places
+            .filter(|(planned, path)| walks(path) && planned.object.drawn().placements().len() > 1);
+        to.place(if places.count() > 0 {
+            records as u32
+        } else {
+            0
+        })?;
         let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
         to.write_plan(&plan.frame)?;

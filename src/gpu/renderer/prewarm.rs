@@ -7,10 +7,13 @@ use crate::gpu::content::Content;
 use crate::gpu::content::snapshot::{Demands, FALLBACK};
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::shader::{Kind, Lights, Pushed, Variant};
+use crate::shader::{Kind, Lights, Pushed, Technique, Variant};
 use ash::vk;
 use std::collections::HashSet;
 use std::sync::Arc;
+
+/// The pipeline that places copies.
+pub(super) const PLACE: (Variant, Kind) = (Variant::general(Technique::LISTS), Kind::Place);
 
 /// Pipelines that a renderer may need. Another thread may compile them while the renderer draws.
 /// Pipelines that are the renderer's own live until both are dropped.
@@ -58,7 +61,12 @@ impl Renderer {
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         self.content.refresh()?;
-        Ok(self.prewarm_of(self.content.prewarmed_forms()))
+        let mut wanted = self.content.prewarmed_forms();
+        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles);
+        if wanted.iter().any(walks) {
+            wanted.push(PLACE);
+        }
+        Ok(self.prewarm_of(wanted))
     }
 
     /// Returns the pipelines that would draw the frames of all slots faster: special forms for one

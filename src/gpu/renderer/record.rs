@@ -3,10 +3,12 @@
 
 use super::Renderer;
 use super::prepare::PreparedFrame;
+use super::prewarm::PLACE;
 use super::slot::{BoundPlan, BoundStep, FrameSlot, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::usage::Usage;
 use crate::plan::{Call, IndexedDraw, Step};
+use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS};
 use crate::shader::{BinTile, Kind, Pushed};
 use ash::vk;
 use std::ops::Range;
@@ -14,6 +16,8 @@ use std::time::Instant;
 
 /// Bytes of one indirect draw.
 const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
+/// Instances that a work group places.
+const PLACES: u32 = GROUP_PIXELS * GROUP_PIXELS;
 /// Bytes of the head of a bin, as of its tiles.
 const HEAD_BYTES: u64 = size_of::<BinTile>() as u64;
 
@@ -156,6 +160,11 @@ impl Renderer {
                     let points = step.kind == Kind::Quads && large_points;
                     corners(if points { 1 } else { 6 }, range);
                 }
+                Call::Walk(range, root) => {
+                    let large_points = self.device.chosen.constants().large_points;
+                    let corners = if large_points { range.end } else { 6 };
+                    raw.cmd_draw(cmd, corners, 1, 0, *root);
+                }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);
                     raw.cmd_dispatch_indirect(cmd, bins, HEAD_BYTES * u64::from(*head));
@@ -166,6 +175,42 @@ impl Renderer {
                 }
             }
         }
+    }
+
+    /// Records the dispatches that place a slot's copies in its view, before they are read.
+    pub(super) fn record_places(&self, cmd: vk::CommandBuffer, slot: &FrameSlot) -> Result<()> {
+        let (variant, kind) = PLACE;
+        let pipeline = self.device.pipelines.get(variant, kind, &self.owner)?;
+        let placed = slot.buffer(SlotBuffer::Placed);
+        // An earlier preparation in these commands may have placed them.
+        placed.barrier(cmd, Usage::ComputeWrite, Usage::ComputeWrite);
+        self.device.labelled(cmd, kind.label(), || {
+            let point = vk::PipelineBindPoint::COMPUTE;
+            let layout = self.pipeline_layout()?;
+            let raw = &self.device.raw;
+            // SAFETY: `cmd` is recording; the set fits the layout, and the slot keeps it.
+            unsafe {
+                raw.cmd_bind_pipeline(cmd, point, pipeline);
+                raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &[slot.frame_set], &[0; 2]);
+            }
+            for first in (0..slot.placed).step_by((MOST_GROUPS * PLACES) as usize) {
+                let groups = (slot.placed - first).div_ceil(PLACES).min(MOST_GROUPS);
+                let count = slot.placed;
+                self.push(
+                    cmd,
+                    &Pushed {
+                        first,
+                        count,
+                        ..Pushed::default()
+                    },
+                );
+                // SAFETY: `cmd` is recording, outside of a pass.
+                unsafe { raw.cmd_dispatch(cmd, groups, 1, 1) };
+            }
+            Ok(())
+        })?;
+        placed.barrier(cmd, Usage::ComputeWrite, Usage::ShaderRead);
+        Ok(())
     }
 
     /// Records draws of a plan, many by one indirect command if the device supports that.

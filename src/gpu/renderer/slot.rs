@@ -28,6 +28,8 @@ pub(crate) enum SlotBuffer {
     Frame,
     Objects,
     Instances,
+    /// The instances as the device places them.
+    Placed,
     Nodes,
     Tiles,
     Bins,
@@ -37,10 +39,11 @@ pub(crate) enum SlotBuffer {
 }
 
 /// The use, the name and the least bytes of each [`SlotBuffer`], in order.
-const BUFFERS: [(Use, &str, usize); 8] = [
+const BUFFERS: [(Use, &str, usize); 9] = [
     (Use::Uniform, "frame block", size_of::<FrameBlock>()),
     (Use::Storage, "objects", OBJECT_STRIDE as usize),
     (Use::Storage, "instances", size_of::<InstanceBlock>()),
+    (Use::Placed, "placed instances", 0),
     (Use::Storage, "hierarchies", size_of::<WalkNode>()),
     (Use::Storage, "tiles", size_of::<QueueBlock>()),
     (Use::Bins, "bins of tiles", 0),
@@ -68,9 +71,17 @@ pub(crate) struct FrameSlot {
     /// The hierarchies in [`SlotBuffer::Nodes`]. The copies that rays from the eye walk to, which
     /// have the same blocks in each view, are in [`SlotBuffer::Instances`].
     pub walks: Option<Arc<Walks>>,
+    /// Number of instances that the device places or copies; 0 if none is placed.
+    pub placed: u32,
+    /// True once commands that place copies were recorded, outside of a frame's own commands. They
+    /// may be in the same command buffer as the next preparation, and read all that they name.
+    is_read: bool,
+    retired: Vec<Retired>,
     uploads: RecordedUploads,
     /// The buffer of tables that the sets name; `None` if they must be written.
     pub named: Option<Arc<Buffer>>,
+    /// The buffer of tables that recorded commands may read.
+    tables: Option<Arc<Buffer>>,
     pool: vk::DescriptorPool,
     device: Arc<Shared>,
 }
@@ -141,18 +152,20 @@ impl FrameSlot {
         let instance = InstanceBlock::zeroed();
         write(&mut buffers[SlotBuffer::Instances as usize], 0, &instance)?;
         write_slice(&mut buffers[SlotBuffer::Tiles as usize], &EMPTY_BLOCK)?;
-        let layouts = &device.pipelines.set_layouts;
-        let sets = [FRAME_SET, TARGET_SET];
-        let (pool, sets) = descriptors::allocate(&device.raw, layouts, &sets, 1)?;
+        let (pool, [frame_set, target_set]) = sets(device)?;
         Ok(Self {
-            frame_set: sets.first().copied().unwrap_or_default(),
-            target_set: sets.get(1).copied().unwrap_or_default(),
+            frame_set,
+            target_set,
             buffers,
             bound: None,
             serial: 0,
             walks: None,
+            placed: 0,
+            is_read: false,
+            retired: Vec::new(),
             uploads: RecordedUploads::default(),
             named: None,
+            tables: None,
             pool,
             device: device.clone(),
         })
@@ -178,7 +191,9 @@ impl FrameSlot {
         let limit = u64::from(self.device.limits().max_storage_buffer_range);
         let bytes = bytes.max((bytes + bytes / 2).min(limit));
         let (to, name, _) = BUFFERS[buffer as usize];
-        *self.buffer_mut(buffer) = Buffer::for_use(&self.device, to, name, bytes)?;
+        let new = Buffer::for_use(&self.device, to, name, bytes)?;
+        let old = std::mem::replace(self.buffer_mut(buffer), new);
+        self.retire(|retired| retired.buffer = Some(old));
         self.named = None;
         if matches!(buffer, SlotBuffer::Instances) {
             // Pipelines that are warmed up read an instance, though they draw no pixel.
@@ -187,9 +202,25 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Drops uploads whose commands have run, by the mark that those commands left.
+    /// Keeps what earlier commands may read until those have run; else drops it.
+    fn retire(&mut self, put: impl FnOnce(&mut Retired)) {
+        let mut retired = Retired {
+            buffer: None,
+            tables: None,
+            pool: vk::DescriptorPool::null(),
+            frame: u64::MAX,
+            device: self.device.clone(),
+        };
+        put(&mut retired);
+        if self.is_read {
+            self.retired.push(retired);
+        }
+    }
+
+    /// Drops uploads whose commands have run, by the mark that those commands left, and what was
+    /// retired before them.
     pub fn end_uploads(&mut self) -> Result<()> {
-        if self.uploads.is_empty() {
+        if self.uploads.is_empty() && self.retired.is_empty() {
             return Ok(());
         }
         let serial = self.serial;
@@ -197,17 +228,23 @@ impl FrameSlot {
             bytemuck::pod_read_unaligned(&self.buffer_mut(SlotBuffer::Mark).mapped()?[..4]);
         #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
         let behind = (serial as u32).wrapping_sub(mark);
-        self.uploads.run(serial.saturating_sub(u64::from(behind)));
+        let last = serial.saturating_sub(u64::from(behind));
+        self.uploads.run(last);
+        self.retired.retain(|retired| retired.frame > last);
         Ok(())
     }
 
     /// Records the uploads that wait, and a mark after them, into the commands of frame `serial`.
     pub fn record_uploads(&mut self, cmd: vk::CommandBuffer, waiting: &mut Uploads) {
         waiting.record(cmd, &mut self.uploads, self.serial);
-        if self.uploads.is_empty() {
+        if self.uploads.is_empty() && self.retired.is_empty() {
             return;
         }
+        for retired in &mut self.retired {
+            retired.frame = retired.frame.min(self.serial);
+        }
         let mark = self.buffer(SlotBuffer::Mark);
+        mark.barrier(cmd, Usage::ComputeWrite, Usage::TransferWrite);
         // An earlier frame of these commands may have written the mark.
         mark.barrier(cmd, Usage::TransferWrite, Usage::TransferWrite);
         #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
@@ -245,7 +282,7 @@ impl FrameSlot {
         for (step, _) in steps.filter(|(_, bound)| bound.pipeline.is_some()) {
             match &step.call {
                 Call::Draws(range) => all.draws += range.end - range.start,
-                Call::Tiles(range) => {
+                Call::Tiles(range) | Call::Walk(range, _) => {
                     all.draws += 1;
                     all.tiles += range.end - range.start;
                 }
@@ -300,6 +337,24 @@ impl FrameSlot {
         Ok(false)
     }
 
+    /// Notes that commands were recorded that read the slot's buffers and its first set.
+    pub fn keep(&mut self) {
+        self.is_read = true;
+        self.tables = self.named.clone();
+    }
+
+    /// Makes room for instances that the device places, none if it places none.
+    pub fn place(&mut self, count: u32) -> Result<()> {
+        let changes = (count == 0) != (self.placed == 0);
+        self.placed = count;
+        let bytes = u64::from(count) * size_of::<InstanceBlock>() as u64;
+        self.fit(SlotBuffer::Placed, bytes)?;
+        if changes {
+            self.named = None;
+        }
+        Ok(())
+    }
+
     /// Writes a plan's tiles and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
         // Draws that only warm up pipelines read the first block.
@@ -316,12 +371,23 @@ impl FrameSlot {
     }
 
     /// Points the sets to their buffers, if those have changed.
-    pub fn name(&mut self, tables: &Arc<Buffer>, target: Option<&ComputeTarget>) {
+    pub fn name(&mut self, tables: &Arc<Buffer>, target: Option<&ComputeTarget>) -> Result<()> {
         let known = self.named.as_ref();
         if known.is_some_and(|known| Arc::ptr_eq(known, tables)) {
-            return;
+            return Ok(());
+        }
+        if self.is_read {
+            let (pool, [frame_set, target_set]) = sets(&self.device)?;
+            let old = std::mem::replace(&mut self.pool, pool);
+            (self.frame_set, self.target_set) = (frame_set, target_set);
+            let tables = self.tables.take();
+            self.retire(|retired| (retired.pool, retired.tables) = (old, tables));
         }
         let whole = |buffer: &Buffer| Resource::Buffer(buffer.raw, vk::WHOLE_SIZE);
+        let instances = match self.placed {
+            0 => SlotBuffer::Instances,
+            _ => SlotBuffer::Placed,
+        };
         let own = |buffer| whole(self.buffer(buffer));
         let texels = |buffer| Resource::Texels(self.buffer(buffer).texels);
         let window = 16 * u64::from(self.device.chosen.constants().own_vectors);
@@ -329,15 +395,16 @@ impl FrameSlot {
         let frame = [
             own(SlotBuffer::Frame),
             own(SlotBuffer::Objects),
-            own(SlotBuffer::Instances),
+            own(instances),
             own(SlotBuffer::Nodes),
             whole(tables),
             Resource::Buffer(tables.raw, window),
             Resource::Buffer(self.buffer(SlotBuffer::Objects).raw, object),
             texels(SlotBuffer::Objects),
-            texels(SlotBuffer::Instances),
+            texels(instances),
             texels(SlotBuffer::Nodes),
             Resource::Texels(tables.texels),
+            own(SlotBuffer::Instances),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
         let mut of_target = vec![(1, own(SlotBuffer::Tiles)), (6, own(SlotBuffer::Bins))];
@@ -346,14 +413,40 @@ impl FrameSlot {
             let images = target.images.iter().map(|view| Resource::Image(*view));
             of_target.extend((2u32..).zip(images));
         }
-        let raw = &self.device.raw;
+        let raw = self.device.raw.clone();
         // SAFETY: the previous frame that used the sets is done; the objects that they name live as
         // long as the slot, or as long as the host promised.
         unsafe {
-            descriptors::write(raw, self.frame_set, FRAME_SET, &frame);
-            descriptors::write(raw, self.target_set, TARGET_SET, &of_target);
+            descriptors::write(&raw, self.frame_set, FRAME_SET, &frame);
+            descriptors::write(&raw, self.target_set, TARGET_SET, &of_target);
         }
         self.named = Some(tables.clone());
+        Ok(())
+    }
+}
+
+/// Makes a pool of the two sets of a slot, and the sets.
+fn sets(device: &Shared) -> Result<(vk::DescriptorPool, [vk::DescriptorSet; 2])> {
+    let layouts = &device.pipelines.set_layouts;
+    let (pool, sets) = descriptors::allocate(&device.raw, layouts, &[FRAME_SET, TARGET_SET], 1)?;
+    let set = |n| sets.get(n).copied().unwrap_or_default();
+    Ok((pool, [set(0), set(1)]))
+}
+
+/// What earlier commands of a slot may read.
+struct Retired {
+    buffer: Option<Buffer>,
+    tables: Option<Arc<Buffer>>,
+    pool: vk::DescriptorPool,
+    /// Number of the frame whose mark says that those commands have run.
+    frame: u64,
+    device: Arc<Shared>,
+}
+
+impl Drop for Retired {
+    fn drop(&mut self) {
+        // SAFETY: the commands that read the sets have run; a null pool may be destroyed.
+        unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
     }
 }
 

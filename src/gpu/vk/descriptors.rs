@@ -52,6 +52,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         one(Kind::UNIFORM_TEXEL_BUFFER, PIXEL),   // of the instances
         one(Kind::UNIFORM_TEXEL_BUFFER, EVERY),   // of the hierarchies
         one(Kind::UNIFORM_TEXEL_BUFFER, EVERY),   // of the tables
+        one(Kind::STORAGE_BUFFER, COMPUTE),       // instances before they are placed
     ],
     &[
         TEXTURE, // shape map

@@ -16,6 +16,8 @@ pub(crate) enum Usage {
     ComputeWrite,
     /// Read by compute shaders and as the groups of an indirect dispatch.
     TileRead,
+    /// Read by any shader.
+    ShaderRead,
     /// Read by the host, after the commands have run.
     HostRead,
 }
@@ -26,6 +28,7 @@ impl Usage {
         match self {
             Self::Discarded => S::FRAGMENT_SHADER | S::COMPUTE_SHADER | S::TRANSFER,
             Self::TransferWrite => S::TRANSFER,
+            Self::ShaderRead => S::VERTEX_SHADER | S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::HostRead => S::HOST,
             Self::Sampled => S::FRAGMENT_SHADER | S::COMPUTE_SHADER,
             Self::ComputeWrite => S::COMPUTE_SHADER,
@@ -38,7 +41,7 @@ impl Usage {
         match self {
             Self::Discarded | Self::TransferWrite => A::TRANSFER_WRITE,
             Self::HostRead => A::HOST_READ,
-            Self::Sampled => A::SHADER_READ,
+            Self::Sampled | Self::ShaderRead => A::SHADER_READ,
             Self::ComputeWrite => A::SHADER_READ | A::SHADER_WRITE,
             Self::TileRead => A::SHADER_READ | A::INDIRECT_COMMAND_READ,
         }
@@ -50,7 +53,7 @@ impl Usage {
             Self::Discarded => L::UNDEFINED,
             Self::TransferWrite => L::TRANSFER_DST_OPTIMAL,
             Self::Sampled => L::SHADER_READ_ONLY_OPTIMAL,
-            Self::ComputeWrite | Self::TileRead | Self::HostRead => L::GENERAL,
+            _ => L::GENERAL,
         }
     }
 }

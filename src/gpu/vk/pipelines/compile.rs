@@ -119,7 +119,8 @@ impl Pipelines {
     }
 
     fn assembly(&self, kind: Kind) -> vk::PipelineInputAssemblyStateCreateInfo<'static> {
-        let topology = match kind == Kind::Quads && self.constants.large_points {
+        let topology = match matches!(kind, Kind::Quads | Kind::Walk) && self.constants.large_points
+        {
             true => vk::PrimitiveTopology::POINT_LIST,
             false => vk::PrimitiveTopology::TRIANGLE_LIST,
         };

@@ -1,8 +1,10 @@
-// Copies that the device places: their blocks do not depend on the view, so the CPU writes them once. The members that do
-// are made here, with the precision of the CPU's double numbers: sums of two or three floats hold 48 bits and more.
-#ifndef PLACED_GLSL
-#define PLACED_GLSL
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Places the copies that the host wrote without a view: makes the members that depend on it, with the precision of the
+// CPU's double numbers: sums of two or three floats hold 48 bits and more. Other records are copied.
+#define PLACES
 #include "core/pixel_ray.glsl"
+#include "stage/compute.glsl"
 
 // Returns a + b; `error` is what rounding leaves out (Knuth 1969).
 vec3 two_sum(vec3 a, vec3 b, out vec3 error)
@@ -56,14 +58,15 @@ Instance placed(Instance i)
     return i;
 }
 
-// Returns instance `number` as the view has it, whoever places it.
-Instance walked_instance(uint number)
+void main()
 {
-    Instance i = instance_at(number);
-    if (i.table == PLACED) {
-        i = placed(i);
+    load_frame(0u);
+    uint number = pushed.first + gl_WorkGroupID.x * GROUP_PIXELS * GROUP_PIXELS + gl_LocalInvocationIndex;
+    if (number < pushed.count) {
+        Instance i = written[number];
+        if (i.table == PLACED) {
+            i = placed(i);
+        }
+        instances[number] = i;
     }
-    return i;
 }
-
-#endif
