@@ -24,7 +24,8 @@ void main()
         number = rest.w;
         tile = TileWalk(tile_walks[at], rest.x, rest.y, uintBitsToFloat(rest.z), 0.0);
     }
-    uvec2 pixel = GROUP_PIXELS * uvec2(number % pushed.count, number / pushed.count) + pixel_of_tile(gl_LocalInvocationIndex);
+    uvec2 corner = GROUP_PIXELS * uvec2(number % pushed.count, number / pushed.count);
+    uvec2 pixel = corner + pixel_of_tile(gl_LocalInvocationIndex);
     if (all(lessThan(pixel, frame.size))) {
         Nearest nearest = nothing_nearer_than(drawn_depth(pixel));
         walk(pushed.heads, vec2(pixel), tile, nearest);

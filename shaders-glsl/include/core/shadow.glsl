@@ -102,7 +102,8 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
     vec3 eye = point_to_axis(i, origin, point);
     start_is_known = false;
     vec2 angle = begin == SPIRAL_BEGIN ? disc.first : rotated(disc.first, RIM_ANGLE);
-    for (uint k = begin; k < begin + PASS_RAYS; ++k) {
+    uint k = begin;
+    do {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
         Hit hit;
         uint ray = 1u << k % LIGHT_RAYS;
@@ -110,7 +111,8 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
             left &= ~ray;
         }
         angle = next_angle(angle);
-    }
+        ++k;
+    } while (k < begin + PASS_RAYS && left != 0u);
     return left;
 }
 
