@@ -141,21 +141,20 @@ impl Adaptive {
         let mut first = 0;
         for (round, end) in ROUNDS.into_iter().enumerate() {
             let error = ERROR.get(round).copied().unwrap_or(f32::INFINITY);
+            let mut all = Vec::new();
             // Pixels that the first round opens have its rays before the next round.
             for _ in 0..GROWTH {
-                self.add(
-                    (scene, &mut shifted),
-                    first..end,
-                    &open,
-                    (&mut pixels, &mut refined),
-                )?;
-                if round > 0 {
+                let to = (&mut pixels[..], &mut refined);
+                self.add((scene, &mut shifted), first..end, &open, to)?;
+                let differing = open.iter().filter(|at| pixels[**at].range() > EDGE);
+                let beside = differing.flat_map(|at| beside(*at, width, pixels.len()));
+                let mut new: Vec<usize> = beside.filter(|at| refined.rays[*at] == 0).collect();
+                new.sort_unstable();
+                new.dedup();
+                all.append(&mut open);
+                if round > 0 || new.is_empty() {
                     break;
                 }
-                let differs = |at: usize| pixels[at].range() > EDGE;
-                let new: Vec<bool> = (0..open.len())
-                    .map(|at| refined.rays[at] == 0 && beside(at, width, open.len()).any(differs))
-                    .collect();
                 open = new;
             }
             let around = |at: usize| {
@@ -165,9 +164,8 @@ impl Adaptive {
                     .fold(pixels[at], |sum, p| sum.joined([p.least, p.most]))
                     .range()
             };
-            let is_open =
-                |at: usize| u32::from(refined.rays[at]) == end && around(at) > error * end as f32;
-            open = (0..open.len()).map(is_open).collect();
+            all.retain(|at| around(*at) > error * end as f32);
+            open = all;
             first = end;
         }
         for ((color, pixel), rays) in frame.color.iter_mut().zip(&pixels).zip(&refined.rays) {
@@ -183,13 +181,17 @@ impl Adaptive {
         &mut self,
         (scene, shifted): (&Scene, &mut Scene),
         points: std::ops::Range<u32>,
-        open: &[bool],
+        open: &[usize],
         (pixels, refined): (&mut [Pixel], &mut Refined),
     ) -> Result<()> {
-        if !open.contains(&true) {
+        if open.is_empty() {
             return Ok(());
         }
-        self.offscreen.open(Some(open))?;
+        let mut mask = vec![false; pixels.len()];
+        for at in open {
+            mask[*at] = true;
+        }
+        self.offscreen.open(Some(&mask))?;
         let end = points.end;
         for i in points {
             let [x, y] = point(i, ROUNDS[2]);
@@ -197,27 +199,26 @@ impl Adaptive {
             self.offscreen.update(shifted)?;
             refined.times.add(self.offscreen.draw()?);
             let colors = self.offscreen.rgba()?;
-            let drawn = pixels.iter_mut().zip(colors).zip(open);
-            for ((pixel, color), _) in drawn.filter(|(_, open)| **open) {
-                pixel.add(color, &self.linear);
+            for &at in open {
+                pixels[at].add(colors[at], &self.linear);
             }
         }
-        for (rays, _) in refined.rays.iter_mut().zip(open).filter(|(_, open)| **open) {
-            *rays = end as u8;
+        for &at in open {
+            refined.rays[at] = end as u8;
         }
         Ok(())
     }
 }
 
-/// Pixels whose colour differs from that of one beside them.
-fn edges(frame: &Frame) -> Vec<bool> {
+/// Pixels whose colour differs from that of one beside them, in order.
+fn edges(frame: &Frame) -> Vec<usize> {
     let level = |value: f32| 255.0 * srgb_from_linear(f64::from(value.clamp(0.0, 1.0))) as f32;
     let levels = |[r, g, b, a]: [f32; 4]| [level(r), level(g), level(b), 255.0 * a];
     let colors: Vec<[f32; 4]> = frame.color.iter().map(|color| levels(*color)).collect();
     let (width, count) = (frame.width as usize, colors.len());
     let differs = |a: usize, b: usize| (0..4).any(|c| (colors[a][c] - colors[b][c]).abs() > EDGE);
     (0..count)
-        .map(|at| beside(at, width, count).any(|other| differs(at, other)))
+        .filter(|at| beside(*at, width, count).any(|other| differs(*at, other)))
         .collect()
 }
 

@@ -73,7 +73,8 @@ impl Renderer {
     /// Prepares a frame of `view` in slot `slot`. Applies the values that were set, writes what
     /// changed, and records copies of new textures. Call it outside of a render pass.
     ///
-    /// The frame may be recorded once, several times or never, and its commands may be dropped.
+    /// The frame may be recorded once, several times or never, and its commands may be dropped. The
+    /// commands of `prepare` run before those of the frame.
     /// Copies of a texture are recorded in every prepared frame until one of these frames has run,
     /// which the slot reads from a word that its commands write. So no texture is lost with a frame
     /// that was never submitted. A frame in flight beside others repeats their copies.
