@@ -114,7 +114,7 @@ pub(crate) fn plan(
     };
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
-    plan.add_heads(view, objects, (walks, with));
+    plan.add_heads(view, objects, &variants, (walks, with));
     plan.add_tiles(view, objects, (&paths, &variants), (with, open));
     plan.add_walks(view, objects, &variants, (walks, with));
     for (parts, object) in plan.parts.iter_mut().zip(objects) {

@@ -67,6 +67,14 @@ pub(crate) struct Walks {
     layers: Vec<Layer>,
 }
 
+impl Layer {
+    /// True if it has one copy, for which no lists are made.
+    fn is_of_one(&self, variants: &[Variant]) -> bool {
+        let drawn = |n: u32| variants[n as usize].speciality.drawn;
+        matches!(*self.objects, [n] if drawn(n) == Drawn::OneCopy)
+    }
+}
+
 impl Leaf {
     /// The box around a copy of a solid.
     fn new(instance: u32, placement: &Placement, solid: &Cylinder) -> Self {
@@ -272,12 +280,17 @@ impl FramePlan {
         &mut self,
         view: &View,
         objects: &[PlanObject],
+        variants: &[Variant],
         (walks, with): (&Walks, &Conditions),
     ) {
         if with.compute {
             let [across, down] = projector(view, objects, with).tiles();
             let chunks = (across * down).div_ceil(MOST_GROUPS);
-            self.bin_heads = chunks * walks.layers.len() as u32;
+            let lists = walks
+                .layers
+                .iter()
+                .filter(|layer| !layer.is_of_one(variants));
+            self.bin_heads = chunks * lists.count() as u32;
         }
     }
 
@@ -307,6 +320,7 @@ impl FramePlan {
             for &n in &layer.objects {
                 self.parts[n as usize][Part::Tables as usize] = true;
             }
+            let only = layer.is_of_one(variants);
             let mut variant = variants[object as usize];
             if layer.objects.len() > 1 {
                 variant.speciality.drawn = Drawn::Objects;
@@ -314,7 +328,6 @@ impl FramePlan {
             variant.speciality.depths &= !alone;
             let of = &objects[object as usize];
             let apart = |surface: &Arc<_>| proxy::is_seen_from_outside(of.object, surface, view);
-            let only = variant.speciality.drawn == Drawn::OneCopy;
             let outside = only && of.surface().is_some_and(apart);
             self.outside[object as usize] = outside;
             let variant = variant.seen_from_outside(outside);
