@@ -98,7 +98,7 @@ pub struct Drawing {
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
     /// Where the copies that a pixel may show are found, for objects with more than 64: by the CPU
-    /// for each view, or on the device, which is the default of GPUs
+    /// for each view, or on the device, the default but in compute and small subgroups of a CPU
     #[arg(long, value_name = "WHERE", default_value = "auto", value_parser = named(&Planning::NAMES))]
     pub planning: Planning,
     #[command(flatten)]
