@@ -5,7 +5,7 @@
 //! one level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid
 //! around all copies.
 
-use super::tiles::Cylinder;
+use super::tiles::{Cylinder, TILE_PIXELS};
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::scene::Placement;
 use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS, TILE_WALK_VECTORS};
@@ -363,7 +363,7 @@ impl FramePlan {
                     ..Pushed::default()
                 };
                 let call = if lists {
-                    let groups = (end - first).div_ceil(GROUP_PIXELS * GROUP_PIXELS);
+                    let groups = (end - first).div_ceil(TILE_PIXELS);
                     lists_first.push(step(0, Kind::WalkLists, Call::Groups(groups, pushed)));
                     self.bin_vectors += TILE_WALK_VECTORS * (end - first);
                     Call::Indirect(head, pushed)

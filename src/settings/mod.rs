@@ -44,7 +44,8 @@ pub enum Planning {
     Host,
     /// Rays walk a hierarchy of the copies. It depends on no view, so the CPU does nothing for a new
     /// view that grows with the number of copies. Objects that another search than patches draws,
-    /// replicas, parallel views, and up to 256 copies whose faces coincide are planned on the host.
+    /// replicas, parallel views, and up to 256 copies whose faces coincide are planned on the host, and
+    /// everything on devices with subgroups of fewer than 8: SwiftShader leaves out copies of walks.
     Device,
 }
 

@@ -70,6 +70,7 @@ fn walks_see_what_tiles_see() {
 fn narrow_pictures_are_walked() {
     let (_, mut scene) = seen(&army(200)).nth(1).unwrap();
     scene.camera.fov_y = 20.0;
+    let mut seen = 0;
     for (width, height) in [(1, 1), (3, 90), (90, 7), (8, 8), (9, 17), (31, 64)] {
         for stage in STAGES {
             let [host, device] = [Planning::Host, Planning::Device].map(|planning| Settings {
@@ -79,10 +80,12 @@ fn narrow_pictures_are_walked() {
             });
             let tiles = drawn(&scene, &host, DrawPath::Tiles);
             let walk = drawn(&scene, &device, DrawPath::Walk);
-            let (_, differ) = differing(&tiles, &walk);
+            let (hits, differ) = differing(&tiles, &walk);
             assert_eq!(differ, 0, "{width} x {height}, {stage:?}");
+            seen += hits;
         }
     }
+    assert!(seen > 1000, "{seen} hits");
     device().check().unwrap();
 }
 

@@ -143,20 +143,15 @@ Shaded shade(Look look, PixelRays rays, vec2 pixel, Hit hit)
         }
     }
     if (SHADOW != SHADOW_OFF || LIGHTS > 2u) {
-        uint n = SHADOW == SHADOW_OFF ? 2u : 0u;
-        do {
-            Light light = frame_block.lights[min(n, MAX_LIGHTS - 1u)];
-            if (n >= frame.light_count) {
-                light.color = vec3(0.0);
-            }
+        for (uint n = SHADOW == SHADOW_OFF ? 2u : 0u; n < frame.light_count; ++n) {
+            Light light = frame_block.lights[n];
             if (SHADOW == SHADOW_OFF) {
                 color += blinn_phong(look, turned_to(look.rotation, light), lit, view, s.albedo);
             } else {
                 vec3 above = rotate(look.rotation, outward), to_eye = rotate(look.rotation, view);
                 color += shadowed(look, light, s.shading_normal, above, to_eye, s.albedo, point, uvec2(pixel + 0.5));
             }
-            ++n;
-        } while (n < frame.light_count);
+        }
     }
     if (ENVIRONMENT != 0u) {
         vec2 material = unpackUnorm2x16(appearance.material);

@@ -102,8 +102,7 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
     vec3 eye = point_to_axis(i, origin, point);
     start_is_known = false;
     vec2 angle = begin == SPIRAL_BEGIN ? disc.first : rotated(disc.first, RIM_ANGLE);
-    uint k = begin;
-    do {
+    for (uint k = begin; k < begin + PASS_RAYS; ++k) {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
         Hit hit;
         uint ray = 1u << k % LIGHT_RAYS;
@@ -111,8 +110,7 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
             left &= ~ray;
         }
         angle = next_angle(angle);
-        ++k;
-    } while (k < begin + PASS_RAYS && left != 0u);
+    }
     return left;
 }
 
@@ -125,23 +123,21 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, inout u
     uint root = frame_block.casters.root;
     uint leaves = node_at(root).index;
     vec3 half_unit = 0.5 * frame_block.eye.grid_unit;
-    bool seeks = met == INNER_NODE && k != 0u;
-    do {
+    while (met == INNER_NODE && k != 0u) {
         WalkNode node = node_at(root + k);
         uvec3 low = node.bounds & 0xffffu;
         uvec3 high = node.bounds >> 16;
         bool meets = may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
         bool ends = k >= leaves;
-        met = seeks ? meets && ends ? node.index : INNER_NODE : met;
+        met = meets && ends ? node.index : INNER_NODE;
 #if READS_MAP
         if (met != INNER_NODE && objects[instances[met].object].object.shape.shadow_map != map) {
             met = INNER_NODE;
         }
 #endif
         uint next = k + 1u >> findLSB(k + 1u);
-        k = !seeks ? k : meets && !ends ? 2u * k : next == 1u ? 0u : next;
-        seeks = met == INNER_NODE && k != 0u;
-    } while (seeks);
+        k = meets && !ends ? 2u * k : next == 1u ? 0u : next;
+    }
     return met;
 }
 
@@ -161,13 +157,11 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
     for (uint map = 0u; map < maps; ++map) {
         uint k = meets && only == INNER_NODE ? 2u : 0u;
         // All invocations first find a copy each (Aila and Laine 2009), then trace together.
-        uint met = left != 0u ? next_caster(origin, point, disc, map, only, k) : INNER_NODE;
-        if (met == INNER_NODE) {
-            continue;
-        }
-        // Loops end at their end: software drivers execute a body once more after the last invocation has left at its
-        // begin.
-        do {
+        for (uint met = only; left != 0u; met = INNER_NODE) {
+            met = next_caster(origin, point, disc, map, met, k);
+            if (met == INNER_NODE) {
+                break;
+            }
             Instance i = instance_at(met);
             load_shape(i);
 #if READS_MAP
@@ -176,8 +170,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
             shadow_map = int(objects[i.object].object.shape.shadow_map);
 #endif
             left = unstopped_by(i, origin, point, disc, begin, left);
-            met = left != 0u ? next_caster(origin, point, disc, map, INNER_NODE, k) : INNER_NODE;
-        } while (met != INNER_NODE);
+        }
     }
     return left;
 }
@@ -190,14 +183,12 @@ uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
-    uint pass = 0u;
-    do {
+    for (uint pass = 0u; asked != 0u; ++pass) {
         uint left = unstopped(origin, point, disc, pass == 0u ? RIM_BEGIN : SPIRAL_BEGIN, open & asked);
         bool agree = pass == 0u && (left == asked || left == 0u);
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
-        ++pass;
-    } while (asked != 0u);
+    }
     traces_caster = false;
     start_is_known = false;
     return lit & open;

@@ -1,5 +1,5 @@
-// Finds the nearest hit of a pixel among all copies of a hierarchy. Rays try the copies that their tile lists, then walk
-// the boxes of the others, nearest first.
+// Finds the nearest hit of a pixel among all copies of a hierarchy. Rays try the copies that their tile lists, then
+// walk the boxes of the others, nearest first.
 // A walk needs no stack: a bit for each level says whether the sibling of the way's node is still to be visited.
 #ifndef WALK_GLSL
 #define WALK_GLSL

@@ -1,5 +1,5 @@
-// The walks of tiles that walk_lists.comp makes: TILE_WALK_VECTORS vectors for each tile that may show a copy, in any order.
-// A head holds their number, as a dispatch with a work group for each.
+// The walks of tiles that walk_lists.comp makes: TILE_WALK_VECTORS vectors for each tile that may show a copy, in any
+// order. A head holds their number, as a dispatch with a work group for each.
 #ifndef WALK_LISTS_GLSL
 #define WALK_LISTS_GLSL
 #include "stage/compute.glsl"

@@ -77,6 +77,7 @@ impl Content {
             notes: Vec::new(),
             settings: SearchSettings {
                 planning: match settings.planning {
+                    _ if device.chosen.subgroup_size < LEAST_SUBGROUP => Planning::Host,
                     Planning::Auto if tiles_pay(device, &output) => Planning::Host,
                     Planning::Auto => Planning::Device,
                     chosen => chosen,
@@ -255,14 +256,11 @@ fn in_parallel(
     all.len()
 }
 
-/// True if a crowd takes less time by tiles of the host than by walks, `prepare` among it: with few
-/// invocations that run together, and in the compute stage of software drivers. Walks take 1.1 to 1.8
-/// of the time of tiles on SwiftShader, and in compute 0.8 to 1.5 on lavapipe 22 and 25. In fragments
-/// these take 0.8 to 1.3.
+/// True if a crowd takes less time by tiles of the host than by walks, `prepare` among it: in the
+/// compute stage of software drivers. Walks take 0.8 to 1.4 of the time of tiles there on lavapipe 22
+/// and 25, and in fragments 0.8 to 1.3.
 fn tiles_pay(device: &Shared, output: &Output) -> bool {
-    let chosen = &device.chosen;
-    let together = chosen.subgroup_size >= LEAST_SUBGROUP;
-    chosen.report.kind == "cpu" && (!together || matches!(output, Output::Compute(_)))
+    device.chosen.report.kind == "cpu" && matches!(output, Output::Compute(_))
 }
 
 /// Upper limit on instances: their records are in one storage buffer, with those of the last frame
