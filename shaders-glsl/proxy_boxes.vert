@@ -28,5 +28,5 @@ void main()
     Instance i = begin(uint(gl_InstanceIndex));
     gl_Position = box_corner(i, uint(gl_VertexIndex));
     hand_over(i, frame.pixel_size);
-    hand_over_tree(EVERYWHERE);
+    hand_over_tree();
 }

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces a fragment of a box or of a quad.
+// Traces a fragment of a box.
 #include "stage/tree_varyings.glsl"
 #include "core/trace.glsl"
 #include "stage/outputs.glsl"
@@ -14,8 +14,7 @@ void main()
     load_tree_varyings();
     PixelRays rays = varying_rays();
     Hit hit = NO_HIT;
-    vec2 span = span_of_rays();
-    bool found = span.x <= span.y && trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, span, hit);
+    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, EVERYWHERE, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;

@@ -40,7 +40,6 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
 fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     let entries = [
         "cells.frag",
-        "tiles.frag",
         "tree.frag",
         "tile_patches.comp",
         "tile_tree.comp",

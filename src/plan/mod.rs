@@ -1,8 +1,8 @@
 //! The content of a frame as plain data: a view, objects and limits give a [`FramePlan`]. No module
 //! here uses Vulkan, and [`plan()`] cannot fail.
 //!
-//! The fragment stage draws proxies ([`proxy`]) or tiles. The compute stage draws tiles
-//! ([`tiles`]). Objects with the same pipeline and the same set of textures share
+//! The fragment stage draws proxies ([`proxy`]) or [walks](walk), the compute stage tiles
+//! ([`tiles`]) or walks. Objects with the same pipeline and the same set of textures share
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod levels;
@@ -82,10 +82,8 @@ pub(crate) struct Step {
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
     Draws(Range<u32>),
-    /// Quads or tiles, for fragments.
-    Tiles(Range<u32>),
-    /// Points over tiles, for fragments that walk the hierarchy of this index.
-    Walk(Range<u32>, u32),
+    /// So many points over tiles, for fragments that walk the hierarchy of this index.
+    Walk(u32, u32),
     /// Work groups; this head of the bins holds their number.
     Indirect(u32, Pushed),
     /// This many work groups.

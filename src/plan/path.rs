@@ -27,10 +27,11 @@ pub enum DrawPath {
     Box,
     /// Fragment stage: cells of the surface are rasterised, and fragments solve their patches.
     Cells,
-    /// Tiles of the screen that may show its copies are drawn. The fragment stage uses tiles for
-    /// several copies and for single objects without cells, the compute stage for everything.
+    /// Compute stage: tiles of the screen that may show its copies are drawn.
     Tiles,
-    /// Rays walk a hierarchy of the copies: [`Planning::Device`](crate::settings::Planning::Device).
+    /// Rays walk a hierarchy of the copies of many objects: in the fragment stage those of crowds and
+    /// those that cast shadows, in the compute stage as
+    /// [`Planning`](crate::settings::Planning) says.
     Walk,
 }
 
@@ -67,7 +68,7 @@ pub(crate) struct PlanObject<'a> {
 /// are equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Conditions {
-    /// True if tiles are traced in compute; otherwise fragments draw proxies and tiles.
+    /// True if compute draws; otherwise fragments do.
     pub compute: bool,
     /// True if the device passes a cell's components from vertices to fragments.
     pub passes_cells: bool,
@@ -99,19 +100,26 @@ pub(crate) struct Conditions {
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
+    /// True if there are so many objects that a choice for each takes longer than walks to all.
+    pub many_objects: bool,
     /// True if all objects together, in any view, have one copy: then no pixel is drawn twice.
     pub single_copy: bool,
 }
 
-/// Most copies of an object that are drawn by cells, on software drivers and on GPUs. With more copies,
-/// many are small or hidden, and tiles skip those. On an NVIDIA H100 cells take 0.60 to 0.88 of the
-/// time of tiles with 64 copies, 0.80 to 1.28 with 256 and 0.93 to 0.97 with 1,024.
-const MOST_PROXIES: [usize; 2] = [64, 64];
+/// Most copies of an object that are drawn by proxies. With more copies, many are small or hidden. On an
+/// NVIDIA H100 cells take 0.60 to 0.88 of the time of tiles with 64 copies, 0.80 to 1.28 with 256 and
+/// 0.93 to 0.97 with 1,024. On lavapipe 64 copies take 0.8 of the time of a walk by proxies from above,
+/// and 1.3 from the side.
+pub(crate) const MOST_PROXIES: usize = 64;
+
+/// Objects above this number are drawn by walks: the path of each would take the host longer than
+/// the device draws them.
+pub(crate) const MANY_OBJECTS: usize = 64;
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
 /// of the tree's instructions. Lists on llvmpipe, which has 8, take 0.70 to 0.94.
-pub(crate) const LEAST_SUBGROUP: u32 = 8;
+const LEAST_SUBGROUP: u32 = 8;
 
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
 /// shades. Rows: subgroups of at least [`LEAST_SUBGROUP`], smaller ones, which take three times as
@@ -136,43 +144,33 @@ pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// Most copies of an object that are drawn by cells. Cells draw all copies at one level, so an
-    /// object with more copies may have a level for each.
-    pub fn most_proxies(&self) -> usize {
-        MOST_PROXIES[usize::from(!self.software)]
-    }
-
     /// True if an object may be drawn by cells. The view may still rule that out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
-        let few = of.object.placements().len() <= self.most_proxies();
+        let few = of.object.placements().len() <= MOST_PROXIES;
         self.shows_patches(of) && !self.compute && self.passes_cells && few
     }
 
-    /// True if an object may be drawn by tiles. The box is as good as tiles for one copy whose
-    /// outline is not used.
-    fn takes_tiles(&self, of: &PlanObject) -> bool {
-        let pays = of.object.placements().len() > 1 || self.uses_outline(of);
-        self.compute || (of.technique.is_shaded() && pays)
-    }
-
-    /// True if fragments may search the queues of tiles by a technique: it has the library's patches
-    /// and no replicas.
-    pub fn searches_queues(technique: &Technique) -> bool {
-        technique.search == SearchCode::Quadric && !technique.replicas
-    }
-
     /// True if rays walk a hierarchy of an object's copies, in any view. Fragments draw few copies by
-    /// proxies, and compute draws flat solids by lists of patches.
+    /// proxies, but where shadows are cast, in which a walk shades no hidden pixel. Compute draws flat
+    /// solids by lists of patches.
     pub fn walks_to(&self, of: &PlanObject) -> bool {
-        let many = of.object.placements().len() > self.most_proxies();
-        let chooses = self.compute && self.takes_patches && self.least_pixels > 0;
-        let pays = many || (chooses && !(is_flat(of.object) && self.permits_lists(of)));
+        let many = of.object.placements().len() > MOST_PROXIES || self.many_objects;
+        let pays = many
+            || match self.compute {
+                true => {
+                    self.takes_patches
+                        && self.least_pixels > 0
+                        && !(is_flat(of.object) && self.permits_lists(of))
+                }
+                false => self.casts && !self.single_copy,
+            };
         self.walks && pays && of.surface().is_some() && self.may_walk(&of.technique)
     }
 
     /// True if rays may walk a hierarchy of copies of a technique.
     fn may_walk(&self, technique: &Technique) -> bool {
-        self.plans_on_device && Self::searches_queues(technique)
+        let patches = technique.search == SearchCode::Quadric;
+        self.plans_on_device && patches && !technique.replicas
     }
 
     /// The surface of an object whose path follows from its hull, if the hull is not made yet.
@@ -196,15 +194,9 @@ impl Conditions {
         });
         match cells {
             Some(frusta) => Path::Cells(frusta),
-            _ if self.takes_tiles(of) && !view.parallel && !self.prefers_box(of) => Path::Tiles,
+            _ if self.compute && !view.parallel => Path::Tiles,
             _ => Path::Box,
         }
-    }
-
-    /// True if a box is faster than tiles: for one copy of a solid that fills its box.
-    fn prefers_box(&self, of: &PlanObject) -> bool {
-        let fills = |s: &Arc<OffsetSurface>| proxy::fills_box(of.object, s);
-        !self.compute && of.object.placements().len() == 1 && of.surface().is_some_and(fills)
     }
 
     /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
@@ -267,11 +259,6 @@ impl Conditions {
         let patches = patches && technique.is_single() && !self.casts;
         let of_pass = [
             (Kind::Boxes, true),
-            (Kind::Quads, technique.is_shaded()),
-            (
-                Kind::Tiles,
-                technique.is_shaded() && Self::searches_queues(technique),
-            ),
             (Kind::Walk, self.may_walk(technique)),
             (Kind::Cells, patches && self.passes_cells),
             (Kind::CutCells, patches && self.passes_cells),

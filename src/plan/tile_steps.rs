@@ -1,7 +1,7 @@
-//! Steps that draw tiles, in fragments or by dispatches.
+//! Steps that draw tiles, by dispatches.
 
 use super::path::{LIST_LENGTHS, is_flat};
-use super::tiles::{Batch, LEAST_QUEUE, LayerTiles, OpenPixels, TILE_PIXELS, Visible};
+use super::tiles::{Batch, LayerTiles, OpenPixels, TILE_PIXELS, Visible};
 use super::{
     Call, Conditions, DrawPath, FramePlan, Layer, Layers, Path, PlanObject, Step, View, projector,
 };
@@ -33,11 +33,7 @@ impl FramePlan {
         let visible = Visible::new(view, &projector, &batches);
         let mut layers = Layers::default();
         let mut layer_of = Vec::with_capacity(numbers.len());
-        let kind = if with.compute {
-            Kind::TileTree
-        } else {
-            Kind::Quads
-        };
+        let kind = Kind::TileTree;
         let copies = visible.copies();
         for (batch, &n) in numbers.iter().enumerate() {
             let of = &objects[n];
@@ -52,15 +48,7 @@ impl FramePlan {
             layer_of.push(layer as u32);
         }
         let layers = layers.all;
-        let least_queue = |layer: &Layer| {
-            let copies = |n: &u32| objects[*n as usize].object.placements().len();
-            let least = LEAST_QUEUE[usize::from(with.casts)];
-            let enough = layer.objects.iter().map(copies).sum::<usize>() >= least;
-            let searches = enough && Conditions::searches_queues(&layer.variant.technique);
-            if searches { least } else { usize::MAX }
-        };
-        let queues: Vec<usize> = layers.iter().map(least_queue).collect();
-        let mut tiles = visible.write((with.compute, open), &layer_of, &queues);
+        let mut tiles = visible.write(open, &layer_of, layers.len());
         leave_out_lists(view, objects, &layers, &mut tiles.layers, with);
         for (batch, (&n, copies)) in numbers.iter().zip(copies).enumerate() {
             if copies.is_empty() {
@@ -73,26 +61,7 @@ impl FramePlan {
                 shows && visible.lists_patches(batch) && lists();
             self.copies[n] = (!with.casts).then_some(copies);
         }
-        if with.compute {
-            self.dispatch(&layers, &tiles.layers, objects);
-        } else {
-            for ((layer, of_layer), queues) in layers.iter().zip(&tiles.layers).zip(queues) {
-                let step = |kind, call| Step {
-                    phase: 0,
-                    variant: layer.variant.of_kind(kind),
-                    kind,
-                    object: layer.objects[0],
-                    call,
-                };
-                // Both are recorded, even if one is empty: the number of commands follows the content.
-                let quads = step(kind, Call::Tiles(of_layer.quads.clone()));
-                self.steps.push(quads);
-                if queues < usize::MAX {
-                    let tiles = step(Kind::Tiles, Call::Tiles(of_layer.queued.clone()));
-                    self.steps.push(tiles);
-                }
-            }
-        }
+        self.dispatch(&layers, &tiles.layers, objects);
         self.tile_words = tiles.words;
     }
 

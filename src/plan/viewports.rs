@@ -8,7 +8,7 @@ use super::{Call, DepthOrder, FramePlan, PlanObject, View, Viewport, plan, shape
 use crate::error::{ErrorKind, Result};
 use crate::profile::Profile;
 use crate::scene::{Object, Placement};
-use crate::shader::generated::QUAD_BITS;
+use crate::shader::generated::{GROUP_PIXELS, QUAD_BITS};
 use crate::shader::{Kind, SearchCode, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
@@ -70,7 +70,7 @@ fn view_of(viewport: Viewport, parallel: bool, order: DepthOrder) -> Result<View
     View::from_matrices(look, lens.transpose(), viewport, order)
 }
 
-fn planned(view: &View, compute: bool) -> FramePlan {
+fn planned(view: &View) -> FramePlan {
     let (surface, objects) = &*SOLIDS;
     let surfaces = [surface.clone()];
     let objects: Vec<_> = (0..)
@@ -91,7 +91,7 @@ fn planned(view: &View, compute: bool) -> FramePlan {
         })
         .collect();
     let with = Conditions {
-        compute,
+        compute: true,
         passes_cells: true,
         takes_patches: true,
         subgroup_size: 32,
@@ -119,23 +119,22 @@ fn check(view: &View) {
         true => view.with_rows(64..128),
         false => *view,
     };
-    for compute in [false, true] {
-        let plan = planned(&view, compute);
-        let quads = plan.steps.iter().filter_map(|step| match &step.call {
-            Call::Tiles(range) if step.kind == Kind::Quads => Some(range.clone()),
-            _ => None,
-        });
-        for record in quads.flatten() {
-            let word = plan.tile_words[4 * record as usize];
-            let at = |shift: u32| f64::from(word >> shift & ((1 << QUAD_BITS) - 1));
-            let side = f64::from(1u32 << (word >> (2 * QUAD_BITS)));
-            let ([x, y], half) = ([at(0), at(QUAD_BITS)], 0.5);
-            assert!(x + half >= left && x + side - half <= right, "{view:?}");
-            assert!(y + half >= top && y + side - half <= bottom, "{view:?}");
+    let plan = planned(&view);
+    let tiles = plan.steps.iter().filter_map(|step| match &step.call {
+        Call::Groups(groups, pushed) if step.kind == Kind::TileTree => {
+            Some(pushed.first..pushed.first + groups)
         }
-        if left == right || top == bottom {
-            assert!(plan.tile_words.iter().all(|word| *word == 0), "{view:?}");
-        }
+        _ => None,
+    });
+    for record in tiles.flatten() {
+        let word = plan.tile_words[4 * record as usize];
+        let at = |shift: u32| f64::from(word >> shift & ((1 << QUAD_BITS) - 1));
+        let ([x, y], side) = ([at(0), at(QUAD_BITS)], f64::from(GROUP_PIXELS));
+        assert!(x + side > left && x < right, "{view:?}");
+        assert!(y + side > top && y < bottom, "{view:?}");
+    }
+    if left == right || top == bottom {
+        assert!(plan.tile_words.iter().all(|word| *word == 0), "{view:?}");
     }
 }
 

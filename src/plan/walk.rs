@@ -343,7 +343,7 @@ impl FramePlan {
             };
             if !with.compute {
                 let [_, _, width, height] = self.picture;
-                let call = Call::Walk(0..points(width, height), root);
+                let call = Call::Walk(points(width, height), root);
                 self.steps.push(step(0, Kind::Walk, call));
                 continue;
             }

@@ -9,15 +9,9 @@ pub enum Entry {
     BoxVertex,
     /// Corners of cells.
     CellVertex,
-    /// Quads of tiles.
-    QuadVertex,
-    /// Corners of tiles.
-    TileVertex,
     /// Fragments of cells.
     Cells,
-    /// Fragments of tiles.
-    Tiles,
-    /// Fragments of boxes and quads, which walk the tree.
+    /// Fragments of boxes, which walk the tree.
     Tree,
     /// Lists of the patches that rays of tiles may meet.
     TileLists,
@@ -46,10 +40,7 @@ impl Entry {
         match self {
             Self::BoxVertex => "proxy_boxes.vert",
             Self::CellVertex => "proxy_cells.vert",
-            Self::QuadVertex => "tile_quads.vert",
-            Self::TileVertex => "tiles.vert",
             Self::Cells => "cells.frag",
-            Self::Tiles => "tiles.frag",
             Self::Tree => "tree.frag",
             Self::TileLists => "tile_lists.comp",
             Self::TilePatches => "tile_patches.comp",
@@ -83,12 +74,7 @@ impl Entry {
     pub const fn searches(self) -> bool {
         matches!(
             self,
-            Self::Tree
-                | Self::Tiles
-                | Self::TileTree
-                | Self::TileCopies
-                | Self::Walk
-                | Self::WalkTiles
+            Self::Tree | Self::TileTree | Self::TileCopies | Self::Walk | Self::WalkTiles
         )
     }
 }
@@ -211,20 +197,17 @@ pub fn modules() -> Vec<Module> {
         Entry::WalkLists,
         Entry::BoxVertex,
         Entry::CellVertex,
-        Entry::QuadVertex,
-        Entry::TileVertex,
         Entry::WalkVertex,
     ];
     let mut all = plain.map(Module::plain).to_vec();
     let both: &[SearchCode] = &[SearchCode::Live, SearchCode::Quadric];
     let patches: &[SearchCode] = &[SearchCode::Quadric];
-    let rows: [(Entry, &[SearchCode], &[Stored]); 8] = [
+    let rows: [(Entry, &[SearchCode], &[Stored]); 7] = [
         (Entry::Tree, both, &[Planes, List, Depth]),
         (Entry::TileTree, both, &[Color, Planes]),
         (Entry::TileCopies, both, &[Color, Planes]),
         (Entry::TilePatches, patches, &[Color, Planes]),
         (Entry::Cells, patches, &[Planes, List, Depth]),
-        (Entry::Tiles, patches, &[Planes, List]),
         (Entry::Walk, patches, &[Planes, List, Depth]),
         (Entry::WalkTiles, patches, &[Color, Planes]),
     ];

@@ -80,7 +80,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::settings::Plane;
-    use crate::shader::catalogue::{Entry, Module, Stored, modules};
+    use crate::shader::catalogue::{Entry, Module, modules};
     use crate::shader::words;
     use std::collections::BTreeSet;
 
@@ -119,7 +119,7 @@ mod tests {
             assert!(!chained, "{}", module.name());
             found += 1;
         }
-        assert_eq!(found, 5);
+        assert_eq!(found, 4);
     }
 
     /// Vertices write all that fragments read; validation layers report outputs that none reads.
@@ -128,9 +128,8 @@ mod tests {
         let mut counts = BTreeSet::new();
         for module in modules() {
             let entries: &[Entry] = match module.entry {
-                Entry::Tree if module.output == Stored::Depth => &[Entry::BoxVertex],
-                Entry::Tree => &[Entry::BoxVertex, Entry::QuadVertex],
-                Entry::Tiles => &[Entry::TileVertex],
+                Entry::Tree => &[Entry::BoxVertex],
+                Entry::Walk => &[Entry::WalkVertex],
                 Entry::Cells => &[Entry::CellVertex],
                 _ => &[],
             };
@@ -143,7 +142,7 @@ mod tests {
                 counts.insert(read.len());
             }
         }
-        // Depths read less than colours, and those of tiles least.
+        // Depths read less than colours, and those of walks least.
         assert!(counts.len() > 3, "{counts:?}");
     }
 }

@@ -9,7 +9,7 @@ use super::generated as g;
 use super::technique::Technique;
 use std::ffi::CStr;
 
-/// The geometry that a pipeline draws: a proxy (the first three), or tiles.
+/// The geometry that a pipeline draws: a proxy (the first three), tiles, or a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Cells with their patches, rasterised.
@@ -18,10 +18,6 @@ pub enum Kind {
     CutCells,
     /// Shape boxes, rasterised; fragments walk the tree.
     Boxes,
-    /// Quads of tiles, each of one copy, rasterised; fragments walk the tree.
-    Quads,
-    /// Tiles, rasterised; fragments search the copies in their queues.
-    Tiles,
     /// Compute: lists of the patches that rays of tiles may meet.
     TileLists,
     /// Compute: tiles whose patches are listed; each pixel tests this many.
@@ -48,8 +44,6 @@ impl Kind {
             Self::Cells => c"revmap cells",
             Self::CutCells => c"revmap cut cells",
             Self::Boxes => c"revmap boxes",
-            Self::Quads => c"revmap quads of tiles",
-            Self::Tiles => c"revmap tiles",
             Self::TileLists => c"revmap lists of patches",
             Self::TilePatches(_) => c"revmap tiles of listed patches",
             Self::TileTree => c"revmap tiles of one copy",
@@ -87,9 +81,8 @@ impl Kind {
     /// The entry file of its fragments, or of its compute invocations.
     const fn entry(self) -> Entry {
         match self {
-            Self::Boxes | Self::Quads => Entry::Tree,
+            Self::Boxes => Entry::Tree,
             Self::Cells | Self::CutCells => Entry::Cells,
-            Self::Tiles => Entry::Tiles,
             Self::TileLists => Entry::TileLists,
             Self::TilePatches(_) => Entry::TilePatches,
             Self::TileTree => Entry::TileTree,
@@ -286,8 +279,6 @@ impl Variant {
         let entry = match kind {
             Kind::Boxes => Entry::BoxVertex,
             Kind::Cells | Kind::CutCells => Entry::CellVertex,
-            Kind::Quads => Entry::QuadVertex,
-            Kind::Tiles => Entry::TileVertex,
             Kind::Walk => Entry::WalkVertex,
             _ => return None,
         };

@@ -13,7 +13,7 @@ pub type Ways<'a> = [&'a [DrawPath]; 2];
 
 /// Drawn by cells if the stage has them, and by the tree only.
 pub const WRAPPED: Ways<'static> = [&[DrawPath::Cells], &[DrawPath::Tiles]];
-pub const WALKED: Ways<'static> = [&[DrawPath::Tiles], &[DrawPath::Tiles]];
+pub const WALKED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Tiles]];
 
 /// Counts pixels with a hit, pixels that only one frame hits, and pixels whose hits are farther
 /// apart than half a texel of 512 rows.

@@ -146,8 +146,8 @@ fn commands_follow_pipelines() {
             counts
         };
         of(1, 1);
-        // Tiles of several copies are one more dispatch in compute.
-        let several = of(64, 1);
+        // Tiles of several copies are one more dispatch in compute, and fragments walk.
+        let several = of(65, 1);
         for objects in [200, 1000] {
             assert_eq!(of(objects, 1), several);
         }

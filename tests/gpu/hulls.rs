@@ -54,11 +54,9 @@ impl Search {
     #[track_caller]
     pub fn assert_same(&self, name: &str, scene: &Scene, ways: Ways) {
         // A map has no cells.
-        let copies = scene.objects.iter().all(|o| o.placements().len() > 1);
-        let ways = match (self.solver, copies) {
-            (Solver::Exact, _) => ways,
-            (_, true) => [&[DrawPath::Tiles][..]; 2],
-            (_, false) => WALKED,
+        let ways = match self.solver {
+            Solver::Exact => ways,
+            _ => WALKED,
         };
         let from_box = from_boxes(settings(self.from_box, DrawStage::Fragment));
         let boxes = draw(scene, &from_box);
@@ -133,8 +131,7 @@ fn what_the_box_cuts() {
         .enumerate()
         {
             let fills = profile.outline.bounds().unwrap().r_max + extend > 1.5 * profile.radius;
-            let box_alone: Ways = [&[DrawPath::Box], &[DrawPath::Tiles]];
-            let ways = if fills { box_alone } else { WRAPPED };
+            let ways = if fills { WALKED } else { WRAPPED };
             for elevation in [SIDES[(n + k) % 4], SIDES[(n + k + 2) % 4]] {
                 let mut scene = scene_of(profile.clone(), eye(elevation, 2.8));
                 let object = &mut scene.objects[0];
@@ -308,8 +305,7 @@ fn where_there_is_none() {
         draw_by("8 bits", &scene, &papers, WALKED);
         for solver in [Solver::Live, Solver::Exact] {
             let boxes = from_boxes(settings(solver, stage));
-            let ways: Ways = [&[DrawPath::Box], &[DrawPath::Tiles]];
-            draw_by("boxes", &scene, &boxes, ways);
+            draw_by("boxes", &scene, &boxes, WALKED);
         }
     }
     let profile = Profile::polygon(&[[0.0, 0.4], [0.3, 0.5], [0.0, 0.6]], 0.5).unwrap();

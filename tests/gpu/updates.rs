@@ -117,8 +117,8 @@ fn only_what_has_changed_is_cut() {
             assert_eq!(found, cuts, "{solver}, {stage:?}: {what}");
             let way = match (solver, stage) {
                 (Solver::Exact, DrawStage::Fragment) => DrawPath::Cells,
-                (Solver::Other(_), _) => DrawPath::Box,
-                _ => DrawPath::Tiles,
+                (_, DrawStage::Fragment) => DrawPath::Box,
+                (_, DrawStage::Compute) => DrawPath::Tiles,
             };
             assert_eq!(
                 renderer.renderer().draw_paths(),
@@ -155,7 +155,7 @@ fn only_what_has_changed_is_cut() {
         }
         renderer.update(&scene).unwrap();
         let none = [DrawPath::Nothing; 3];
-        let by_tiles = !matches!(solver, Solver::Other(_));
+        let by_tiles = stage == DrawStage::Compute;
         assert_eq!(
             renderer.renderer().draw_paths() == none,
             by_tiles,

@@ -182,19 +182,17 @@ struct WalkNode {
 
 // A square of pixels in which one copy may be visible: a tile in compute, also smaller for fragments.
 struct CopyTile {
-    uint square; // x | y << QUAD_BITS | log2 of the side << (2 QUAD_BITS), pixels
+    uint square; // its corner: x | y << QUAD_BITS, pixels
     uint instance; // index of the copy
-    float near; // the copy's nearest depth
-    uint unused;
+    uvec2 unused;
 };
 
 // A tile with a queue of copies.
 struct QueueTile {
-    uint place; // column | row << TILE_BITS, then from TILE_HALVES on a bit for each half in which a copy may be visible:
-                // left, right, top, bottom
+    uint place; // column | row << TILE_BITS
     uint first; // index of its first QueueBlock
     uint count; // number of copies
-    float near; // nearest depth
+    uint unused;
 };
 
 // A copy in a queue.

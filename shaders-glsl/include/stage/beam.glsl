@@ -4,8 +4,6 @@
 #include "core/patch_tables.glsl"
 #include "core/pixel_ray.glsl"
 
-const uint SPAN_NODES = 16u; // nodes of the tree's second level from the top
-const uint SPAN_FIRST = 320u; // index of its first node
 
 struct Beam {
     vec3 o;
@@ -39,7 +37,7 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
     beam.width = beam.spread * farthest + 1e-4 + 4e-7 * abs(vec2(length(beam.o.xy), beam.o.z));
     beam.a = max(dot(beam.v.xy, beam.v.xy), 1e-12 * dot(beam.v, beam.v));
     beam.b = dot(beam.o.xy, beam.v.xy);
-    // This divides, as node_span() does: rounding of 1 / a loses pixels of a plate that is a thousand times as wide as
+    // This divides: rounding of 1 / a loses pixels of a plate that is a thousand times as wide as
     // high.
     beam.nearest = -beam.b / beam.a;
     beam.least = max(dot(beam.o.xy, beam.o.xy) - beam.a * beam.nearest * beam.nearest, 0.0);
@@ -47,33 +45,6 @@ Beam beam_of(PixelRays rays, uvec2 corner, uint side, float farthest, float unit
     beam.base = rays.base;
     beam.unit = unit;
     return beam;
-}
-
-// Returns the range of t in which a beam may hit node `k`; the range is empty (x > y) if it cannot.
-vec2 node_span(Beam beam, uint k)
-{
-    // Storage buffer only: lavapipe 22 treats uniforms that branches depend on as constants, and crashes.
-    uint at = SPAN_FIRST + k;
-    uint first = shape.table + (OWN_TABLES ? shape.table_window : 0u);
-    float most = node_extent(stored_vector(first + (at >> 2))[at & 3u]).y;
-    float radius = sqrt(max(most, 0.0)) + beam.width.x;
-    float low = (float(k) / float(SPAN_NODES) - beam.width.y - beam.o.z) * beam.per_z;
-    float high = (float(k + 1u) / float(SPAN_NODES) + beam.width.y - beam.o.z) * beam.per_z;
-    float reach = sqrt(max(radius * radius - beam.least, 0.0) / beam.a);
-    vec2 span = vec2(max(min(low, high), beam.nearest - reach), min(max(low, high), beam.nearest + reach));
-    bool meets = most > 0.0 && radius * radius > beam.least && span.x <= span.y;
-    return meets ? span : vec2(3e38, -3e38);
-}
-
-// Returns the range of t in which a beam may hit the solid, from the largest radii of the nodes.
-vec2 beam_span(Beam beam)
-{
-    vec2 span = vec2(3e38, -3e38);
-    for (uint k = 0u; k < SPAN_NODES; ++k) {
-        vec2 met = node_span(beam, k);
-        span = vec2(min(span.x, met.x), max(span.y, met.y));
-    }
-    return span;
 }
 
 // Returns true if a ray of the beam may enter the solid through patch `k`, and the range of t in `span`.

@@ -4,17 +4,6 @@
 #include "stage/tiles.glsl"
 #include "core/trace.glsl"
 
-// Returns a depth in the unit of nearest_copy. Fragments read no depths of a buffer, so theirs are in clip space. They
-// exceed its limits before the near plane and beyond the far plane. Rays are never parallel.
-float queue_depth_of(float t, vec2 terms)
-{
-#ifdef CLIP_DEPTHS
-    return terms.x + terms.y / t;
-#else
-    return depth_of(t, terms);
-#endif
-}
-
 // Returns the copies of a block that pixel `bit` of the tile may show, one bit each.
 uint marks_of(uint block, uint bit)
 {
@@ -49,7 +38,7 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
         marks &= marks - 1u;
         QueuedCopy copy = queue_blocks[block - 1u].copies[n];
         // Without a lag: copies that follow may lag less than this one.
-        if (sense * queue_depth_of(max(copy.near, 1e-30), depth_terms()) >= depth) {
+        if (sense * depth_of(max(copy.near, 1e-30), depth_terms()) >= depth) {
             break;
         }
         Instance i = instance_at(copy.instance);
@@ -59,7 +48,7 @@ bool nearest_copy(QueueTile tile, uint bit, vec2 at, inout float depth, out uint
         bool met = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
         steps += hit.steps;
         exhausted = exhausted || hit.exhausted;
-        float met_at = sense * queue_depth_of(rays.base + hit.t, lagging_terms(i.lag));
+        float met_at = sense * depth_of(rays.base + hit.t, lagging_terms(i.lag));
         if (met && met_at < depth) {
             found = true;
             index = copy.instance;

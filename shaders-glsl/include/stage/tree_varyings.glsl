@@ -4,16 +4,16 @@
 #include "stage/varyings.glsl"
 
 layout(location = 12) flat VARYING vec4 tree_bounds;
-layout(location = 13) flat VARYING vec4 tree_axis_span; // zw: range of t outside which no ray has a hit
+layout(location = 13) flat VARYING vec2 tree_axis;
 layout(location = 14) flat VARYING vec4 tree_map;
 layout(location = 15) flat VARYING vec4 tree_offset;
 layout(location = 16) flat VARYING uvec4 tree_table;
 
 #ifdef VERTEX_GLSL
-void hand_over_tree(vec2 span)
+void hand_over_tree()
 {
     tree_bounds = vec4(shape.half_side, shape.clip_radius, shape.clip_low, shape.clip_high);
-    tree_axis_span = vec4(shape.axis, span);
+    tree_axis = shape.axis;
     tree_map = vec4(shape.map_size, shape.texel, shape.map_scale);
     tree_offset = vec4(shape.extend, shape.bevel, shape.chamfer, shape.most_steps);
     tree_table = uvec4(shape.table, shape.table_fact_0, shape.table_fact_1, shape.table_fact_2);
@@ -25,7 +25,7 @@ void load_tree_varyings()
     shape.clip_radius = tree_bounds.y;
     shape.clip_low = tree_bounds.z;
     shape.clip_high = tree_bounds.w;
-    shape.axis = tree_axis_span.xy;
+    shape.axis = tree_axis;
 #if READS_MAP
     shape.map_size = tree_map.xy;
     shape.texel = tree_map.z;
@@ -43,11 +43,6 @@ void load_tree_varyings()
     shape.table_fact_1 = tree_table.z;
     shape.table_fact_2 = tree_table.w;
 #endif
-}
-
-vec2 span_of_rays()
-{
-    return SEARCH == SEARCH_QUADRIC ? tree_axis_span.zw : EVERYWHERE;
 }
 #endif
 

@@ -6,13 +6,15 @@
 #include "core/trace.glsl"
 #include "stage/tile_walk.glsl"
 
+const uint MOST_TURNS = 0x7fffffffu; // of loops, which end before
+
 // Returns a depth as copies are compared by. Fragments read no depths of a buffer, so theirs are in clip space.
-float walk_depth_of(float t)
+float walk_depth_of(float t, vec2 terms)
 {
 #ifdef CLIP_DEPTHS
-    float depth = frame.depth_constant + frame.depth_factor / t;
+    float depth = terms.x + terms.y / t;
 #else
-    float depth = depth_of(t);
+    float depth = depth_of(t, terms);
 #endif
     return frame.depth_sense * depth;
 }
@@ -43,6 +45,13 @@ Nearest nothing_nearer_than(float depth)
     return Nearest(false, INNER_NODE, depth, NEVER, NO_HIT);
 }
 
+// Returns a depth behind which no copy is nearer than a hit of a copy with this lag.
+float farthest_before(float t, float lag)
+{
+    float part = lag * (1.0 + t * abs(frame_block.lag_depth.x / frame.depth_factor));
+    return part < 0.5 ? t * (1.0 + 1e-6) / (1.0 - part) : NEVER;
+}
+
 // Traces a copy. Of equal depths, the first copy wins.
 void take_nearer(uint number, vec2 at, inout Nearest nearest)
 {
@@ -54,10 +63,10 @@ void take_nearer(uint number, vec2 at, inout Nearest nearest)
     uint steps = nearest.hit.steps + hit.steps;
     bool exhausted = nearest.hit.exhausted || hit.exhausted;
     float t = rays.base + hit.t;
-    float depth = walk_depth_of(t);
+    float depth = walk_depth_of(t, lagging_terms(i.lag));
     bool first = nearest.found && depth == nearest.depth && number < nearest.index;
     if (hits && (depth < nearest.depth || first)) {
-        nearest = Nearest(true, number, depth, t * (1.0 + 1e-6), hit);
+        nearest = Nearest(true, number, depth, farthest_before(t, i.lag), hit);
     }
     nearest.hit.steps = steps;
     nearest.hit.exhausted = exhausted;
@@ -69,7 +78,7 @@ uint next_copy(uint root, uint leaves, vec3 inverse, float most, inout TileWalk 
 {
     uint met;
     bool more;
-    do {
+    for (uint turn = 0u; turn < MOST_TURNS; ++turn) {
         bool listed = tile.first.x != 0u;
         uint node = listed ? tile.first.x : tile.node;
         bool ends = node >= leaves;
@@ -89,7 +98,10 @@ uint next_copy(uint root, uint leaves, vec3 inverse, float most, inout TileWalk 
         tile.node = listed ? tile.node : next;
         tile.first = listed ? uvec4(tile.first.yzw, 0u) : tile.first;
         more = tile.first.x != 0u || (tile.node != 0u && tile.rest < most);
-    } while (met == INNER_NODE && more);
+        if (met != INNER_NODE || !more) {
+            break;
+        }
+    }
     return met;
 }
 
@@ -109,14 +121,17 @@ void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
     }
 #endif
     uint leaves = node_at(root).index;
-    // Loops end at their end: software drivers execute a body once more after the last invocation has left at its
-    // begin.
+    // Loops end at their end: lavapipe executes a body once more after the last invocation has left at its begin. They
+    // have a test there as well, for without one SwiftShader loses invocations in loops that not all of them enter.
     uint met = next_copy(root, leaves, inverse, nearest.most, tile);
     if (met != INNER_NODE) {
-        do {
+        for (uint turn = 0u; turn < MOST_TURNS; ++turn) {
             take_nearer(met, at, nearest);
             met = next_copy(root, leaves, inverse, nearest.most, tile);
-        } while (met != INNER_NODE);
+            if (met == INNER_NODE) {
+                break;
+            }
+        }
     }
 }
 

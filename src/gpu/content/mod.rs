@@ -15,7 +15,7 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
-use crate::plan::path::LEAST_SUBGROUP;
+use crate::plan::path::MANY_OBJECTS;
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
@@ -77,7 +77,6 @@ impl Content {
             notes: Vec::new(),
             settings: SearchSettings {
                 planning: match settings.planning {
-                    _ if device.chosen.subgroup_size < LEAST_SUBGROUP => Planning::Host,
                     Planning::Auto if tiles_pay(device, &output) => Planning::Host,
                     Planning::Auto => Planning::Device,
                     chosen => chosen,
@@ -159,7 +158,6 @@ impl Content {
             tolerance: self.settings.tolerance,
             casts: self.casts(),
             parallel: self.is_parallel(),
-            most_proxies: with.most_proxies(),
             walks: with.walks,
         };
         let known = self.plan.as_ref().filter(|known| {
@@ -168,11 +166,6 @@ impl Content {
         let objects = rules.planned(view, &snapshot)?;
         let order = known.map(|known| known.precedence.clone());
         let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
-        // What lags depends on the view.
-        let chosen = Conditions {
-            walks: with.walks && precedence.is_empty(),
-            ..with
-        };
         let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
         let is_same = |known: &&Arc<ViewPlan>| {
             // Boxes are those of the levels of surfaces.
@@ -184,11 +177,11 @@ impl Content {
         self.make_surfaces(objects.iter().flat_map(|object| &object.surfaces));
         let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
         in_parallel(
-            missing_hulls(view, &inputs, &chosen),
+            missing_hulls(view, &inputs, &with),
             OffsetSurface::make_hull,
         );
-        let walks = known.unwrap_or_else(|| Arc::new(Walks::new(&inputs, &chosen, shadowed)));
-        let frame = plan(view, &inputs, &chosen, self.open.as_deref(), &walks);
+        let walks = known.unwrap_or_else(|| Arc::new(Walks::new(&inputs, &with, shadowed)));
+        let frame = plan(view, &inputs, &with, self.open.as_deref(), &walks);
         Ok(ViewPlan {
             view: *view,
             snapshot,
@@ -204,7 +197,8 @@ impl Content {
     /// The inputs of a plan of a snapshot, other than view and objects.
     pub fn conditions(&self, snapshot: &Snapshot) -> Conditions {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
-        let plans_on_device = self.settings.planning == Planning::Device && !self.is_parallel();
+        let walks = !self.is_compute() || self.settings.planning == Planning::Device;
+        let plans_on_device = walks && !self.is_parallel();
         Conditions {
             compute: self.is_compute(),
             passes_cells: limits.max_fragment_input_components
@@ -225,6 +219,7 @@ impl Content {
                 false => Lights::of(self.lighting.lights.len()),
             },
             casts: self.casts(),
+            many_objects: snapshot.objects.len() > MANY_OBJECTS,
             single_copy: match snapshot.objects.as_slice() {
                 [object] => object.drawn().placements().len() == 1,
                 _ => false,
@@ -257,8 +252,8 @@ fn in_parallel(
 }
 
 /// True if a crowd takes less time by tiles of the host than by walks, `prepare` among it: in the
-/// compute stage of software drivers. Walks take 0.8 to 1.4 of the time of tiles there on lavapipe 22
-/// and 25, and in fragments 0.8 to 1.3.
+/// compute stage of software drivers. Walks take 0.8 to 1.5 of the time of tiles there on lavapipe 22
+/// and 25, and 1.6 to 2.3 on SwiftShader.
 fn tiles_pay(device: &Shared, output: &Output) -> bool {
     device.chosen.report.kind == "cpu" && matches!(output, Output::Compute(_))
 }

@@ -4,6 +4,7 @@ use super::entry::PreparedObject;
 use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::plan::levels::{self, COPY_LEVELS, CopyLevels, coarsest, pixels_per_unit};
+use crate::plan::path::MOST_PROXIES;
 use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
@@ -86,8 +87,6 @@ pub(super) struct LevelRules {
     pub casts: bool,
     /// True if rays are parallel.
     pub parallel: bool,
-    /// Most copies of an object that share one level.
-    pub most_proxies: usize,
     /// True if the device finds the level of each copy that it walks to: then no view rules a level
     /// out.
     pub walks: bool,
@@ -151,7 +150,7 @@ impl LevelRules {
     /// moving camera needs no other pipelines.
     fn levels_copies(self, object: &PreparedObject) -> bool {
         let object = object.drawn();
-        let many = object.instances.len() > self.most_proxies && object.repeat == [1; 3];
+        let many = object.instances.len() > MOST_PROXIES && object.repeat == [1; 3];
         many && !self.casts && !self.parallel
     }
 }

@@ -10,7 +10,7 @@ use super::blocks::{
 use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
-use crate::gpu::content::view_plan::ViewPlan;
+use crate::gpu::content::view_plan::{PlannedObject, ViewPlan};
 use crate::plan::{DrawPath, View};
 use crate::shader::{Drawn, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock};
 use crate::solid::offset_surface::{OffsetSurface, Part};
@@ -252,15 +252,15 @@ impl Renderer {
         let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
         let bytes = records * size_of::<InstanceBlock>() as u64;
         let are_placed = to.write_walks(&plan.walks, bytes)?;
-        let walks = |path: &DrawPath| *path == DrawPath::Walk;
-        let places = plan.objects.iter().zip(&plan.frame.paths);
-        let places = places
-            .filter(|(planned, path)| walks(path) && planned.object.drawn().placements().len() > 1);
-        to.place(if places.count() > 0 {
-            records as u32
-        } else {
-            0
-        })?;
+        // A single copy costs the host less than the device would need in each pixel. The host finds
+        // what lags.
+        let is_placed = |(planned, path): (&PlannedObject, &DrawPath)| {
+            let many = planned.object.drawn().placements().len() > 1;
+            *path == DrawPath::Walk && many && plan.precedence.is_empty()
+        };
+        let mut places = plan.objects.iter().zip(&plan.frame.paths);
+        let places = places.any(is_placed);
+        to.place(if places { records as u32 } else { 0 })?;
         let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
         to.write_plan(&plan.frame)?;
@@ -272,13 +272,11 @@ impl Renderer {
             let placements = drawn.placements();
             let at = number as usize * OBJECT_STRIDE as usize;
             to.write(SlotBuffer::Objects, at, &object_block(planned, *outside))?;
-            let walks = *path == DrawPath::Walk;
-            if walks {
+            if *path == DrawPath::Walk {
                 let at = at + size_of::<ObjectBlock>();
                 to.write(SlotBuffer::Objects, at, &level_tables(planned))?;
             }
-            // A single copy costs the host less than the device would need in each pixel.
-            let placed = walks && placements.len() > 1;
+            let placed = is_placed((planned, path));
             if placed && are_placed && !motion {
                 continue;
             }

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::vk::usage::Usage;
 use crate::plan::{Call, IndexedDraw, Step};
 use crate::shader::generated::{GROUP_PIXELS, MOST_GROUPS};
-use crate::shader::{BinTile, Kind, Pushed};
+use crate::shader::{BinTile, Pushed};
 use ash::vk;
 use std::ops::Range;
 use std::time::Instant;
@@ -146,23 +146,13 @@ impl Renderer {
     ) {
         let raw = &self.device.raw;
         let bins = slot.buffer(SlotBuffer::Bins).raw;
-        let corners = |per_record: u32, range: &Range<u32>| {
-            let [count, first] = [range.end - range.start, range.start].map(|n| per_record * n);
-            // SAFETY: as the caller promised.
-            unsafe { raw.cmd_draw(cmd, count, 1, first, 0) };
-        };
         // SAFETY: as the caller promised; draws and heads are within their buffers.
         unsafe {
             match &step.call {
                 Call::Draws(range) => self.draw(cmd, slot, bound, range.clone()),
-                Call::Tiles(range) => {
+                Call::Walk(points, root) => {
                     let large_points = self.device.chosen.constants().large_points;
-                    let points = step.kind == Kind::Quads && large_points;
-                    corners(if points { 1 } else { 6 }, range);
-                }
-                Call::Walk(range, root) => {
-                    let large_points = self.device.chosen.constants().large_points;
-                    let corners = if large_points { range.end } else { 6 };
+                    let corners = if large_points { *points } else { 6 };
                     raw.cmd_draw(cmd, corners, 1, 0, *root);
                 }
                 Call::Indirect(head, pushed) => {

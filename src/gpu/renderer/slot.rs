@@ -282,9 +282,9 @@ impl FrameSlot {
         for (step, _) in steps.filter(|(_, bound)| bound.pipeline.is_some()) {
             match &step.call {
                 Call::Draws(range) => all.draws += range.end - range.start,
-                Call::Tiles(range) | Call::Walk(range, _) => {
+                Call::Walk(points, _) => {
                     all.draws += 1;
-                    all.tiles += range.end - range.start;
+                    all.tiles += points;
                 }
                 Call::Groups(groups, _) => {
                     all.dispatches += 1;

@@ -65,8 +65,8 @@ pub(crate) const SETS: [&[Binding]; 3] = [
         }, // shape maps that shadows read
     ],
     &[
-        one(Kind::STORAGE_BUFFER, PIXEL), // words of pixels
-        one(Kind::STORAGE_BUFFER, EVERY), // tiles
+        one(Kind::STORAGE_BUFFER, PIXEL),   // words of pixels
+        one(Kind::STORAGE_BUFFER, COMPUTE), // tiles
         PLANE,
         PLANE,
         PLANE,

@@ -16,16 +16,14 @@ pub(crate) struct LayeredTiles {
 /// pixels, from the buffer's start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct LayerTiles {
-    /// Fragments: quads of one copy each.
-    pub quads: Range<u32>,
-    /// Compute: tiles of one copy each, with lists of patches. In all layers, no two tiles that
+    /// Tiles of one copy each, with lists of patches. In all layers, no two tiles that
     /// have a single copy share pixels. The tiles are drawn before tiles of several copies.
     pub listed: Range<u32>,
-    /// Compute: tiles of one copy each, without lists of patches.
+    /// Tiles of one copy each, without lists of patches.
     pub single: Range<u32>,
     /// Tiles with queues of copies.
     pub queued: Range<u32>,
-    /// Compute: pixels of other such tiles.
+    /// Pixels of other such tiles.
     pub gathered: Range<u32>,
 }
 
@@ -41,7 +39,7 @@ impl LayerTiles {
 pub(super) fn join(bands: &[Vec<BandTiles>], layers: usize) -> LayeredTiles {
     let all = || (0..layers).flat_map(|n| bands.iter().map(move |band| &band[n]));
     let bytes = |band: &BandTiles| {
-        let of_one = [&band.quads, &band.listed, &band.single].map(|of| size_of_val(&of[..]));
+        let of_one = [&band.listed, &band.single].map(|of| size_of_val(&of[..]));
         let queues = [&band.queued, &band.gathered].map(|of| size_of_val(&of[..]));
         let others = [size_of_val(&band.blocks[..]), size_of_val(&band.pixels[..])];
         of_one
@@ -74,7 +72,7 @@ pub(super) fn join(bands: &[Vec<BandTiles>], layers: usize) -> LayeredTiles {
             of_layer().for_each(|band| words.extend_from_slice(bytemuck::cast_slice(of(band))));
             first..number(&words)
         };
-        (layer.quads, layer.listed) = (put(|of| &of.quads), put(|of| &of.listed));
+        layer.listed = put(|of| &of.listed);
         layer.single = put(|of| &of.single);
         let begins = &mut begins[n * bands.len()..][..bands.len()];
         let first = number(&words);

@@ -29,7 +29,7 @@ mod tile_writer;
 pub(crate) use bounds::{Cylinder, MOST_PIXELS, Projector};
 pub(crate) use layers::LayerTiles;
 pub use open_pixels::OpenPixels;
-pub(crate) use tile_writer::{LEAST_QUEUE, TILE_PIXELS};
+pub(crate) use tile_writer::TILE_PIXELS;
 
 use super::view::View;
 use crate::scene::{Cluster, Object};
@@ -83,7 +83,6 @@ pub(crate) struct Visible<'a> {
     wide: u32,
     /// Number of tiles across and down.
     size: [u32; 2],
-    picture: [u32; 4],
 }
 
 impl<'a> Visible<'a> {
@@ -165,7 +164,6 @@ impl<'a> Visible<'a> {
             strips: (0..size[0]).step_by(wide as usize).map(strip).collect(),
             wide,
             size,
-            picture: projector.picture(),
         }
     }
 
@@ -200,28 +198,25 @@ impl<'a> Visible<'a> {
         self.batches.iter().map(of).collect()
     }
 
-    /// Distributes the visible copies to tiles, of work groups (`compute`) or fragments.
-    /// `layer_of`: the layer of each batch. `queues`: for each layer, the least copies of a tile
-    /// whose queue fragments search.
-    /// `open`: the pixels that are drawn; all if none.
+    /// Distributes the visible copies to tiles. `layer_of`: the layer of each batch. `open`: the
+    /// pixels that are drawn; all if none.
     pub fn write(
         &self,
-        (compute, open): (bool, Option<&OpenPixels>),
+        open: Option<&OpenPixels>,
         layer_of: &[u32],
-        queues: &[usize],
+        layers: usize,
     ) -> LayeredTiles {
-        let lists = |b| compute && self.lists_patches(b);
-        let lists: Vec<bool> = (0..self.batches.len()).map(lists).collect();
+        let lists: Vec<bool> = (0..self.batches.len())
+            .map(|b| self.lists_patches(b))
+            .collect();
         // Open pixels of a single copy, too, share work groups with those of other tiles.
         let single = |batch: &Batch| open.is_none() && batch.object.placements().len() == 1;
         let single: Vec<bool> = self.batches.iter().map(single).collect();
         let writer = TileWriter {
-            compute,
+            layers,
             layer_of,
             lists: &lists,
             single: &single,
-            queues,
-            picture: self.picture,
         };
         let [across, down] = self.size;
         let of_band = |top: u32| {
@@ -245,6 +240,6 @@ impl<'a> Visible<'a> {
         };
         let bands: Vec<u32> = (0..down).step_by(BLOCK as usize).collect();
         let bands: Vec<_> = bands.into_par_iter().map(of_band).collect();
-        join(&bands, queues.len())
+        join(&bands, layers)
     }
 }

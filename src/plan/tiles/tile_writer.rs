@@ -1,8 +1,7 @@
 //! Distribution of copies to tiles: those of one copy, queues, and pixels gathered from several tiles.
 
 use super::bounds::SIDE;
-use super::cover::{block, within};
-use crate::shader::generated::{QUAD_BITS, QUEUE_BLOCK, TILE_BITS, TILE_HALVES};
+use crate::shader::generated::{QUAD_BITS, QUEUE_BLOCK, TILE_BITS};
 use crate::shader::{CopyTile, GatheredPixel, QueueBlock, QueueTile, QueuedCopy};
 
 /// A copy in a tile.
@@ -19,14 +18,12 @@ pub(super) struct TileCopy {
 /// The tiles of one layer in one band. Blocks and gathered tiles count from the band's first.
 #[derive(Default)]
 pub(super) struct BandTiles {
-    /// Fragments: squares of one copy each.
-    pub quads: Vec<CopyTile>,
-    /// Compute: tiles of one copy each, with lists of patches here and without in `single`. No tile
+    /// Tiles of one copy each, with lists of patches here and without in `single`. No tile
     /// has two such copies.
     pub listed: Vec<CopyTile>,
     pub single: Vec<CopyTile>,
     pub queued: Vec<QueueTile>,
-    /// Compute: tiles of which only these pixels are searched.
+    /// Tiles of which only these pixels are searched.
     pub gathered: Vec<QueueTile>,
     pub pixels: Vec<GatheredPixel>,
     pub blocks: Vec<QueueBlock>,
@@ -34,29 +31,19 @@ pub(super) struct BandTiles {
 
 /// Pixels of a tile, and invocations of a work group.
 pub(crate) const TILE_PIXELS: u32 = SIDE * SIDE;
-/// Fragments: least copies of a tile for which it has a queue, without and with shadows; those of
-/// other tiles are drawn as quads. Without shadows queues from 3 copies on take 1.13 of the time of
-/// sparse fields on lavapipe 22; from 6 on, 10,000 copies take 0.86 and a million 0.57 of the time
-/// of quads alone. With shadows a queue spares the shading of what is hidden: 11 solids take 0.61 of
-/// the time with queues from 2 copies on, and 0.66 from 1 on.
-pub(crate) const LEAST_QUEUE: [usize; 2] = [6, 2];
 /// Least number of a tile's pixels for which a copy gets a tile of its own.
 const SINGLE_PIXELS: u32 = 24;
 
 /// Distributes the copies of a band.
 pub(super) struct TileWriter<'a> {
-    /// True for work groups, false for fragments.
-    pub compute: bool,
+    /// Number of layers.
+    pub layers: usize,
     /// The layer of each batch.
     pub layer_of: &'a [u32],
     /// True if patches may be listed for a batch's tiles.
     pub lists: &'a [bool],
     /// True if a batch has one copy.
     pub single: &'a [bool],
-    /// Fragments: for each layer, the least copies of a tile that has a queue.
-    pub queues: &'a [usize],
-    /// Pixels: left, top, right, bottom.
-    pub picture: [u32; 4],
 }
 
 impl TileWriter<'_> {
@@ -67,14 +54,12 @@ impl TileWriter<'_> {
         tiles: impl Iterator<Item = ([u32; 2], Copies)>,
     ) -> Vec<BandTiles> {
         let mut layers: Vec<BandTiles> = Vec::new();
-        layers.resize_with(self.queues.len(), BandTiles::default);
+        layers.resize_with(self.layers, BandTiles::default);
         let mut left = Vec::new();
         for (place, copies) in tiles {
             left.clear();
             left.extend(copies);
-            if self.compute
-                && let Some(n) = self.single_of(&left)
-            {
+            if let Some(n) = self.single_of(&left) {
                 let copy = left.remove(n);
                 let layer = &mut layers[self.layer_of[copy.batch as usize] as usize];
                 layer.add_single(&copy, place, self.lists[copy.batch as usize]);
@@ -83,14 +68,7 @@ impl TileWriter<'_> {
                 let number = self.layer_of[first.batch as usize];
                 let is_of = |copy: &TileCopy| self.layer_of[copy.batch as usize] == number;
                 let copies = left.iter().filter(|copy| is_of(copy));
-                let layer = &mut layers[number as usize];
-                let least = self.queues[number as usize];
-                if !self.compute && copies.clone().take(least).count() < least {
-                    let inside = within(place, self.picture);
-                    copies.for_each(|copy| layer.add_quads(copy, place, inside));
-                } else {
-                    layer.add_queue(copies, place, self.compute);
-                }
+                layers[number as usize].add_queue(copies, place);
                 left.retain(|copy| !is_of(copy));
             }
         }
@@ -112,13 +90,13 @@ impl TileWriter<'_> {
     }
 }
 
-/// A square of pixels of a copy. `corner` and `side`: pixels.
-fn copy_tile(copy: &TileCopy, [x, y]: [u32; 2], side: u32) -> CopyTile {
+/// A tile of a copy. `place`: in tiles.
+fn copy_tile(copy: &TileCopy, place: [u32; 2]) -> CopyTile {
+    let [x, y] = place.map(|at| at * SIDE);
     CopyTile {
-        square: x | y << QUAD_BITS | side.ilog2() << (2 * QUAD_BITS),
+        square: x | y << QUAD_BITS,
         instance: copy.copy,
-        near: copy.near,
-        unused: 0,
+        unused: [0; 2],
     }
 }
 
@@ -130,17 +108,12 @@ impl BandTiles {
         } else {
             &mut self.single
         };
-        tiles.push(copy_tile(copy, place.map(|at| at * SIDE), SIDE));
+        tiles.push(copy_tile(copy, place));
     }
 
-    /// Adds a tile with a queue. If `gathers`, and some pixels of the tile show no copy, its other
-    /// pixels share work groups with those of other tiles.
-    fn add_queue<'a>(
-        &mut self,
-        copies: impl Iterator<Item = &'a TileCopy>,
-        [x, y]: [u32; 2],
-        gathers: bool,
-    ) {
+    /// Adds a tile with a queue. If some pixels of the tile show no copy, its other pixels share work
+    /// groups with those of other tiles.
+    fn add_queue<'a>(&mut self, copies: impl Iterator<Item = &'a TileCopy>, [x, y]: [u32; 2]) {
         let mut tile = QueueTile {
             first: self.blocks.len() as u32,
             ..QueueTile::default()
@@ -150,9 +123,6 @@ impl BandTiles {
             let slot = tile.count % QUEUE_BLOCK;
             if slot == 0 {
                 self.blocks.push(QueueBlock::default());
-            }
-            if tile.count == 0 {
-                tile.near = copy.near;
             }
             tile.count += 1;
             pixels |= copy.pixels;
@@ -167,8 +137,8 @@ impl BandTiles {
                 });
             }
         }
-        tile.place = x | y << TILE_BITS | halves_of(pixels) << TILE_HALVES;
-        if !gathers || pixels == u64::MAX {
+        tile.place = x | y << TILE_BITS;
+        if pixels == u64::MAX {
             self.queued.push(tile);
             return;
         }
@@ -182,37 +152,6 @@ impl BandTiles {
             });
         });
     }
-
-    /// Adds the quads of a copy in a tile. `inside`: the tile's pixels that are in the picture.
-    fn add_quads(&mut self, copy: &TileCopy, [x, y]: [u32; 2], inside: u64) {
-        let add = &mut |[left, top, side]: [u32; 3]| {
-            let corner = [x * SIDE + left, y * SIDE + top];
-            self.quads.push(copy_tile(copy, corner, side));
-        };
-        cut([0, 0, SIDE], copy.pixels & inside, inside, add);
-    }
-}
-
-/// Visits quads (x, y, side) within this one that hold these pixels and no pixel outside of the
-/// picture. Drivers search blocks of 4 x 4 pixels as one. Smaller quads are therefore used only at
-/// the picture's edges, and a whole tile only where no block would be empty.
-fn cut([x, y, side]: [u32; 3], pixels: u64, inside: u64, visit: &mut impl FnMut([u32; 3])) {
-    let bits = |[x, y, side]: [u32; 3]| block([x, y, x + side - 1, y + side - 1]);
-    let whole = bits([x, y, side]);
-    if pixels & whole == 0 {
-        return;
-    }
-    let half = side / 2;
-    let quarters =
-        [[x, y], [x + half, y], [x, y + half], [x + half, y + half]].map(|[x, y]| [x, y, half]);
-    let full = side < SIDE || quarters.iter().all(|q| pixels & bits(*q) != 0);
-    if full && whole & !inside == 0 {
-        visit([x, y, side]);
-    } else {
-        for quarter in quarters {
-            cut(quarter, pixels, inside, visit);
-        }
-    }
 }
 
 /// Visits the bits that are set.
@@ -221,17 +160,6 @@ fn each_bit(mut bits: u64, mut visit: impl FnMut(u32)) {
         visit(bits.trailing_zeros());
         bits &= bits - 1;
     }
-}
-
-/// The halves of a tile in which pixels are, one bit each: left, right, top, bottom.
-fn halves_of(pixels: u64) -> u32 {
-    const LEFT: u64 = 0x0f0f_0f0f_0f0f_0f0f;
-    let [left, top] = [LEFT, 0xffff_ffff];
-    let halves = [left, !left, top, !top];
-    (0..)
-        .zip(halves)
-        .map(|(k, half)| u32::from(pixels & half != 0) << k)
-        .sum()
 }
 
 #[cfg(test)]

@@ -119,8 +119,7 @@ impl Pipelines {
     }
 
     fn assembly(&self, kind: Kind) -> vk::PipelineInputAssemblyStateCreateInfo<'static> {
-        let topology = match matches!(kind, Kind::Quads | Kind::Walk) && self.constants.large_points
-        {
+        let topology = match kind == Kind::Walk && self.constants.large_points {
             true => vk::PrimitiveTopology::POINT_LIST,
             false => vk::PrimitiveTopology::TRIANGLE_LIST,
         };
@@ -207,8 +206,8 @@ impl Pipelines {
 fn rasterization(kind: Kind) -> vk::PipelineRasterizationStateCreateInfo<'static> {
     vk::PipelineRasterizationStateCreateInfo::default()
         .cull_mode(match kind {
-            // Quads have no back.
-            Kind::Quads | Kind::Tiles | Kind::Walk => vk::CullModeFlags::NONE,
+            // Points have no back.
+            Kind::Walk => vk::CullModeFlags::NONE,
             _ => vk::CullModeFlags::BACK,
         })
         .front_face(vk::FrontFace::COUNTER_CLOCKWISE)

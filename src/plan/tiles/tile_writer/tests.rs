@@ -3,7 +3,6 @@ use std::collections::BTreeMap;
 
 const ACROSS: u32 = 5;
 const TILES: usize = 3 * ACROSS as usize;
-const PICTURE: [u32; 4] = [0, 0, 8 * ACROSS - 1, 23];
 
 /// Positions of tiles, and their copies, nearest first.
 type Tiles = Vec<([u32; 2], Vec<TileCopy>)>;
@@ -79,12 +78,10 @@ fn list(blocks: &[QueueBlock], tile: &QueueTile, bit: u32) -> Vec<u32> {
 
 /// Two batches in one layer, with queues.
 const WRITER: TileWriter = TileWriter {
-    compute: true,
+    layers: 1,
     layer_of: &[0, 0],
     lists: &[false; 2],
     single: &[false; 2],
-    queues: &[1],
-    picture: PICTURE,
 };
 
 fn written(tiles: &Tiles, writer: &TileWriter) -> Vec<BandTiles> {
@@ -141,7 +138,7 @@ fn a_large_copy_of_each_tile_has_a_tile_of_its_own() {
         let Some(nearest) = here.iter().find(is_large) else {
             continue;
         };
-        let wanted = copy_tile(nearest, place.map(|at| at * SIDE), SIDE);
+        let wanted = copy_tile(nearest, *place);
         assert_eq!(singles.next(), Some(&wanted));
         for pixel in pixels_of(*place, nearest.pixels) {
             let list = found.entry(pixel).or_default();
@@ -155,50 +152,6 @@ fn a_large_copy_of_each_tile_has_a_tile_of_its_own() {
     assert!(shown.iter().all(|(pixel, wanted)| found[pixel] == *wanted));
 }
 
-/// Quads of tiles with few copies, and queues of the others, hold what pixels show. Quads hold no
-/// pixel outside of the picture.
-#[test]
-fn fragments_have_quads_and_queues() {
-    // The picture ends within tiles on all sides.
-    let picture = [3, 2, 8 * ACROSS - 2, 20];
-    let [left, top, right, bottom] = picture;
-    let inside = |x: u32, y: u32| (left..=right).contains(&x) && (top..=bottom).contains(&y);
-    for (queues, count) in [(6, 40), (2, 40), (6, 90), (usize::MAX, 90)] {
-        let mut tiles = tiles(count);
-        for (place, here) in &mut tiles {
-            let inside = within(*place, picture);
-            here.iter_mut().for_each(|one| one.pixels &= inside);
-        }
-        let writer = TileWriter {
-            compute: false,
-            lists: &[true; 2],
-            queues: &[queues],
-            picture,
-            ..WRITER
-        };
-        let lists = &written(&tiles, &writer)[0];
-        assert!(lists.listed.is_empty() && lists.single.is_empty());
-        assert!(!lists.quads.is_empty() || count == 90);
-        assert_eq!(lists.queued.is_empty(), queues == usize::MAX);
-        assert!(lists.gathered.is_empty() && lists.pixels.is_empty());
-        let mut found = visited(lists);
-        for quad in &lists.quads {
-            let (square, copy) = (quad.square, quad.instance);
-            assert_eq!(quad.near, near(copy));
-            let (mask, side) = ((1 << QUAD_BITS) - 1, 1 << (square >> (2 * QUAD_BITS)));
-            let [x, y] = [square & mask, square >> QUAD_BITS & mask];
-            for (x, y) in (y..y + side).flat_map(|y| (x..x + side).map(move |x| (x, y))) {
-                let list = found.entry((x, y)).or_default();
-                assert!(inside(x, y) && !list.contains(&copy), "{x} {y}");
-                list.push(copy);
-            }
-        }
-        for ((x, y), wanted) in shown(&tiles) {
-            assert!(inside(x, y) && wanted.iter().all(|copy| found[&(x, y)].contains(copy)));
-        }
-    }
-}
-
 /// Two layers have copies in one tile. A layer lists its own copies in order, and one copy of
 /// the two layers has a tile of its own.
 #[test]
@@ -207,7 +160,7 @@ fn layers_share_tiles() {
     let writer = TileWriter {
         layer_of: &[1, 0],
         lists: &[true, false],
-        queues: &[1; 2],
+        layers: 2,
         ..WRITER
     };
     let lists = written(&tiles, &writer);
