@@ -33,19 +33,18 @@ impl DrawStage {
     }
 }
 
-/// Where the copies that a pixel may show are found, for objects with more than 64 copies.
+/// Where the compute stage finds the copies that a pixel may show. The fragment stage needs no CPU for
+/// a view: it draws proxies or walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Planning {
-    /// On the device, but for software drivers on the host where that is faster: in the compute stage,
-    /// and with subgroups of fewer than 8.
+    /// On the device, but for software drivers on the host, where that is faster.
     #[default]
     Auto,
     /// The CPU finds the copies of each tile of the screen, for every view.
     Host,
     /// Rays walk a hierarchy of the copies. It depends on no view, so the CPU does nothing for a new
-    /// view that grows with the number of copies. Objects that another search than patches draws,
-    /// replicas, parallel views, and up to 256 copies whose faces coincide are planned on the host, and
-    /// everything on devices with subgroups of fewer than 8: SwiftShader leaves out copies of walks.
+    /// view that grows with the number of copies. Objects that another search than patches draws, and
+    /// replicas, are planned on the host.
     Device,
 }
 

@@ -97,8 +97,8 @@ pub struct Drawing {
     /// .exr is written]
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
-    /// Where the copies that a pixel may show are found, for objects with more than 64: by the CPU
-    /// for each view, or on the device, the default but in compute and small subgroups of a CPU
+    /// Where the compute stage finds the copies that a pixel may show: by the CPU for each view, or on
+    /// the device, the default on GPUs
     #[arg(long, value_name = "WHERE", default_value = "auto", value_parser = named(&Planning::NAMES))]
     pub planning: Planning,
     #[command(flatten)]

@@ -132,7 +132,7 @@ impl Candidate {
         [
             ("GPU timestamps", timestamps),
             flag("anisotropic filtering", self.anisotropy().is_some()),
-            flag("quads of tiles as points", self.large_points()),
+            flag("tiles of walks as points", self.large_points()),
             ("largest map", format!("{side} texels a side")),
             (
                 "largest picture",
