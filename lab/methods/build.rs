@@ -41,9 +41,11 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
     let entries = [
         "cells.frag",
         "tree.frag",
+        "walk.frag",
         "tile_patches.comp",
         "tile_tree.comp",
         "tile_copies.comp",
+        "walk.comp",
     ];
     let mut all = vec![module("proxy_cells.vert", Vec::new())];
     for file in entries {

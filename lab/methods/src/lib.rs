@@ -396,11 +396,7 @@ impl From<&MethodSettings> for Settings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            // The floor has no search, and walks have no floor.
-            planning: match settings.method {
-                Method::Floor => Planning::Host,
-                _ => settings.planning,
-            },
+            planning: settings.planning,
             antialias: settings.edges == Edges::Silhouettes,
             ..Self::default()
         }
