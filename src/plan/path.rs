@@ -55,6 +55,8 @@ pub(crate) struct PlanObject<'a> {
     pub technique: Technique,
     /// Identifies a set of textures.
     pub textures: usize,
+    /// Number of copies of all objects of this technique and these textures.
+    pub look_copies: usize,
     /// The surfaces that its search walks, from the finest level on.
     pub surfaces: &'a [Arc<OffsetSurface>],
     /// The choice of each copy's level, if copies have levels of their own.
@@ -100,8 +102,8 @@ pub(crate) struct Conditions {
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
-    /// True if there are so many objects that a choice for each takes longer than walks to all.
-    pub many_objects: bool,
+    /// True if all objects together have few techniques and sets of textures.
+    pub few_looks: bool,
     /// True if all objects together, in any view, have one copy: then no pixel is drawn twice.
     pub single_copy: bool,
 }
@@ -112,9 +114,8 @@ pub(crate) struct Conditions {
 /// and 1.3 from the side.
 pub(crate) const MOST_PROXIES: usize = 64;
 
-/// Objects above this number are drawn by walks: the path of each would take the host longer than
-/// the device draws them.
-pub(crate) const MANY_OBJECTS: usize = 64;
+/// Most looks of a scene of which each has a walk over all of the picture.
+pub(crate) const MOST_LOOKS: usize = 16;
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
@@ -154,15 +155,16 @@ impl Conditions {
     /// proxies, but where shadows are cast, in which a walk shades no hidden pixel. Compute draws flat
     /// solids by lists of patches.
     pub fn walks_to(&self, of: &PlanObject) -> bool {
-        let many = of.object.placements().len() > MOST_PROXIES || self.many_objects;
+        let many = of.look_copies > MOST_PROXIES;
         let pays = many
             || match self.compute {
                 true => {
                     self.takes_patches
+                        && self.few_looks
                         && self.least_pixels > 0
                         && !(is_flat(of.object) && self.permits_lists(of))
                 }
-                false => self.casts && !self.single_copy,
+                false => self.casts && self.few_looks && !self.single_copy,
             };
         self.walks && pays && of.surface().is_some() && self.may_walk(&of.technique)
     }

@@ -84,6 +84,7 @@ fn planned(view: &View) -> FramePlan {
                 ..Technique::LISTS
             },
             textures: 0,
+            look_copies: 1,
             surfaces: &surfaces,
             levels: None,
             shape: shape_of(object, [0.5, 0.46, 0.0, 1.0]),

@@ -169,7 +169,8 @@ fn culled_copies_are_not_missed() {
     device().check().unwrap();
 }
 
-/// The picture is that of the same copies as separate objects: in fragments by boxes and walks.
+/// The picture is that of the same copies as separate objects. Fragments walk to both, and the device
+/// places only the copies.
 #[test]
 fn a_crowd_is_as_many_single_objects() {
     let scene = army(40);
@@ -186,7 +187,10 @@ fn a_crowd_is_as_many_single_objects() {
         let settings = by_tree(stage, true);
         let one = draw(&scene, &settings);
         let apart = next_frame(&mut Offscreen::new(device(), &single, &settings).unwrap());
-        assert_same_bits(&one, &apart, &format!("{stage:?}"));
+        match stage {
+            DrawStage::Fragment => assert_near(&one, &apart, "fragment"),
+            DrawStage::Compute => assert_same_bits(&one, &apart, "compute"),
+        }
     }
     device().check().unwrap();
 }

@@ -202,6 +202,34 @@ fn changes_are_seen() {
     device().check().unwrap();
 }
 
+/// Each look has a walk over all of the picture, so many looks have none.
+#[test]
+fn many_looks_do_not_walk() {
+    let (_, mut scene) = seen(&army(1)).nth(1).unwrap();
+    scene.shadow = Shadow::Hard;
+    let first = scene.objects[0].clone();
+    for (count, walk) in [(10, true), (30, false)] {
+        let of_look = |n: u8| {
+            let map = ColorMap::from_texels(1, 1, vec![[n, 0, 0, 255]]).unwrap();
+            first.clone().with(|object| {
+                object.texturing.color_map = Some(Arc::new(map));
+                object.placement.position.x = f64::from(n);
+            })
+        };
+        scene.objects = (0..count).map(of_look).collect();
+        for stage in STAGES {
+            let of = settings(stage, Tolerance::EXACT, Planning::Device);
+            let mut offscreen = Offscreen::new(device(), &scene, &of).unwrap();
+            offscreen.draw().unwrap();
+            let paths = offscreen.renderer().draw_paths();
+            let walks = paths.iter().filter(|path| **path == DrawPath::Walk);
+            let wanted = if walk { paths.len() } else { 0 };
+            assert_eq!(walks.count(), wanted, "{stage:?}: {paths:?}");
+        }
+    }
+    device().check().unwrap();
+}
+
 /// Walks leave to tiles what only tiles draw.
 #[test]
 fn the_host_plans_what_cannot_be_walked() {

@@ -15,7 +15,7 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
-use crate::plan::path::MANY_OBJECTS;
+use crate::plan::path::MOST_LOOKS;
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
@@ -175,7 +175,8 @@ impl Content {
         };
         let known = known.filter(is_same).map(|known| known.walks.clone());
         self.make_surfaces(objects.iter().flat_map(|object| &object.surfaces));
-        let inputs: Vec<_> = objects.iter().map(PlannedObject::input).collect();
+        let copies_of = |of: &PlannedObject| snapshot.looks[&of.object.look()];
+        let inputs: Vec<_> = objects.iter().map(|of| of.input(copies_of(of))).collect();
         in_parallel(
             missing_hulls(view, &inputs, &with),
             OffsetSurface::make_hull,
@@ -219,7 +220,7 @@ impl Content {
                 false => Lights::of(self.lighting.lights.len()),
             },
             casts: self.casts(),
-            many_objects: snapshot.objects.len() > MANY_OBJECTS,
+            few_looks: snapshot.looks.len() <= MOST_LOOKS,
             single_copy: match snapshot.objects.as_slice() {
                 [object] => object.drawn().placements().len() == 1,
                 _ => false,

@@ -16,6 +16,7 @@ use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::shader::{HostLook, ShadowCasters, Technique, is_beveled};
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 /// The search for objects without a surface of their own; it reads only the map.
@@ -26,6 +27,8 @@ pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 pub(in crate::gpu) struct Snapshot {
     /// In the order in which they were added.
     pub objects: Vec<Arc<PreparedObject>>,
+    /// Number of copies of each [`PreparedObject::look`].
+    pub looks: HashMap<(Technique, usize), usize>,
     pub facts: SceneFacts,
     /// Number of instances, with free ones.
     pub instances: u32,
@@ -259,8 +262,13 @@ impl Snapshot {
             };
             prepared.push(object);
         }
+        let mut looks = HashMap::new();
+        for object in &prepared {
+            *looks.entry(object.look()).or_insert(0) += object.drawn().placements().len();
+        }
         Ok(Self {
             objects: prepared,
+            looks,
             facts,
             instances: objects.instances(),
             number_count: objects.number_count(),

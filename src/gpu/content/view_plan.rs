@@ -9,7 +9,7 @@ use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{InstanceBlock, SearchCode};
+use crate::shader::{InstanceBlock, SearchCode, Technique};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use std::ops::Range;
 use std::sync::Arc;
@@ -57,8 +57,8 @@ impl PlannedObject {
         self.levels.as_ref().map_or(0, coarser)
     }
 
-    /// The object in the form that a plan reads.
-    pub fn input(&self) -> PlanObject<'_> {
+    /// The object in the form that a plan reads. `look_copies`: number of copies of its look.
+    pub fn input(&self, look_copies: usize) -> PlanObject<'_> {
         let (prepared, derived) = (&*self.object, &self.object.derived);
         let object = prepared.drawn();
         let bounds = prepared.bounds(&self.surfaces[..self.surfaces.len().min(1)]);
@@ -69,7 +69,8 @@ impl PlannedObject {
             number: prepared.number,
             first_instance: prepared.instances.start,
             technique: derived.technique,
-            textures: Arc::as_ptr(&derived.textures) as usize,
+            textures: prepared.look().1,
+            look_copies,
             surfaces: &self.surfaces,
             levels: self.levels.as_ref(),
             shape: shape_of(object, bounds.map(f64::from)),
@@ -175,6 +176,12 @@ pub(super) fn precedence(objects: &[PlannedObject]) -> Precedence {
 }
 
 impl PreparedObject {
+    /// What objects of one draw have in common: the technique, and the number of a set of textures.
+    pub fn look(&self) -> (Technique, usize) {
+        let textures = Arc::as_ptr(&self.derived.textures) as usize;
+        (self.derived.technique, textures)
+    }
+
     /// The largest number of pixels that one unit of the profile takes in a view. `all` includes
     /// copies outside the picture.
     fn pixels_per_unit(&self, view: &View, all: bool) -> f64 {
