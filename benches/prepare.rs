@@ -1,6 +1,6 @@
 //! The CPU's cost of preparing a frame. 1,000 objects stand still, move, or change their offsets,
-//! under a camera that stands or moves. 10,000 and 100,000 copies of one object move, or some of
-//! them come and go; where rays walk to them, a million. `cargo bench --bench prepare`.
+//! under a camera that stands or moves. Up to a million copies of one object move, or some of them
+//! come and go. `cargo bench --bench prepare`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
 use ash::vk;
@@ -10,7 +10,7 @@ use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, Vie
 use revmap::maps::ColorMap;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement};
-use revmap::settings::{Planes, Planning, SearchSettings};
+use revmap::settings::{Planes, SearchSettings};
 use std::sync::Arc;
 
 const COUNT: usize = 1000;
@@ -40,7 +40,7 @@ fn place(n: usize, frame: usize) -> Placement {
 }
 
 impl Crowd {
-    fn new(planning: Planning) -> Self {
+    fn new() -> Self {
         let device = Device::open(None).unwrap();
         let begun = PassKind::Dynamic {
             color: vec![vk::Format::R8G8B8A8_SRGB],
@@ -48,10 +48,7 @@ impl Crowd {
             stencil: vk::Format::UNDEFINED,
         };
         let output = Output::Pass(PassFormats::new(begun, Planes::Color));
-        let search = SearchSettings {
-            planning,
-            ..SearchSettings::exact()
-        };
+        let search = SearchSettings::exact();
         let mut renderer = Renderer::new(&device, output, &search, 2).unwrap();
         let profiles = [
             &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],
@@ -122,7 +119,7 @@ impl Drop for Crowd {
 }
 
 fn frames(bencher: Bencher, mut change: impl FnMut(&mut Crowd)) {
-    let mut crowd = Crowd::new(Planning::Host);
+    let mut crowd = Crowd::new();
     bencher.bench_local(|| {
         crowd.begin();
         change(&mut crowd);
@@ -153,7 +150,7 @@ fn the_camera_moves(bencher: Bencher) {
 /// One of many objects moves, each with a colour map of its own. Frames take linear time.
 #[divan::bench(args = [500, 2000, 8000])]
 fn one_of_many_looks_moves(bencher: Bencher, count: usize) {
-    let mut crowd = Crowd::new(Planning::Host);
+    let mut crowd = Crowd::new();
     for id in crowd.ids.split_off(1) {
         crowd.renderer.remove(id).unwrap();
     }
@@ -191,8 +188,8 @@ fn field(count: usize, frame: usize) -> Vec<Placement> {
 
 impl Crowd {
     /// Copies of one object.
-    fn of_copies(copies: Vec<Placement>, planning: Planning) -> Self {
-        let mut crowd = Self::new(planning);
+    fn of_copies(copies: Vec<Placement>) -> Self {
+        let mut crowd = Self::new();
         for id in crowd.ids.split_off(1) {
             crowd.renderer.remove(id).unwrap();
         }
@@ -210,8 +207,8 @@ impl Crowd {
 }
 
 /// Frames in which the copies are those that `of` gives, which is not timed.
-fn copies(bencher: Bencher, planning: Planning, of: impl Fn(usize) -> Vec<Placement>) {
-    let crowd = std::cell::RefCell::new(Crowd::of_copies(of(0), planning));
+fn copies(bencher: Bencher, of: impl Fn(usize) -> Vec<Placement>) {
+    let crowd = std::cell::RefCell::new(Crowd::of_copies(of(0)));
     bencher
         .with_inputs(|| {
             let mut crowd = crowd.borrow_mut();
@@ -225,18 +222,9 @@ fn copies(bencher: Bencher, planning: Planning, of: impl Fn(usize) -> Vec<Placem
         });
 }
 
-#[divan::bench(args = [10_000, 100_000])]
+#[divan::bench(args = [64, 10_000, 100_000, 1_000_000])]
 fn the_camera_moves_over_copies(bencher: Bencher, count: usize) {
-    new_views(bencher, Crowd::of_copies(field(count, 0), Planning::Host));
-}
-
-/// The same, on a device that plans.
-#[divan::bench(args = [10_000, 100_000, 1_000_000])]
-fn the_camera_moves_over_walked_copies(bencher: Bencher, count: usize) {
-    new_views(bencher, Crowd::of_copies(field(count, 0), Planning::Device));
-}
-
-fn new_views(bencher: Bencher, mut crowd: Crowd) {
+    let mut crowd = Crowd::of_copies(field(count, 0));
     bencher.bench_local(|| {
         crowd.begin();
         crowd.camera.eye.x += 1e-3;
@@ -244,23 +232,15 @@ fn new_views(bencher: Bencher, mut crowd: Crowd) {
     });
 }
 
-#[divan::bench(args = [10_000, 100_000])]
-fn all_copies_move(bencher: Bencher, count: usize) {
-    copies(bencher, Planning::Host, |frame| field(count, frame));
-}
-
-/// The same, on a device that plans.
 #[divan::bench(args = [10_000, 100_000, 1_000_000], sample_count = 10)]
-fn all_walked_copies_move(bencher: Bencher, count: usize) {
-    copies(bencher, Planning::Device, |frame| field(count, frame));
+fn all_copies_move(bencher: Bencher, count: usize) {
+    copies(bencher, |frame| field(count, frame));
 }
 
 /// A thousand of the copies are gone in every other frame.
 #[divan::bench(args = [10_000, 100_000])]
 fn copies_come_and_go(bencher: Bencher, count: usize) {
-    copies(bencher, Planning::Host, |frame| {
-        field(count - 1000 * (frame % 2), 0)
-    });
+    copies(bencher, |frame| field(count - 1000 * (frame % 2), 0));
 }
 
 #[divan::bench(sample_count = 20)]

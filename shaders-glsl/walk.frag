@@ -24,8 +24,5 @@ void main()
     }
     Instance i = instance_at(nearest.index);
     load(i);
-    vec2 terms = lagging_terms(i.lag);
-    frame.depth_constant = terms.x;
-    frame.depth_factor = terms.y;
-    gl_FragDepth = draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit);
+    gl_FragDepth = draw(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit, lagging_terms(i.lag));
 }

@@ -164,25 +164,18 @@ impl Path {
 /// The variant of each object: its technique, and what its draws promise. A promise may depend on
 /// the other objects of the plan.
 fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
-    let mut looks = HashMap::new();
-    for of in objects {
-        *looks.entry((of.technique, of.textures)).or_insert(0u32) += 1;
-    }
-    let of_look = |of: &PlanObject| {
-        let alone = looks.get(&(of.technique, of.textures)) == Some(&1);
-        Variant {
-            technique: of.technique,
-            speciality: Speciality {
-                lights: with.lights,
-                drawn: match of.object.placements().len() {
-                    _ if !alone => Drawn::Objects,
-                    1 => Drawn::OneCopy,
-                    _ => Drawn::OneObject,
-                },
-                depths: with.compares_depths(),
-                ..Speciality::GENERAL
+    let of_look = |of: &PlanObject| Variant {
+        technique: of.technique,
+        speciality: Speciality {
+            lights: with.lights,
+            drawn: match of.object.placements().len() {
+                copies if copies < of.look_copies => Drawn::Objects,
+                1 => Drawn::OneCopy,
+                _ => Drawn::OneObject,
             },
-        }
+            depths: with.compares_depths(),
+            ..Speciality::GENERAL
+        },
     };
     objects.iter().map(of_look).collect()
 }

@@ -33,7 +33,6 @@ impl FramePlan {
         let visible = Visible::new(view, &projector, &batches);
         let mut layers = Layers::default();
         let mut layer_of = Vec::with_capacity(numbers.len());
-        let kind = Kind::TileTree;
         let copies = visible.copies();
         for (batch, &n) in numbers.iter().enumerate() {
             let of = &objects[n];
@@ -44,7 +43,7 @@ impl FramePlan {
             }
             self.outside[n] = of.is_whole() && visible.is_apart(batch);
             let variant = variants[n].seen_from_outside(self.outside[n]);
-            let layer = layers.of(objects, n as u32, (variant, kind));
+            let layer = layers.of(objects, n as u32, (variant, Kind::TileTree));
             layer_of.push(layer as u32);
         }
         let layers = layers.all;

@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 use super::path::Conditions;
+use super::tiles::TILE_PIXELS;
 use super::walk::Walks;
 use super::{Call, DepthOrder, FramePlan, PlanObject, View, Viewport, plan, shape_of};
 use crate::error::{ErrorKind, Result};
 use crate::profile::Profile;
 use crate::scene::{Object, Placement};
-use crate::shader::generated::{GROUP_PIXELS, QUAD_BITS};
+use crate::shader::generated::{GROUP_PIXELS, NO_PIXEL, QUAD_BITS, TILE_BITS};
 use crate::shader::{Kind, SearchCode, Technique};
 use crate::solid::cache::Solid;
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
@@ -84,7 +85,7 @@ fn planned(view: &View) -> FramePlan {
                 ..Technique::LISTS
             },
             textures: 0,
-            look_copies: 1,
+            look_copies: 101,
             surfaces: &surfaces,
             levels: None,
             shape: shape_of(object, [0.5, 0.46, 0.0, 1.0]),
@@ -113,7 +114,8 @@ fn shown(view: &View) -> [f64; 4] {
     [low.x, low.y, high.x, high.y].map(|end| end.clamp(0.0, most))
 }
 
-fn check(view: &View) {
+/// Checks the plan of a view. Returns the number of its tiles and gathered pixels.
+fn check(view: &View) -> usize {
     let [left, top, right, bottom] = shown(view);
     // A picture of 32,768 pixels a side has 17 million tiles, so few of its rows are planned.
     let view = match bottom > 4096.0 {
@@ -121,22 +123,37 @@ fn check(view: &View) {
         false => *view,
     };
     let plan = planned(&view);
-    let tiles = plan.steps.iter().filter_map(|step| match &step.call {
-        Call::Groups(groups, pushed) if step.kind == Kind::TileTree => {
-            Some(pushed.first..pushed.first + groups)
+    let word = |record: u32, size: u32| plan.tile_words[(record * size) as usize];
+    // Upper left corners of squares, and their sides, pixels.
+    let mut squares = Vec::new();
+    for step in &plan.steps {
+        let Call::Groups(groups, pushed) = step.call else {
+            continue;
+        };
+        // Places count squares of `unit` pixels.
+        let mut add = |count: u32, size: u32, [bits, unit, side]: [u32; 3]| {
+            let words = (pushed.first..pushed.first + count).map(|record| word(record, size));
+            let places = words.filter(|place| *place != NO_PIXEL);
+            let at = |place: u32| [place, place >> bits].map(|at| unit * (at & ((1 << bits) - 1)));
+            squares.extend(places.map(|place| (at(place), side)));
+        };
+        match (step.kind, pushed.gathered) {
+            (Kind::TileTree, _) => add(groups, 4, [QUAD_BITS, 1, GROUP_PIXELS]),
+            (Kind::TileLists, _) => add(pushed.count, 4, [QUAD_BITS, 1, GROUP_PIXELS]),
+            (Kind::TileCopies, 0) => add(groups, 4, [TILE_BITS, GROUP_PIXELS, GROUP_PIXELS]),
+            (Kind::TileCopies, _) => add(TILE_PIXELS * groups, 2, [16, 1, 1]),
+            _ => {}
         }
-        _ => None,
-    });
-    for record in tiles.flatten() {
-        let word = plan.tile_words[4 * record as usize];
-        let at = |shift: u32| f64::from(word >> shift & ((1 << QUAD_BITS) - 1));
-        let ([x, y], side) = ([at(0), at(QUAD_BITS)], f64::from(GROUP_PIXELS));
+    }
+    for (at, side) in &squares {
+        let ([x, y], side) = (at.map(f64::from), f64::from(*side));
         assert!(x + side > left && x < right, "{view:?}");
         assert!(y + side > top && y < bottom, "{view:?}");
     }
     if left == right || top == bottom {
         assert!(plan.tile_words.iter().all(|word| *word == 0), "{view:?}");
     }
+    squares.len()
 }
 
 fn number() -> impl Strategy<Value = f64> {
@@ -210,6 +227,7 @@ fn numbers_that_are_not_finite_are_named() {
 /// A split screen that slides out to each side draws its visible pixels until none is left.
 #[test]
 fn a_viewport_slides_out_to_each_side() {
+    const SHOWS: [f64; 2] = [-20.0, -10.0]; // alone has solids in its visible part
     for parallel in [false, true] {
         for [x, y] in [
             [-64.0, 0.0],
@@ -218,12 +236,15 @@ fn a_viewport_slides_out_to_each_side() {
             [0.0, -48.0],
             [0.0, -1e4],
             [-20.0, -30.0],
+            SHOWS,
             [1e9, 1e9],
         ] {
             for height in [48.0, -48.0] {
                 let below = if height < 0.0 { y - height } else { y };
                 let viewport = port([x, below, 64.0, height]);
-                check(&view_of(viewport, parallel, DepthOrder::Normal).unwrap());
+                let tiles = check(&view_of(viewport, parallel, DepthOrder::Normal).unwrap());
+                let shows = !parallel && [x, y] == SHOWS;
+                assert_eq!(tiles > 0, shows, "{x} {y} {height}");
             }
         }
     }

@@ -62,11 +62,12 @@ vec2 motion_of(PixelRays rays, uint instance, vec2 pixel, Hit hit)
 #endif
 
 #if OUTPUT == OUTPUT_DEPTH
-// Returns the depth value of a hit, moved away from the eye by the bias for the slope of its tangent plane.
-float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
+// Returns the depth value of a hit, moved away from the eye by the bias for the slope of its tangent plane. `terms`: as
+// lagging_terms() returns them.
+float draw(Look look, PixelRays rays, vec2 pixel, Hit hit, vec2 terms)
 {
     float t = rays.base + hit.t;
-    float depth = depth_of(t);
+    float depth = depth_of(t, terms);
     if (SLOPE_BIAS == 0u) {
         return depth;
     }
@@ -79,8 +80,8 @@ float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
     return clamp(depth + frame.depth_sense * bias, 0.0, 1.0);
 }
 #else
-// Shades and writes a hit, and returns its depth value.
-float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
+// Shades and writes a hit, and returns its depth value. `terms`: as lagging_terms() returns them.
+float draw(Look look, PixelRays rays, vec2 pixel, Hit hit, vec2 terms)
 {
 #if OUTPUT == OUTPUT_LIST
     // Before shade(): shadows read other objects in its place.
@@ -100,8 +101,13 @@ float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
     material = vec4(unpackUnorm2x16(appearance.material), 0.0, 1.0);
     identity = uvec4(instances[look.instance].object, look.instance - appearance.first_instance, 0u, 1u);
 #endif
-    return depth_of(rays.base + hit.t);
+    return depth_of(rays.base + hit.t, terms);
 }
 #endif
+
+float draw(Look look, PixelRays rays, vec2 pixel, Hit hit)
+{
+    return draw(look, rays, pixel, hit, depth_terms());
+}
 
 #endif

@@ -1,6 +1,6 @@
 // Tiles: squares of GROUP_PIXELS^2 pixels with the copies that may be visible there. One buffer has three ranges, each of
 // one structure (structures.glsl): first blocks of queues, then tiles, then gathered pixels. Indices count from the
-// buffer's start in units of the structure. The first block is zero: draws that only warm up pipelines read it as tiles.
+// buffer's start in units of the structure. The first block is zero.
 #ifndef TILES_GLSL
 #define TILES_GLSL
 #include "core/structures.glsl"

@@ -59,7 +59,7 @@ fn the_floor_is_the_first_possible_point() {
     is_first_possible_point(&scene_of(shapes::vase(), eye(25.0, 2.6)));
 }
 
-/// A few copies, drawn like single solids, and many, drawn from bins.
+/// A few copies, drawn like single solids, and many, to which fragments walk.
 #[test]
 fn the_floor_of_copies() {
     for across in [2, 12] {
