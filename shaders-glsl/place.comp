@@ -52,6 +52,7 @@ Instance placed(Instance i)
     fine = two_sum(base * eye.dir_middle, -rest, error_1);
     precise vec3 to_plane = near + (fine + (error_0 + (error_1 + base * eye.dir_low)));
     i.table = table_of(i, depth);
+    i.listed = objects[i.object].levels.listed;
     i.position = position;
     i.depth = depth > 0.0 ? base : depth;
     i.origin = rotate(conjugate(i.rotation), to_plane) / i.scale - vec3(objects[i.object].object.shape.axis, 0.0);
@@ -62,7 +63,7 @@ void main()
 {
     load_frame(0u);
     uint number = pushed.first + gl_WorkGroupID.x * GROUP_PIXELS * GROUP_PIXELS + gl_LocalInvocationIndex;
-    if (number < pushed.count) {
+    if (number < pushed.placed) {
         Instance i = written[number];
         if (i.table == PLACED) {
             i = placed(i);

@@ -1,8 +1,11 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Lists the patches that the rays of each single-copy tile may hit. A work group processes 64 tiles. If all of them have
-// the same instance, the invocations first test all patches against a beam around the whole group. Each invocation then
-// tests only the remaining patches against its own tile.
+// Lists the copies of a hierarchy that the rays of each tile may meet, an invocation a tile. Where there is one copy, the
+// patches that the rays may hit are listed. If all such tiles of a work group have the same instance, the invocations
+// first test all patches against a beam around these tiles. Each invocation then tests only the remaining patches
+// against its own tile.
+#define BIN_ACCESS
+#define MAKES_LISTS
 #include "stage/patch_runs.glsl"
 #include "stage/beam.glsl"
 #include "core/meridian.glsl"
@@ -10,38 +13,75 @@
 const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
 const uint TILES = GROUP_PIXELS * GROUP_PIXELS;
 shared uint met[MET_WORDS]; // one bit per patch
-shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles, pixels
-shared uint mixed; // 1 if the group has several instances, else 0
+shared uint low_x, low_y, high_x, high_y; // bounds of the corners of the group's tiles of one copy, pixels
+shared uint low_copy, high_copy; // bounds of their instances
+
+// Returns true if a ray of the tile may enter a copy.
+bool shows_copy(uint number, uvec2 corner)
+{
+    Instance instance = instances[number];
+    load(instance);
+    PixelRays rays = pixel_rays(instance);
+    uvec4 header = listed_table(0u);
+    Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest_of(rays, instance), uintBitsToFloat(header.y));
+    bool meets = false;
+    vec2 unused;
+    for (uint k = 0u; k < header.x && !meets; ++k) {
+        meets = may_meet(beam, k, unused);
+    }
+    return meets;
+}
 
 void main()
 {
     load_frame(pushed.object);
+    load_grid();
     uint self = gl_LocalInvocationIndex;
-    uint group_first = pushed.first + gl_WorkGroupID.x * TILES;
-    bool present = gl_WorkGroupID.x * TILES + self < pushed.count;
-    CopyTile tile = copy_tiles[present ? group_first + self : group_first];
-    uvec2 corner = square_corner(tile.square);
-    Instance instance = instances[ONE_OBJECT == 2u ? pushed.instance : tile.instance];
+    uvec2 corner;
+    bool present = tile_of_block(corner);
+    TileWalk tile = walk_of_tile(pushed.root, corner);
+    if (ONE_OBJECT != 2u && (tile.first.y != 0u || tile.node != 0u)) {
+        uvec4 first = tile.first;
+        tile.first = uvec4(0u);
+        uint count = 0u;
+        for (uint k = 0u; k < MOST_FIRST; ++k) {
+            if (first[k] != 0u && shows_copy(node_at(pushed.root + first[k]).index, corner)) {
+                tile.first[count] = first[k];
+                ++count;
+            }
+        }
+    }
+    bool single = present && tile.first.x != 0u && tile.first.y == 0u && tile.node == 0u;
+    uint number = pushed.instance;
+    if (ONE_OBJECT != 2u && single) {
+        number = node_at(pushed.root + tile.first.x).index;
+    }
+    if (self == 0u) {
+        low_x = low_y = low_copy = 0xffffffffu;
+        high_x = high_y = high_copy = 0u;
+    }
+    barrier();
+    if (single) {
+        atomicMin(low_x, corner.x);
+        atomicMin(low_y, corner.y);
+        atomicMax(high_x, corner.x);
+        atomicMax(high_y, corner.y);
+        if (ONE_OBJECT != 2u) {
+            atomicMin(low_copy, number);
+            atomicMax(high_copy, number);
+        }
+    }
+    barrier();
+    bool some = low_x <= high_x;
+    bool shares = some && (ONE_OBJECT == 2u || low_copy == high_copy);
+    // Invocations without a tile of one copy take part in the test of the group's beam.
+    number = single || !shares || ONE_OBJECT == 2u ? number : low_copy;
+    Instance instance = instances[number];
     load(instance);
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
     uvec4 header = listed_table(0u);
     float unit = uintBitsToFloat(header.y);
-
-    if (self == 0u) {
-        low_x = low_y = 0xffffffffu;
-        high_x = high_y = mixed = 0u;
-    }
-    barrier();
-    atomicMin(low_x, corner.x);
-    atomicMin(low_y, corner.y);
-    atomicMax(high_x, corner.x);
-    atomicMax(high_y, corner.y);
-    if (ONE_OBJECT != 2u && tile.instance != copy_tiles[group_first].instance) {
-        atomicOr(mixed, 1u);
-    }
-    barrier();
-    bool shares = mixed == 0u;
     if (self < MET_WORDS) {
         met[self] = shares ? 0u : 0xffffffffu;
     }
@@ -72,16 +112,14 @@ void main()
         inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
     }
     PatchRuns runs = NO_PATCHES;
-    vec2 all = vec2(3e38, -3e38);
     for (uint w = 0u; w << 5 < header.x; ++w) {
-        uint rest = met[w];
+        uint rest = single ? met[w] : 0u;
         while (rest != 0u) {
             uint k = w << 5 | uint(findLSB(rest));
             rest &= rest - 1u;
             vec2 span;
             bool meets = k < header.x && may_meet(beam, min(k, header.x), span) && span.x <= outer.y;
             cut = cut || meets && span.x < inner.x;
-            all = meets ? vec2(min(all.x, span.x), max(all.y, span.y)) : all;
             take_patch(runs, k, meets);
         }
     }
@@ -99,8 +137,9 @@ void main()
             start = imprecise ? anchor_of(k) : start;
         }
     }
-    bool shows = present && runs.any && outer.x <= outer.y;
-    if (shows && (cut || !append_runs(tile, runs, by_tip, start))) {
-        append(TREE_BIN, BinTile(tile.square, tile.instance, floatBitsToUint(all)));
+    bool shows = single ? runs.any && outer.x <= outer.y : present && !is_empty(tile);
+    if (shows && (!single || cut || !append_runs(corner, number, runs, by_tip, start))) {
+        uint first = pushed.tiles + WALK_BIN * pushed.room;
+        append_walk(pushed.heads + WALK_BIN, first, corner, tile);
     }
 }

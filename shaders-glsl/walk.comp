@@ -1,10 +1,16 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces the pixels of tiles of the picture: the nearest copy of a hierarchy.
+// Traces pixels: the nearest copy of a hierarchy. REPEATED: it may hold replicas.
+#ifndef REPEATED
 #define SINGLE
+#endif
 #include "stage/stores.glsl"
 #include "stage/walk.glsl"
 #include "stage/walk_lists.glsl"
+
+layout(set = 2, binding = 1, std430) readonly buffer OpenPixelBlock {
+    uint open_pixels[]; // x | y << 16, or NO_PIXEL
+};
 
 // Returns a pixel of a tile. Eight invocations that run together have 4 x 2 pixels, of which fewer are at an outline.
 uvec2 pixel_of_tile(uint k)
@@ -18,17 +24,26 @@ void main()
     load_grid();
     uint number = pushed.first + gl_WorkGroupID.x;
     TileWalk tile = FROM_ROOT;
-    if (ONE_OBJECT != 2u && pushed.bin != 0u) {
-        uint at = pushed.tiles + TILE_WALK_VECTORS * gl_WorkGroupID.x;
-        uvec4 rest = tile_walks[at + 1u];
-        number = rest.w;
-        tile = TileWalk(tile_walks[at], rest.x, rest.y, uintBitsToFloat(rest.z), 0.0);
+    uvec2 pixel;
+    if (OPEN_PIXELS != 0u) {
+        uint position = open_pixels[pushed.first + GROUP_PIXELS * GROUP_PIXELS * gl_WorkGroupID.x + gl_LocalInvocationIndex];
+        pixel = uvec2(position & 0xffffu, position >> 16);
+    } else {
+        uint across = tiles_of_rectangle().x;
+        uvec2 corner = square_corner(pushed.corner) + GROUP_PIXELS * uvec2(number % across, number / across);
+        if (pushed.listed != 0u) {
+            uint at = pushed.tiles + TILE_WALK_VECTORS * gl_WorkGroupID.x;
+            uvec4 rest = tile_walks[at + 1u];
+            corner = square_corner(rest.w);
+            if (ONE_OBJECT != 2u) {
+                tile = TileWalk(tile_walks[at], rest.x, rest.y, uintBitsToFloat(rest.z), 0.0);
+            }
+        }
+        pixel = corner + pixel_of_tile(gl_LocalInvocationIndex);
     }
-    uvec2 corner = GROUP_PIXELS * uvec2(number % pushed.count, number / pushed.count);
-    uvec2 pixel = corner + pixel_of_tile(gl_LocalInvocationIndex);
     if (all(lessThan(pixel, frame.size))) {
         Nearest nearest = nothing_nearer_than(drawn_depth(pixel));
-        walk(pushed.heads, vec2(pixel), tile, nearest);
+        walk(pushed.root, vec2(pixel), tile, nearest);
         count_steps(pixel, nearest.hit);
         if (nearest.found) {
             Instance i = instance_at(nearest.index);

@@ -43,19 +43,18 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
         "tree.frag",
         "walk.frag",
         "tile_patches.comp",
-        "tile_tree.comp",
-        "tile_copies.comp",
         "walk.comp",
     ];
     let mut all = vec![module("proxy_cells.vert", Vec::new())];
     for file in entries {
-        let search = ("SEARCH", "SEARCH_QUADRIC");
+        let search = [("SEARCH", "SEARCH_QUADRIC"), ("REPEATED", "1")];
         let color = match file.ends_with(".frag") {
-            true => vec![search, ("OUTPUT", "OUTPUT_LIST")],
-            false => vec![search],
+            true => [search.as_slice(), &[("OUTPUT", "OUTPUT_LIST")]].concat(),
+            false => search.to_vec(),
         };
         all.push(module(file, color));
-        all.push(module(file, vec![search, ("OUTPUT", "OUTPUT_PLANES")]));
+        let planes = [("OUTPUT", "OUTPUT_PLANES")];
+        all.push(module(file, [search.as_slice(), &planes].concat()));
     }
     let modules = Modules {
         entries: &["shaders/floor", "../../shaders-glsl"],

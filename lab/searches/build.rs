@@ -28,7 +28,7 @@ const LIBRARY: &str = "../../shaders-glsl";
 const OWN: &str = "published";
 /// Its folders, in the order of reports.
 const NAMES: [&str; 6] = ["linear", "relief", "secant", "circle", "cone", "relaxed"];
-const ENTRIES: [&str; 3] = ["tree.frag", "tile_tree.comp", "tile_copies.comp"];
+const ENTRIES: [&str; 2] = ["tree.frag", "walk.comp"];
 const INCLUDES: [&str; 3] = ["core", "search", "stage"];
 
 fn main() {

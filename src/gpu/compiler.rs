@@ -15,7 +15,7 @@ use crate::gpu::vk::pipelines::Pipelines;
 use crate::maps::MapFormat;
 use crate::plan::Conditions;
 use crate::scene::{Clip, Lighting, Object, Shadow};
-use crate::settings::{DrawStage, Plane, Planes, Planning, SearchSettings, Solver};
+use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::{
     Drawn, HostLook, Kind, Lights, Outside, ShadowCasters, Speciality, Technique, Variant,
 };
@@ -109,8 +109,6 @@ impl PipelineCompiler {
                 passes_cells: true,
                 subgroup_size: chosen.subgroup_size,
                 most_storage: u32::MAX,
-                occlusion_culling: true,
-                plans_on_device: true,
                 ..Conditions::default()
             },
             report: chosen.report,
@@ -135,7 +133,6 @@ impl PipelineCompiler {
         let settings = SearchSettings {
             solver,
             map_format: look.format,
-            planning: Planning::Device,
             ..SearchSettings::default()
         };
         let (lighting, object, planes) = (&look.lighting, &look.object, look.planes);

@@ -2,7 +2,7 @@
 //! Level 0, the finest, is exact. The level of an object depends only on the view, so a picture
 //! does not depend on earlier frames.
 
-use super::tiles::{Cylinder, Projector};
+use super::projector::{Cylinder, Projector};
 use super::view::View;
 use crate::scene::{Cluster, Object, Placement};
 use crate::settings::Tolerance;
@@ -26,12 +26,10 @@ pub(crate) const COPY_LEVELS: [u8; 5] = [0, 3, 6, 9, COARSEST];
 /// The choice of a level for each copy of an object in a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CopyLevels {
-    /// Index of the finest level that a copy may need.
-    pub first: usize,
     /// A copy may take level `n + 1` if the depth of its box's middle is at least `limits[n]` times
     /// its largest scale.
     pub limits: [f32; COPY_LEVELS.len() - 1],
-    /// Upper bound on the shift of a silhouette by levels after the first, pixels.
+    /// Upper bound on the shift of a silhouette by levels after the finest, pixels.
     pub error: f64,
 }
 
@@ -40,27 +38,15 @@ pub(crate) struct CopyLevels {
 const COPIES: f64 = 1.25;
 
 impl CopyLevels {
-    /// `height`: height of the box in units of the profile's. `any`: true if the finest level is that
-    /// of any view, without a look at the copies.
-    pub fn new(
-        object: &Object,
-        height: f64,
-        view: &View,
-        (tolerance, any): (Tolerance, bool),
-    ) -> Self {
+    /// `height`: height of the box in units of the profile's.
+    pub fn new(object: &Object, height: f64, view: &View, tolerance: Tolerance) -> Self {
         let reach = (object.profile.radius * SQRT_2).hypot(0.5);
         let pixels = stretch(view) / (pixel_of(view) * height);
         let error = tolerance.pixels() / (COPIES * GRAZING);
         #[allow(clippy::cast_possible_truncation)]
         let limit = |level: u8| ((reach + bound(level) * pixels / error) * (1.0 + 1e-6)) as f32;
-        let limits: [f32; 4] = std::array::from_fn(|n| limit(COPY_LEVELS[n + 1]));
-        let least = match any {
-            true => 0.0,
-            false => CopyDepths::new(object, view, false).least(0.0) * (1.0 - 1e-6),
-        };
         Self {
-            first: limits.iter().filter(|l| f64::from(**l) <= least).count(),
-            limits,
+            limits: std::array::from_fn(|n| limit(COPY_LEVELS[n + 1])),
             error,
         }
     }
@@ -68,7 +54,7 @@ impl CopyLevels {
     /// Index of a copy's level. `depth`: depth of its box's middle; `scale`: its largest scale.
     pub fn of(&self, depth: f32, scale: f32) -> usize {
         let passes = |limit: &&f32| depth >= scale * **limit;
-        self.limits.iter().filter(passes).count().max(self.first)
+        self.limits.iter().filter(passes).count()
     }
 
     /// The same, from a copy's block.
@@ -98,7 +84,7 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
 /// if a copy may reach the eye. `height`: height of the box in units of the profile's. `all`:
 /// includes copies outside of the picture, whose shadows may be in it.
 pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
-    let nearest = CopyDepths::new(object, view, all).least(1.0);
+    let nearest = CopyDepths::new(object, view, all).least();
     stretch(view) / (pixel_of(view) * height * nearest)
 }
 
@@ -159,17 +145,12 @@ impl<'a> CopyDepths<'a> {
 
     /// A lower bound for the copies of a cluster.
     fn of_cluster(&self, cluster: &Cluster) -> f64 {
-        let seen = |projector: &Projector| projector.cluster_bounds(cluster, &self.shape).is_some();
-        if !self.projector.as_ref().is_none_or(seen) {
-            return f64::INFINITY;
-        }
         let around = cluster.around(self.view.eye, [self.shape.radius, 1.0]);
         self.over_scale(cluster.most_scale, around.along(self.view.forward)) * (1.0 - 1e-6)
     }
 
-    /// The least of all copies: that of their boxes' nearest points (`part` 1), or of their middles
-    /// (0).
-    fn least(&self, part: f64) -> f64 {
+    /// The least of all copies, at their boxes' nearest points.
+    fn least(&self) -> f64 {
         let radius = self.object.profile.radius;
         let of_copy = |copy: &Placement| {
             let seen = |projector: &Projector| projector.bounds(copy, &self.shape).is_some();
@@ -180,7 +161,7 @@ impl<'a> CopyDepths<'a> {
             let middle = copy.position - self.view.eye;
             let middle = middle.dot(self.view.forward) + 0.5 * forward.z;
             let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
-            self.over_scale(copy.scale, [middle - part * reach, middle + reach])
+            self.over_scale(copy.scale, [middle - reach, middle + reach])
         };
         self.object
             .least_of_copies(|cluster| self.of_cluster(cluster), of_copy)
@@ -248,13 +229,11 @@ mod tests {
             object.placement.scale = scale;
             object.placement.position = -DVec3::X * 1e4 * part.powi(4);
             object.instances = vec![object.placement; 2].into();
-            let levels = CopyLevels::new(&object, 1.0, &view, (tolerance, false));
+            let levels = CopyLevels::new(&object, 1.0, &view, tolerance);
             let middle = object.placement.position + DVec3::new(0.0, 0.0, 0.5 * scale.z);
             let depth = (middle - view.eye).dot(view.forward);
             let found = levels.of(depth as f32, scale.max_element() as f32);
             let pixels = pixels_per_unit(&object, 1.0, &view, true);
-            // The object's only copy decides.
-            assert_eq!(found, levels.first);
             let error = |level: u8| bound(level) * pixels;
             assert!(
                 found == 0 || error(COPY_LEVELS[found]) <= allowed,

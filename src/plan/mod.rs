@@ -1,28 +1,29 @@
 //! The content of a frame as plain data: a view, objects and limits give a [`FramePlan`]. No module
 //! here uses Vulkan, and [`plan()`] cannot fail.
 //!
-//! The fragment stage draws proxies ([`proxy`]) or [walks](walk), the compute stage tiles
-//! ([`tiles`]) or walks. Objects with the same pipeline and the same set of textures share
+//! The fragment stage draws proxies ([`proxy`]) or [walks](walk), the compute stage
+//! [walks](walk_tiles). Objects with the same pipeline and the same set of textures share
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod levels;
+mod open_pixels;
 pub(crate) mod path;
 pub(crate) mod precedence;
+mod projector;
 pub(crate) mod proxy;
-mod tile_steps;
-pub(crate) mod tiles;
 mod view;
 #[cfg(test)]
 mod viewports;
 pub(crate) mod walk;
+mod walk_tiles;
 
 pub use path::DrawPath;
 pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
-pub(crate) use tiles::MOST_PIXELS;
-pub use tiles::OpenPixels;
-use tiles::Projector;
+pub use open_pixels::OpenPixels;
+pub(crate) use projector::MOST_PIXELS;
+use projector::Projector;
 
 use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
 use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
@@ -44,10 +45,9 @@ pub(crate) struct FramePlan {
     /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
-    /// The buffer of tiles: see `tiles.glsl`.
-    pub tile_words: Vec<u32>,
-    /// Vectors of the bins, to which the device sorts tiles by the length of their lists of
-    /// patches.
+    /// The buffer of open pixels: see `walk.comp`.
+    pub open_pixels: Vec<u32>,
+    /// Vectors of the bins: see `compute.glsl`.
     pub bin_vectors: u32,
     /// Heads of the bins, a vector each, which come first and are zeroed before that.
     pub bin_heads: u32,
@@ -55,11 +55,9 @@ pub(crate) struct FramePlan {
     pub picture: [u32; 4],
     /// One path per object.
     pub paths: Vec<DrawPath>,
-    /// The copies of each object that are read; none if all are.
-    pub copies: Vec<Option<Vec<u32>>>,
     /// For each object, whether each [`Part`] of its surfaces is read.
     pub parts: Vec<[bool; 3]>,
-    /// For each object drawn by boxes or tiles, true if its box cuts nothing, and rays from the eye
+    /// For each object that is not drawn by cells, true if its box cuts nothing, and rays from the eye
     /// begin outside of the solid.
     pub outside: Vec<bool>,
 }
@@ -105,16 +103,13 @@ pub(crate) fn plan(
     let paths = for_each(objects, |of| with.choose(of, view));
     let mut plan = FramePlan {
         paths: paths.iter().map(Path::public).collect(),
-        copies: vec![None; objects.len()],
         parts: vec![[false; 3]; objects.len()],
         outside: vec![false; objects.len()],
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
     plan.add_proxies(view, objects, (&paths, &variants));
-    plan.add_heads(view, objects, &variants, (walks, with));
-    plan.add_tiles(view, objects, (&paths, &variants), (with, open));
-    plan.add_walks(view, objects, &variants, (walks, with));
+    plan.add_walks(view, objects, &variants, (walks, with), open);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
         *tables = (*tables || with.casts) && !object.surfaces.is_empty();
@@ -155,7 +150,6 @@ impl Path {
         match self {
             Self::Box => DrawPath::Box,
             Self::Cells(_) => DrawPath::Cells,
-            Self::Tiles => DrawPath::Tiles,
             Self::Walk => DrawPath::Walk,
         }
     }
@@ -239,7 +233,7 @@ impl FramePlan {
                 layers.all[layer].draws.extend(draws);
             };
             match path {
-                Path::Tiles | Path::Walk => {}
+                Path::Walk => {}
                 Path::Box => {
                     let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
                     self.parts[n][Part::Tables as usize] = true;

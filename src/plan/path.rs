@@ -1,15 +1,14 @@
 //! The choice of each object's draw path from the view, the placements and the surface.
 
 use super::levels::CopyLevels;
+use super::projector::Cylinder;
 use super::proxy;
-use super::tiles::Cylinder;
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::{
-    GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, TREE_BIN,
+    GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, WALK_BIN,
 };
 use crate::shader::{Kind, Lights, SearchCode, Technique};
-use crate::solid::cache::Solid;
 use crate::solid::offset_surface::OffsetSurface;
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
@@ -20,18 +19,15 @@ use std::sync::Arc;
 /// [`Renderer::draw_paths`](crate::gpu::Renderer::draw_paths).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawPath {
-    /// The object is not drawn, because it is outside of the picture, behind the eye or hidden.
-    /// Objects drawn by proxies never take this path: the rasteriser determines their visibility.
+    /// The object is not drawn: the view's mask leaves it out, or no view was planned since it was
+    /// added.
     Nothing,
     /// Fragment stage: the shape boxes are rasterised, and fragments search.
     Box,
     /// Fragment stage: cells of the surface are rasterised, and fragments solve their patches.
     Cells,
-    /// Compute stage: tiles of the screen that may show its copies are drawn.
-    Tiles,
-    /// Rays walk a hierarchy of the copies of many objects: in the fragment stage those of crowds and
-    /// those that cast shadows, in the compute stage as
-    /// [`Planning`](crate::settings::Planning) says.
+    /// Rays walk a hierarchy of the copies of many objects: in the compute stage, and in the fragment
+    /// stage those of crowds and those that cast shadows.
     Walk,
 }
 
@@ -41,7 +37,6 @@ pub(crate) enum Path {
     Box,
     /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
     Cells([Vec<Range<u32>>; 2]),
-    Tiles,
     Walk,
 }
 
@@ -62,8 +57,6 @@ pub(crate) struct PlanObject<'a> {
     /// The choice of each copy's level, if copies have levels of their own.
     pub levels: Option<&'a CopyLevels>,
     pub shape: Cylinder,
-    /// The outline, and the largest distance of the surface from it in object units.
-    pub outline: Option<(&'a Solid, f64)>,
 }
 
 /// Inputs of a plan other than view and objects. Each member is one fact; a plan is used again while all
@@ -72,6 +65,8 @@ pub(crate) struct PlanObject<'a> {
 pub(crate) struct Conditions {
     /// True if compute draws; otherwise fragments do.
     pub compute: bool,
+    /// True if compute draws some pixels alone.
+    pub opens: bool,
     /// True if the device passes a cell's components from vertices to fragments.
     pub passes_cells: bool,
     /// True if the device is a CPU, on which triangles are expensive.
@@ -83,17 +78,12 @@ pub(crate) struct Conditions {
     /// Same value as
     /// [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
     pub least_pixels: u32,
-    /// Same value as
-    /// [`SearchSettings::occlusion_culling`](crate::settings::SearchSettings::occlusion_culling).
-    pub occlusion_culling: bool,
     /// Largest distance of a ray from its pixel's centre, pixels: 0 without rays through samples.
     pub ray_spread: f64,
     /// Largest distance of a copy's surface on the screen from the finest level, pixels.
     pub level_pixels: f64,
-    /// True if rays walk hierarchies of many copies, where nothing of the content is against it.
-    pub plans_on_device: bool,
-    /// True if nothing of this content is.
-    pub walks: bool,
+    /// True if rays are parallel. Nothing walks then.
+    pub parallel: bool,
     /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
     /// Upper limit of lights.
@@ -109,7 +99,7 @@ pub(crate) struct Conditions {
 }
 
 /// Most copies of an object that are drawn by proxies. With more copies, many are small or hidden. On an
-/// NVIDIA H100 cells take 0.60 to 0.88 of the time of tiles with 64 copies, 0.80 to 1.28 with 256 and
+/// NVIDIA H100, where tiles were lists of copies by the CPU (until c9ef987c), cells take 0.60 to 0.88 of the time of tiles with 64 copies, 0.80 to 1.28 with 256 and
 /// 0.93 to 0.97 with 1,024. On lavapipe 64 copies take 0.8 of the time of a walk by proxies from above,
 /// and 1.3 from the side.
 pub(crate) const MOST_PROXIES: usize = 64;
@@ -125,7 +115,7 @@ const LEAST_SUBGROUP: u32 = 8;
 /// Factors on `proxy_min_pixels` for software drivers, where one processor sets up triangles and
 /// shades. Rows: subgroups of at least [`LEAST_SUBGROUP`], smaller ones, which take three times as
 /// long over a tree. Columns: one copy, several. On llvmpipe a single solid takes the same time by
-/// cells as by tiles at 1,650 pixels per frustum; 16 large copies are faster by cells, 32 or 64
+/// cells as by such tiles at 1,650 pixels per frustum; 16 large copies are faster by cells, 32 or 64
 /// small ones by tiles. SwiftShader draws a solid equally fast at 340 pixels, extrapolated from
 /// solids of 1,205 pixels and more.
 const SOFTWARE_FRUSTUM: [[u32; 2]; 2] = [[11, 6], [2, 2]];
@@ -141,38 +131,30 @@ const LISTED_PIXELS: u64 = 2;
 const FLAT: f64 = 32.0;
 
 /// Lengths of lists of patches; tiles with longer lists walk the tree.
-pub(crate) const LIST_LENGTHS: [u32; TREE_BIN as usize] =
+pub(crate) const LIST_LENGTHS: [u32; WALK_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
     /// True if an object may be drawn by cells. The view may still rule that out.
     fn takes_cells(&self, of: &PlanObject) -> bool {
         let few = of.object.placements().len() <= MOST_PROXIES;
-        self.shows_patches(of) && !self.compute && self.passes_cells && few
+        self.shows_patches(of) && self.passes_cells && few
     }
 
-    /// True if rays walk a hierarchy of an object's copies, in any view. Fragments draw few copies by
-    /// proxies, but where shadows are cast, in which a walk shades no hidden pixel. Compute draws flat
-    /// solids by lists of patches.
+    /// True if rays walk a hierarchy of an object's copies, in any view: all of them in compute.
+    /// Fragments draw few copies by proxies, but where shadows are cast, in which a walk shades no
+    /// hidden pixel.
     pub fn walks_to(&self, of: &PlanObject) -> bool {
         let many = of.look_copies > MOST_PROXIES;
-        let pays = many
-            || match self.compute {
-                true => {
-                    self.takes_patches
-                        && self.few_looks
-                        && self.least_pixels > 0
-                        && !(is_flat(of.object) && self.permits_lists(of))
-                }
-                false => self.casts && self.few_looks && !self.single_copy,
-            };
-        self.walks && pays && of.surface().is_some() && self.may_walk(&of.technique)
+        let pays = many || (self.casts && self.few_looks && !self.single_copy);
+        let may = of.surface().is_some() && self.may_walk(&of.technique);
+        !self.parallel && (self.compute || pays && may)
     }
 
     /// True if rays may walk a hierarchy of copies of a technique.
     fn may_walk(&self, technique: &Technique) -> bool {
         let patches = technique.search == SearchCode::Quadric;
-        self.plans_on_device && patches && !technique.replicas
+        !self.parallel && (self.compute || patches && !technique.replicas)
     }
 
     /// The surface of an object whose path follows from its hull, if the hull is not made yet.
@@ -184,7 +166,7 @@ impl Conditions {
         lacks.then(|| surface.clone())
     }
 
-    /// The path of an object in a view: a walk, else cells, else tiles, else boxes.
+    /// The path of an object in a view: a walk, else cells, else boxes.
     pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
         if self.walks_to(of) {
             return Path::Walk;
@@ -196,15 +178,8 @@ impl Conditions {
         });
         match cells {
             Some(frusta) => Path::Cells(frusta),
-            _ if self.compute && !view.parallel => Path::Tiles,
-            _ => Path::Box,
+            None => Path::Box,
         }
-    }
-
-    /// Whether tiles beside an object's outline are left out. Searches for comparison search all of
-    /// the box, as published.
-    pub fn uses_outline(&self, of: &PlanObject) -> bool {
-        self.occlusion_culling && of.technique.search != SearchCode::External
     }
 
     /// Least pixels of the box per frustum at which cells are cheaper.
@@ -269,9 +244,9 @@ impl Conditions {
             let taken = of_pass.into_iter().filter(|(_, is)| *is);
             return taken.map(|(kind, _)| kind).collect();
         }
-        let mut all = vec![Kind::TileTree, Kind::TileCopies];
-        if self.may_walk(technique) {
-            all.extend([Kind::WalkLists, Kind::WalkTiles]);
+        let mut all = vec![Kind::WalkLists, Kind::WalkTiles];
+        if self.opens {
+            all.push(Kind::WalkPixels);
         }
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
@@ -290,19 +265,6 @@ impl<'a> PlanObject<'a> {
     /// The surface of the finest level.
     pub fn surface(&self) -> Option<&'a Arc<OffsetSurface>> {
         self.surfaces.first()
-    }
-
-    /// Number of patches that lists of its tiles are made from: those of the second level if its
-    /// copies have levels of their own, as few have the finest.
-    pub fn listed_patches(&self) -> u64 {
-        let surface = self.surfaces.iter().take(2).next_back();
-        surface.map_or(0, |surface| surface.patches() as u64)
-    }
-
-    /// True if the box shows no more than the surface's patches.
-    pub fn is_whole(&self) -> bool {
-        self.surface()
-            .is_some_and(|surface| proxy::is_whole(self.object, surface))
     }
 }
 

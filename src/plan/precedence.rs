@@ -10,7 +10,7 @@
 //! of solids under an offset, of replicas and of solids that their box cuts are not found: these
 //! copies share faces with all that they overlap.
 
-use super::tiles::Cylinder;
+use super::projector::Cylinder;
 use super::view::View;
 use crate::scene::{Object, Offset, Placement};
 use crate::shader::InstanceBlock;

@@ -26,12 +26,18 @@ fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
 /// True if rays to all of an object's copies begin outside of the solid, and the box cuts nothing
 /// of it.
 pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
+    is_whole(object, surface) && is_apart_from_all(object, surface, view)
+}
+
+/// True if rays to all of an object's copies begin outside of the solid, as it is before its box cuts
+/// it.
+pub(crate) fn is_apart_from_all(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
     let reach = view.farthest_start();
     let apart = |copy: &Placement| {
         let eye = seen_from(object, copy, view).0;
         is_apart(surface, eye, reach / copy.scale.min_element())
     };
-    !view.parallel && is_whole(object, surface) && object.placements().iter().all(apart)
+    !view.parallel && object.placements().iter().all(apart)
 }
 
 /// True if a ball about a point of object space, relative to the axis, is clear of the solid's

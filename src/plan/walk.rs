@@ -5,11 +5,13 @@
 //! one level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid
 //! around all copies.
 
-use super::tiles::{Cylinder, TILE_PIXELS};
+use super::open_pixels::OpenPixels;
+use super::path::MOST_PROXIES;
+use super::projector::Cylinder;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::scene::Placement;
-use crate::shader::generated::{GROUP_PIXELS, INNER_NODE, MOST_GROUPS, TILE_WALK_VECTORS};
-use crate::shader::{Drawn, Kind, Pushed, Variant, WalkNode};
+use crate::shader::generated::{GROUP_PIXELS, INNER_NODE};
+use crate::shader::{Drawn, Kind, Variant, WalkNode};
 use crate::solid::offset_surface::Part;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -48,11 +50,11 @@ pub(crate) struct Grid {
 
 /// Objects that share a pipeline, a set of textures and a hierarchy of their copies.
 #[derive(Clone, Debug, PartialEq)]
-struct Layer {
+pub(super) struct Layer {
     /// Indices of the objects.
-    objects: Vec<u32>,
+    pub objects: Vec<u32>,
     /// Index of the hierarchy's first node in [`Walks::nodes`].
-    root: u32,
+    pub root: u32,
 }
 
 /// All hierarchies of a view.
@@ -64,14 +66,19 @@ pub(crate) struct Walks {
     /// shadow.
     pub casters: Option<u32>,
     /// Objects whose path is [`Path::Walk`](super::path::Path::Walk).
-    layers: Vec<Layer>,
+    pub(super) layers: Vec<Layer>,
 }
 
 impl Layer {
-    /// True if it has one copy, for which no lists are made.
-    fn is_of_one(&self, variants: &[Variant]) -> bool {
-        let drawn = |n: u32| variants[n as usize].speciality.drawn;
-        matches!(*self.objects, [n] if drawn(n) == Drawn::OneCopy)
+    /// Number of its copies.
+    pub fn copies(&self, objects: &[PlanObject]) -> usize {
+        let placements = |n: &u32| objects[*n as usize].object.placements().len();
+        self.objects.iter().map(placements).sum()
+    }
+
+    /// True if it has one copy.
+    pub fn is_of_one(&self, objects: &[PlanObject]) -> bool {
+        self.copies(objects) == 1
     }
 }
 
@@ -259,6 +266,15 @@ impl Walks {
             layers,
         }
     }
+
+    /// The ends of the box of a layer's copies.
+    pub(super) fn bounds(&self, layer: &Layer) -> [DVec3; 2] {
+        let ends = self.nodes[layer.root as usize + 1].bounds;
+        [0, 16].map(|shift| {
+            let steps = ends.map(|ends| f64::from(ends >> shift & 0xffff));
+            self.grid.low + self.grid.unit * DVec3::from(steps)
+        })
+    }
 }
 
 /// The boxes of all copies of these objects.
@@ -275,108 +291,54 @@ fn leaves(objects: &[PlanObject], numbers: &[u32]) -> Vec<Leaf> {
 }
 
 impl FramePlan {
-    /// Takes the first heads of the bins for the lists of walks.
-    pub(super) fn add_heads(
-        &mut self,
-        view: &View,
-        objects: &[PlanObject],
-        variants: &[Variant],
-        (walks, with): (&Walks, &Conditions),
-    ) {
-        if with.compute {
-            let [across, down] = projector(view, objects, with).tiles();
-            let chunks = (across * down).div_ceil(MOST_GROUPS);
-            let lists = walks
-                .layers
-                .iter()
-                .filter(|layer| !layer.is_of_one(variants));
-            self.bin_heads = chunks * lists.count() as u32;
-        }
-    }
-
-    /// The walks, after all else.
+    /// The walks, after all else. `open`: the pixels that compute draws; all if none.
     pub(super) fn add_walks(
         &mut self,
         view: &View,
         objects: &[PlanObject],
         variants: &[Variant],
         (walks, with): (&Walks, &Conditions),
+        open: Option<&OpenPixels>,
     ) {
-        let last = self.steps.iter().map(|step| step.phase).max();
-        let mut phase = last.unwrap_or(1).max(1);
-        let projector = projector(view, objects, with);
-        let [across, down] = projector.tiles();
-        let [left, top, right, bottom] = projector.picture();
-        if across > 0 {
+        if let Some([left, top, right, bottom]) = projector(view, objects, with).picture() {
             self.picture = [left, top, right + 1 - left, bottom + 1 - top];
         }
-        let tiles = top / GROUP_PIXELS * across..down * across;
         // What is drawn by one walk needs no depths.
-        let alone = self.steps.is_empty() && walks.layers.len() == 1 && !with.host_depths;
-        let mut lists_first = Vec::new();
-        let mut head = 0;
-        for layer in &walks.layers {
-            let object = layer.objects[0];
+        let alone = walks.layers.len() == 1 && !with.host_depths;
+        let of_layer = |layer: &Layer| {
+            let apart = |n: &u32| {
+                let of = &objects[*n as usize];
+                let apart = |s: &Arc<_>| proxy::is_seen_from_outside(of.object, s, view);
+                of.surface().is_some_and(apart)
+            };
+            // Few copies cost the host less than a test of each ray.
+            let few = layer.copies(objects) <= MOST_PROXIES;
+            let outside = few && layer.objects.iter().all(apart);
             for &n in &layer.objects {
                 self.parts[n as usize][Part::Tables as usize] = true;
+                self.outside[n as usize] = outside;
             }
-            let only = layer.is_of_one(variants);
-            let mut variant = variants[object as usize];
+            let mut variant = variants[layer.objects[0] as usize];
             if layer.objects.len() > 1 {
                 variant.speciality.drawn = Drawn::Objects;
             }
             variant.speciality.depths &= !alone;
-            let of = &objects[object as usize];
-            let apart = |surface: &Arc<_>| proxy::is_seen_from_outside(of.object, surface, view);
-            let outside = only && of.surface().is_some_and(apart);
-            self.outside[object as usize] = outside;
-            let variant = variant.seen_from_outside(outside);
-            let root = layer.root;
-            // Each layer compares its depths with those of the layers before it.
-            phase += u32::from(with.compute);
-            let step = |phase, kind, call| Step {
-                phase,
-                variant: variant.of_kind(kind),
-                kind,
-                object,
-                call,
-            };
-            if !with.compute {
-                let [_, _, width, height] = self.picture;
-                let call = Call::Walk(points(width, height), root);
-                self.steps.push(step(0, Kind::Walk, call));
-                continue;
-            }
-            self.bin_vectors = self.bin_vectors.max(self.bin_heads);
-            let vectors = TILE_WALK_VECTORS * tiles.len() as u32;
-            let lists = !only && u64::from(16 * (self.bin_vectors + vectors)) <= with.room();
-            for first in tiles.clone().step_by(MOST_GROUPS as usize) {
-                let end = tiles.end.min(first + MOST_GROUPS);
-                let pushed = Pushed {
-                    first,
-                    count: across,
-                    heads: root,
-                    tiles: self.bin_vectors,
-                    bin: if lists { end } else { 0 },
-                    gathered: head,
-                    object: of.number,
-                    ..Pushed::default()
-                };
-                let call = if lists {
-                    let groups = (end - first).div_ceil(TILE_PIXELS);
-                    lists_first.push(step(0, Kind::WalkLists, Call::Groups(groups, pushed)));
-                    self.bin_vectors += TILE_WALK_VECTORS * (end - first);
-                    Call::Indirect(head, pushed)
-                } else {
-                    Call::Groups(end - first, pushed)
-                };
-                head += u32::from(!only);
-                self.steps.push(step(phase, Kind::WalkTiles, call));
-            }
+            variant.seen_from_outside(outside)
+        };
+        let variants: Vec<Variant> = walks.layers.iter().map(of_layer).collect();
+        if with.compute {
+            return self.add_walk_tiles(view, objects, (walks, &variants), (with, open));
         }
-        // Lists come before everything else.
-        lists_first.append(&mut self.steps);
-        self.steps = lists_first;
+        let [_, _, width, height] = self.picture;
+        for (layer, variant) in walks.layers.iter().zip(variants) {
+            self.steps.push(Step {
+                phase: 0,
+                variant: variant.of_kind(Kind::Walk),
+                kind: Kind::Walk,
+                object: layer.objects[0],
+                call: Call::Walk(points(width, height), layer.root),
+            });
+        }
     }
 }
 

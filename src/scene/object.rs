@@ -109,15 +109,6 @@ impl Object {
         self.instances.clusters().least(bound, value)
     }
 
-    /// The copy of this rank in the order of the clusters: its index among all copies, and its
-    /// placement.
-    pub(crate) fn copy_at(&self, rank: u32) -> (u32, &Placement) {
-        if self.instances.is_empty() {
-            return (0, &self.placement);
-        }
-        self.instances.clusters().at(rank)
-    }
-
     /// Its material, or the one that fits its highlight: a microfacet distribution of width
     /// sqrt(2 / (exponent + 2)) is as wide (Walter et al. 2007, *Microfacet models for refraction
     /// through rough surfaces*).

@@ -3,12 +3,10 @@
 /// The stage and geometry by which a module traces rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pass {
-    /// Fragments of shape boxes and of tiles.
+    /// Fragments of shape boxes.
     Fragment,
-    /// Compute, through tiles of pixels, each of one copy.
-    Tile,
-    /// Compute, through tiles of pixels, each with a list of copies.
-    Copies,
+    /// Compute, by walks of a hierarchy of copies.
+    Compute,
 }
 
 /// The stored data of a hit.
@@ -39,8 +37,7 @@ impl SearchModule {
     pub const fn entry(&self) -> &'static str {
         match self.pass {
             Pass::Fragment => "tree.frag",
-            Pass::Tile => "tile_tree.comp",
-            Pass::Copies => "tile_copies.comp",
+            Pass::Compute => "walk.comp",
         }
     }
 
@@ -52,7 +49,7 @@ impl SearchModule {
             (self.table && self.bounded, "SEARCH_BOUNDED"),
         ];
         let set = set.into_iter().filter(|(is_set, _)| *is_set);
-        let mut all = vec![("SEARCH", "SEARCH_EXTERNAL")];
+        let mut all = vec![("SEARCH", "SEARCH_EXTERNAL"), ("REPEATED", "1")];
         all.extend(set.map(|(_, name)| (name, "1")));
         if self.output == StoredPlanes::Planes {
             all.push(("OUTPUT", "OUTPUT_PLANES"));

@@ -17,7 +17,7 @@ use std::str::FromStr;
 pub enum DrawStage {
     /// Shape boxes are rasterised; the fragment shader traces.
     Fragment,
-    /// A compute shader traces the screen's tiles that boxes cover.
+    /// A compute shader traces the screen's tiles that may show a solid.
     Compute,
 }
 
@@ -31,30 +31,6 @@ impl DrawStage {
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, &self)
     }
-}
-
-/// Where the compute stage finds the copies that a pixel may show. The fragment stage needs no CPU for
-/// a view: it draws proxies or walks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Planning {
-    /// On the device, but for software drivers on the host, where that is faster.
-    #[default]
-    Auto,
-    /// The CPU finds the copies of each tile of the screen, for every view.
-    Host,
-    /// Rays walk a hierarchy of the copies. It depends on no view, so the CPU does nothing for a new
-    /// view that grows with the number of copies. Objects that another search than patches draws, and
-    /// replicas, are planned on the host.
-    Device,
-}
-
-impl Planning {
-    /// The names in options.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("auto", Self::Auto),
-        ("host", Self::Host),
-        ("device", Self::Device),
-    ];
 }
 
 /// The search for the first hit along a ray.
@@ -287,18 +263,13 @@ pub struct Settings {
     pub planes: Planes,
     /// Minimum number of pixels of an object's box, for each visible frustum of its cells, at which
     /// the fragment stage draws the cells. Triangles cost the same at any size. Smaller objects are
-    /// drawn by tiles. Software drivers multiply this number by 2 to 11. Compute lists patches for
-    /// tiles if they have twice this number of pixels for each patch of a mean object; GPUs do so only
-    /// for solids whose radius is more than 32 times their height. 0 always draws
+    /// drawn by boxes. Software drivers multiply this number by 2 to 11. Compute lists patches for
+    /// up to 64 copies that have twice this number of pixels for each patch of a mean object; GPUs do
+    /// so only for solids whose radius is more than 32 times their height. 0 always draws
     /// cells and lists; `u32::MAX` disables cells and lists of patches.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,
-    /// True to skip copies that are proven to be hidden by others. Pixels differ by rounding at
-    /// most; `false` exists to verify this.
-    pub occlusion_culling: bool,
-    /// Where the copies that a pixel may show are found.
-    pub planning: Planning,
     /// True to smooth silhouettes in frames that the crate `revmap-offscreen` reads back. Otherwise
     /// every colour is that of the ray through the pixel's middle. Embedded renderers do not
     /// smooth.
@@ -323,10 +294,6 @@ pub struct SearchSettings {
     pub proxy_min_pixels: u32,
     /// Same as [`Settings::tolerance`].
     pub tolerance: Tolerance,
-    /// Same as [`Settings::occlusion_culling`].
-    pub occlusion_culling: bool,
-    /// Same as [`Settings::planning`].
-    pub planning: Planning,
 }
 
 impl From<&Settings> for SearchSettings {
@@ -338,8 +305,6 @@ impl From<&Settings> for SearchSettings {
             map_source: settings.map_source,
             map_format: settings.map_format,
             proxy_min_pixels: settings.proxy_min_pixels,
-            occlusion_culling: settings.occlusion_culling,
-            planning: settings.planning,
             tolerance: settings.tolerance,
         }
     }
@@ -355,8 +320,6 @@ impl From<&SearchSettings> for Settings {
             map_source: search.map_source,
             map_format: search.map_format,
             proxy_min_pixels: search.proxy_min_pixels,
-            occlusion_culling: search.occlusion_culling,
-            planning: search.planning,
             tolerance: search.tolerance,
             ..Self::default()
         }
@@ -424,8 +387,6 @@ impl Default for Settings {
             planes: Planes::All,
             proxy_min_pixels: 150,
             tolerance: Tolerance::DEFAULT,
-            occlusion_culling: true,
-            planning: Planning::Auto,
             antialias: false,
         }
     }

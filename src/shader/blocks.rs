@@ -1,10 +1,9 @@
 //! Data that the CPU passes to the GPU: the structures of `include/core/structures.glsl`.
 
 pub use super::generated::{
-    Appearance as AppearanceBlock, BinTile, CasterRoot, CopyTile, Frame as FrameView,
-    FrameData as FrameBlock, GatheredPixel, Instance as InstanceBlock, LastCopy, LevelTables,
-    Light as LightBlock, Object as ObjectBlock, PlacedEye, Pushed, QueueBlock, QueueTile,
-    QueuedCopy, Shape as ShapeBlock, WalkNode,
+    Appearance as AppearanceBlock, BinTile, CasterRoot, Frame as FrameView,
+    FrameData as FrameBlock, Instance as InstanceBlock, LastCopy, LevelTables, Light as LightBlock,
+    Object as ObjectBlock, PlacedEye, Pushed, Shape as ShapeBlock, WalkNode,
 };
 
 use super::generated::{INSTANCE_WORDS, OBJECT_STRIDE_WORDS, OBJECT_WORDS};

@@ -17,10 +17,6 @@ pub enum Entry {
     TileLists,
     /// Pixels of tiles whose patches are listed.
     TilePatches,
-    /// Pixels of tiles of one copy, which walk the tree.
-    TileTree,
-    /// Pixels of tiles of several copies.
-    TileCopies,
     /// Places of copies in a view.
     Place,
     /// Lists of the first copies that rays of tiles may meet.
@@ -31,6 +27,9 @@ pub enum Entry {
     Walk,
     /// Pixels that walk a hierarchy of copies.
     WalkTiles,
+    /// The same of copies that may hold replicas, for patches. Searches on maps have one module for
+    /// both.
+    WalkReplicas,
 }
 
 impl Entry {
@@ -44,13 +43,11 @@ impl Entry {
             Self::Tree => "tree.frag",
             Self::TileLists => "tile_lists.comp",
             Self::TilePatches => "tile_patches.comp",
-            Self::TileTree => "tile_tree.comp",
-            Self::TileCopies => "tile_copies.comp",
             Self::Place => "place.comp",
             Self::WalkLists => "walk_lists.comp",
             Self::WalkVertex => "walk.vert",
             Self::Walk => "walk.frag",
-            Self::WalkTiles => "walk.comp",
+            Self::WalkTiles | Self::WalkReplicas => "walk.comp",
         }
     }
 
@@ -74,7 +71,7 @@ impl Entry {
     pub const fn searches(self) -> bool {
         matches!(
             self,
-            Self::Tree | Self::TileTree | Self::TileCopies | Self::Walk | Self::WalkTiles
+            Self::Tree | Self::Walk | Self::WalkTiles | Self::WalkReplicas
         )
     }
 }
@@ -137,6 +134,9 @@ impl Module {
             SearchCode::Live => vec![("SEARCH", "SEARCH_LIVE")],
             SearchCode::Quadric => vec![("SEARCH", "SEARCH_QUADRIC")],
         };
+        if self.entry == Entry::WalkReplicas || self.search == SearchCode::Live {
+            all.push(("REPEATED", "1"));
+        }
         match self.output {
             Stored::Color => {}
             Stored::Planes => all.push(("OUTPUT", "OUTPUT_PLANES")),
@@ -151,6 +151,9 @@ impl Module {
     #[must_use]
     pub fn name(&self) -> String {
         let mut name = self.entry.file().to_owned();
+        if self.entry == Entry::WalkReplicas {
+            name.push_str(".replicas");
+        }
         let add = |name: &mut String, part: &dyn std::fmt::Debug| {
             name.push('.');
             name.push_str(&format!("{part:?}").to_lowercase());
@@ -202,14 +205,13 @@ pub fn modules() -> Vec<Module> {
     let mut all = plain.map(Module::plain).to_vec();
     let both: &[SearchCode] = &[SearchCode::Live, SearchCode::Quadric];
     let patches: &[SearchCode] = &[SearchCode::Quadric];
-    let rows: [(Entry, &[SearchCode], &[Stored]); 7] = [
+    let rows: [(Entry, &[SearchCode], &[Stored]); 6] = [
         (Entry::Tree, both, &[Planes, List, Depth]),
-        (Entry::TileTree, both, &[Color, Planes]),
-        (Entry::TileCopies, both, &[Color, Planes]),
         (Entry::TilePatches, patches, &[Color, Planes]),
         (Entry::Cells, patches, &[Planes, List, Depth]),
         (Entry::Walk, patches, &[Planes, List, Depth]),
-        (Entry::WalkTiles, patches, &[Color, Planes]),
+        (Entry::WalkTiles, both, &[Color, Planes]),
+        (Entry::WalkReplicas, patches, &[Color, Planes]),
     ];
     for (entry, searches, outputs) in rows {
         for (&search, &output) in searches

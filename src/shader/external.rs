@@ -54,8 +54,7 @@ impl External {
     pub fn module(self, module: &Module) -> Option<SearchModule> {
         let pass = match module.entry {
             catalogue::Entry::Tree => Pass::Fragment,
-            catalogue::Entry::TileTree => Pass::Tile,
-            catalogue::Entry::TileCopies => Pass::Copies,
+            catalogue::Entry::WalkTiles | catalogue::Entry::WalkReplicas => Pass::Compute,
             _ => return None,
         };
         let output = match module.output {

@@ -14,9 +14,8 @@ mod textures;
 mod variant;
 
 pub use blocks::{
-    AppearanceBlock, BinTile, CasterRoot, CopyTile, FrameBlock, FrameView, GatheredPixel,
-    InstanceBlock, LastCopy, LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock, PlacedEye,
-    Pushed, QueueBlock, QueueTile, QueuedCopy, ShapeBlock, WalkNode,
+    AppearanceBlock, BinTile, CasterRoot, FrameBlock, FrameView, InstanceBlock, LastCopy,
+    LevelTables, LightBlock, OBJECT_STRIDE, ObjectBlock, PlacedEye, Pushed, ShapeBlock, WalkNode,
 };
 #[cfg(test)]
 pub(crate) use catalogue::modules;

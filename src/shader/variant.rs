@@ -9,7 +9,7 @@ use super::generated as g;
 use super::technique::Technique;
 use std::ffi::CStr;
 
-/// The geometry that a pipeline draws: a proxy (the first three), tiles, or a walk.
+/// The geometry that a pipeline draws: a proxy (the first three), tiles of listed patches, or a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Cells with their patches, rasterised.
@@ -22,10 +22,6 @@ pub enum Kind {
     TileLists,
     /// Compute: tiles whose patches are listed; each pixel tests this many.
     TilePatches(u32),
-    /// Compute: tiles of one copy, which walk the tree.
-    TileTree,
-    /// Compute: tiles and pixels with queues of copies.
-    TileCopies,
     /// Compute: places of copies in a view.
     Place,
     /// Compute: lists of the first copies of a walk that rays of tiles may meet.
@@ -34,6 +30,8 @@ pub enum Kind {
     Walk,
     /// Compute: tiles of the picture, which walk a hierarchy of copies.
     WalkTiles,
+    /// Compute: pixels of the picture, which walk a hierarchy of copies.
+    WalkPixels,
 }
 
 impl Kind {
@@ -46,12 +44,11 @@ impl Kind {
             Self::Boxes => c"revmap boxes",
             Self::TileLists => c"revmap lists of patches",
             Self::TilePatches(_) => c"revmap tiles of listed patches",
-            Self::TileTree => c"revmap tiles of one copy",
-            Self::TileCopies => c"revmap tiles of several copies",
             Self::Place => c"revmap places of copies",
             Self::WalkLists => c"revmap lists of copies",
             Self::Walk => c"revmap walk",
             Self::WalkTiles => c"revmap walk of tiles",
+            Self::WalkPixels => c"revmap walk of pixels",
         }
     }
 
@@ -60,7 +57,7 @@ impl Kind {
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
-            Self::TilePatches(_) | Self::TileTree | Self::TileCopies | Self::WalkTiles
+            Self::TilePatches(_) | Self::WalkTiles | Self::WalkPixels
         )
     }
 
@@ -85,12 +82,10 @@ impl Kind {
             Self::Cells | Self::CutCells => Entry::Cells,
             Self::TileLists => Entry::TileLists,
             Self::TilePatches(_) => Entry::TilePatches,
-            Self::TileTree => Entry::TileTree,
-            Self::TileCopies => Entry::TileCopies,
             Self::Place => Entry::Place,
             Self::WalkLists => Entry::WalkLists,
             Self::Walk => Entry::Walk,
-            Self::WalkTiles => Entry::WalkTiles,
+            Self::WalkTiles | Self::WalkPixels => Entry::WalkTiles,
         }
     }
 
@@ -285,10 +280,18 @@ impl Variant {
         Some(Module::plain(entry))
     }
 
+    const fn repeats_patches(&self) -> bool {
+        self.technique.replicas && matches!(self.technique.search, SearchCode::Quadric)
+    }
+
     /// The module of its fragments, or of its compute invocations.
     #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
-        let entry = kind.entry();
+        let entry = match kind.entry() {
+            // Without the code of replicas walks take 64 registers in place of 72 on RDNA2.
+            Entry::WalkTiles if self.repeats_patches() => Entry::WalkReplicas,
+            entry => entry,
+        };
         if entry.makes_lists() {
             return Module::plain(entry);
         }
@@ -308,7 +311,7 @@ impl Variant {
 
     /// `(constant_id, value)` of every specialisation constant.
     #[must_use]
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 18] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         [
@@ -327,6 +330,7 @@ impl Variant {
             (g::LIGHTS_ID, speciality.lights as u32),
             (g::LIST_LENGTH_ID, kind.list_length()),
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
+            (g::OPEN_PIXELS_ID, u32::from(kind == Kind::WalkPixels)),
             (g::OUTSIDE_ID, speciality.outside as u32),
             (g::ONE_OBJECT_ID, speciality.drawn as u32),
             (g::SINGLE_CELLS_ID, speciality.single.into()),

@@ -69,13 +69,7 @@ impl Shading {
         let refused = |why: &str| Error::new(ErrorKind::Content, format!("shading: {why}"));
         let damaged = || refused("the bytes are damaged, or no shading; compile the shading again");
         let (head, rest) = bytes.split_first_chunk::<8>().ok_or_else(damaged)?;
-        let (hash, rest) = rest.split_first_chunk::<8>().ok_or_else(damaged)?;
-        let (stage, packed) = rest.split_first().ok_or_else(damaged)?;
-        let stage = match stage {
-            0 => DrawStage::Fragment,
-            1 => DrawStage::Compute,
-            _ => return Err(damaged()),
-        };
+        let (hash, packed) = rest.split_first_chunk::<8>().ok_or_else(damaged)?;
         if *head != MAGIC {
             return Err(damaged());
         }
@@ -87,7 +81,12 @@ impl Shading {
         let all = decompress_to_vec_zlib_with_limit(packed, MOST_BYTES).map_err(|_| damaged())?;
         let words = all.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
         let mut words = words.map(u32::from_le_bytes);
-        let made = Self::empty(stage);
+        // Under the checksum: modules of both stages may be as many.
+        let made = Self::empty(match words.next() {
+            Some(0) => DrawStage::Fragment,
+            Some(1) => DrawStage::Compute,
+            _ => return Err(damaged()),
+        });
         for (_, module) in &made.modules {
             let count = words.next().ok_or_else(damaged)? as usize;
             let own: Vec<u32> = words.by_ref().take(count).collect();
@@ -109,18 +108,18 @@ impl Shading {
     /// # Errors
     /// [`ErrorKind::Content`] if a module does not compile: code under a macro of the library.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        let mut all = Vec::new();
+        let stage: u32 = match self.stage {
+            DrawStage::Fragment => 0,
+            DrawStage::Compute => 1,
+        };
+        let mut all = stage.to_le_bytes().to_vec();
         for (module, _) in &self.modules {
             let words = self.words(module)?;
             all.extend((words.len() as u32).to_le_bytes());
             all.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         }
-        let stage = match self.stage {
-            DrawStage::Fragment => 0,
-            DrawStage::Compute => 1,
-        };
         let packed = compress_to_vec_zlib(&all, 9);
-        Ok([&MAGIC[..], &SOURCES_HASH.to_le_bytes(), &[stage], &packed].concat())
+        Ok([&MAGIC[..], &SOURCES_HASH.to_le_bytes(), &packed].concat())
     }
 
     /// The stage that it shades in.

@@ -10,10 +10,9 @@ use crate::scene::{GrownProfiles, Offset};
 use crate::search::Search;
 use crate::solid::contour::{OffsetContour, OutlineSource};
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
-use crate::surface::Cylinders;
 use std::collections::HashMap;
 use std::hash::Hash;
-use std::sync::{Arc, Mutex, OnceLock, Weak};
+use std::sync::{Arc, Mutex, Weak};
 
 /// Weak references by key: a value stays as long as an owner holds it elsewhere.
 pub(crate) struct Kept<K, V>(HashMap<K, Weak<V>>);
@@ -85,7 +84,6 @@ impl SolidCache {
 /// A profile, and everything that is made from it.
 pub(crate) struct Solid {
     source: Arc<OutlineSource>,
-    outer: OnceLock<Cylinders>,
     contours: Mutex<Kept<[u64; 3], OffsetContour>>,
     surfaces: Mutex<Kept<SurfaceKey, OffsetSurface>>,
 }
@@ -97,16 +95,9 @@ impl Solid {
     pub fn new(profile: &Arc<Profile>) -> Self {
         Self {
             source: Arc::new(OutlineSource::new(profile)),
-            outer: OnceLock::new(),
             contours: Mutex::default(),
             surfaces: Mutex::default(),
         }
-    }
-
-    /// Cylinders that contain the solid without its offset.
-    pub fn outer(&self) -> &Cylinders {
-        let make = || Cylinders::around_outline(self.source.outline());
-        self.outer.get_or_init(make)
     }
 
     /// The contour under an offset. A new contour is not made yet.

@@ -6,7 +6,7 @@ use crate::search::{Reads, Search, SearchTable};
 use crate::solid::contour::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::tables;
-use crate::surface::{Cylinders, FitOptions, QuadricPatch, fit_patches};
+use crate::surface::{FitOptions, QuadricPatch, fit_patches};
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -57,7 +57,6 @@ pub(crate) struct OffsetSurface {
     tables: OnceLock<SearchTable>,
     listed: OnceLock<Vec<[u32; 4]>>,
     hull: OnceLock<GpuProxyHull>,
-    cylinders: OnceLock<[Cylinders; 2]>,
     slots: [OnceLock<Slot>; 3],
 }
 
@@ -85,7 +84,6 @@ impl OffsetSurface {
             tables: OnceLock::new(),
             listed: OnceLock::new(),
             hull: OnceLock::new(),
-            cylinders: OnceLock::new(),
             slots: [const { OnceLock::new() }; 3],
         }
     }
@@ -161,13 +159,6 @@ impl OffsetSurface {
     /// The hull that the rasteriser draws; `None` before it is made.
     pub fn hull(&self) -> Option<&GpuProxyHull> {
         self.hull.get()
-    }
-
-    /// Cylinders inside its solid, which hide everything behind them, and around it; only for patches.
-    pub fn cylinders(&self) -> Option<&[Cylinders; 2]> {
-        let patches = self.quadrics()?;
-        let make = || Cylinders::of_patches(patches);
-        Some(self.cylinders.get_or_init(make))
     }
 
     /// True if it is made of patches.

@@ -39,12 +39,10 @@ pub fn in_compute(settings: Settings) -> Settings {
     }
 }
 
-/// The same settings without cells and lists of patches, which change where rays start, and without
-/// culling, after which tiles count no steps.
+/// The same settings without cells and lists of patches, which change where rays start.
 pub fn from_boxes(settings: Settings) -> Settings {
     Settings {
         proxy_min_pixels: u32::MAX,
-        occlusion_culling: false,
         ..settings
     }
 }

@@ -1,4 +1,4 @@
-//! Draw paths of objects (cells, tiles or boxes), and the difference of two frames.
+//! Draw paths of objects (cells, boxes or walks), and the difference of two frames.
 
 use super::device;
 use revmap::frame::Frame;
@@ -12,8 +12,8 @@ pub const STAGES: [DrawStage; 2] = [DrawStage::Fragment, DrawStage::Compute];
 pub type Ways<'a> = [&'a [DrawPath]; 2];
 
 /// Drawn by cells if the stage has them, and by the tree only.
-pub const WRAPPED: Ways<'static> = [&[DrawPath::Cells], &[DrawPath::Tiles]];
-pub const WALKED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Tiles]];
+pub const WRAPPED: Ways<'static> = [&[DrawPath::Cells], &[DrawPath::Walk]];
+pub const WALKED: Ways<'static> = [&[DrawPath::Box], &[DrawPath::Walk]];
 
 /// Counts pixels with a hit, pixels that only one frame hits, and pixels whose hits are farther
 /// apart than half a texel of 512 rows.

@@ -86,14 +86,6 @@ fn fragment_and_compute_agree_bit_for_bit() {
         if let Some(difference) = fragment.first_difference(&compute) {
             panic!("{name}, {solver:?}: {difference}");
         }
-        let culling = in_compute(settings).with(|s| s.occlusion_culling = true);
-        let mut culled = draw(scene, &culling);
-        fragment.steps.fill(0.0);
-        culled.steps.fill(0.0);
-        culled.exhausted = fragment.exhausted;
-        if let Some(difference) = fragment.first_difference(&culled) {
-            panic!("{name}, {solver:?}, culled: {difference}");
-        }
     }
 }
 

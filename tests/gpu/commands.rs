@@ -64,8 +64,9 @@ counted! {
 
 static ONE: Mutex<()> = Mutex::new(());
 
-/// Upper bound on a frame's barriers, including those of the off-screen target.
-const MOST_BARRIERS: u32 = 6;
+/// Upper bound on a frame's barriers: two of the off-screen target, two of copies that the device
+/// places, and three of lists for tiles.
+const MOST_BARRIERS: u32 = 7;
 
 /// A square field seen from above. It has `objects` solids of one look but different sizes, and
 /// `copies` of each.
@@ -106,7 +107,6 @@ fn counts(device: &Device, scene: &Scene, stage: DrawStage) -> (Counts, usize) {
             DrawStage::Compute => 0,
         },
         tolerance: Tolerance::EXACT,
-        planning: Planning::Host,
         ..Settings::default()
     };
     let mut scene = scene.clone();
@@ -146,12 +146,11 @@ fn commands_follow_pipelines() {
             counts
         };
         of(1, 1);
-        // Tiles of several copies are one more dispatch in compute, and fragments walk.
+        // Both stages walk.
         let several = of(65, 1);
         for objects in [200, 1000] {
             assert_eq!(of(objects, 1), several);
         }
-        // Copies as small as a pixel have no tiles of their own.
         let (some, many) = (of(1, 100), of(1, 10_000));
         assert!(all(&many) <= all(&some), "{some:?}, {many:?}");
         // One copy beyond the limit for proxies must not cause a jump in commands.

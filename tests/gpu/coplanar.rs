@@ -279,11 +279,7 @@ fn the_first_copy_is_seen_in_a_crowd() {
                 .draw_paths;
             let what = format!("{stage:?}, {tolerance:?}: {wrong} of {shared}");
             println!("{what}");
-            let path = match stage {
-                DrawStage::Fragment => DrawPath::Walk,
-                DrawStage::Compute => DrawPath::Tiles,
-            };
-            assert_eq!(paths, [path], "{what}");
+            assert_eq!(paths, [DrawPath::Walk], "{what}");
             if wrong > 0 || shared < 1000 {
                 failures.push(what);
             }

@@ -131,6 +131,6 @@ fn the_near_plane_cuts_solids() {
             }
         }
     }
-    let every = [DrawPath::Cells, DrawPath::Box, DrawPath::Tiles];
+    let every = [DrawPath::Cells, DrawPath::Box, DrawPath::Walk];
     assert!(every.iter().all(|path| paths.contains(path)), "{paths:?}");
 }

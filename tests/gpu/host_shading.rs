@@ -150,7 +150,6 @@ fn a_copy_of_our_function_gives_our_picture() {
     let exact = SearchSettings::exact();
     let [cells, boxes] = [1, u32::MAX].map(|proxy_min_pixels| SearchSettings {
         proxy_min_pixels,
-        occlusion_culling: false,
         ..exact
     });
     let live = exact.with(|s| s.solver = Solver::Live);

@@ -43,10 +43,7 @@ const LIVE: Search = Search {
 
 /// Settings that use proxies for solids of any size.
 pub fn settings(solver: Solver, stage: DrawStage) -> Settings {
-    drawn_by((320, 240), stage, solver).with(|s| {
-        s.proxy_min_pixels = 0;
-        s.planning = Planning::Host;
-    })
+    drawn_by((320, 240), stage, solver).with(|s| s.proxy_min_pixels = 0)
 }
 
 impl Search {

@@ -73,7 +73,7 @@ fn a_device_that_lacks_something_is_refused_by_name() {
         ),
         (
             limit!(max_push_constants_size, 16),
-            "maxPushConstantsSize of 32 (it has 16)",
+            "maxPushConstantsSize of 44 (it has 16)",
         ),
         (
             limit!(max_compute_work_group_invocations, 32),

@@ -30,7 +30,7 @@ fn a_crowd_in_one_depth_buffer() {
             object.repeat = [2, 1, 1];
         }
         ways[0].push([DrawPath::Cells, DrawPath::Cells, DrawPath::Box][n % 3]);
-        ways[1].push(DrawPath::Tiles);
+        ways[1].push(DrawPath::Walk);
     }
     EXACT.assert_same("crowd", &crowd, ways.each_ref().map(Vec::as_slice));
 }
@@ -53,7 +53,7 @@ fn copies_of_a_lone_object() {
     let few = copies(3, 1.0);
     EXACT.assert_same("three", &few, WRAPPED);
     EXACT.assert_same("64", &copies(64, 0.7), WRAPPED);
-    let crowd: [&[DrawPath]; 2] = [&[DrawPath::Walk], &[DrawPath::Tiles]];
+    let crowd: [&[DrawPath]; 2] = [&[DrawPath::Walk], &[DrawPath::Walk]];
     EXACT.assert_same("65", &copies(65, 0.7), crowd);
     let mut beside = few.clone();
     beside.objects[0].instances[0].position = DVec3::new(-3.7, 9.3, 0.0);

@@ -4,7 +4,7 @@ use crate::common::host::{COLOR, Canvas, DEPTH, Host, Options, dynamic, order};
 use crate::random::Random;
 use ash::vk;
 use revmap::gpu::{HostPass, Output, PassFormats, PassKind};
-use revmap::settings::{Plane, PlaneList, Planes, Planning, SearchSettings, Solver, Tolerance};
+use revmap::settings::{Plane, PlaneList, Planes, SearchSettings, Solver, Tolerance};
 
 /// An output, and how its renderer searches.
 #[derive(Clone, Debug)]
@@ -125,7 +125,6 @@ fn search(dice: &mut Random) -> SearchSettings {
         map_rows: Some(32),
         proxy_min_pixels: dice.pick(&[0, 150, 150, u32::MAX]),
         tolerance: Tolerance::new(dice.pick(&[0.0, 0.25, 8.0])).unwrap(),
-        planning: dice.pick(&[Planning::Host, Planning::Device]),
         ..SearchSettings::exact()
     }
 }

@@ -640,8 +640,8 @@ typedef struct RevmapSearch {
     /// A RevmapMapFormat.
     uint32_t map_format;
     /// Least pixels of an object's box for each visible frustum of its cells at which cells are
-    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs
-    /// make from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX:
+    /// drawn; below it the box is. It also limits lists of patches in compute, which GPUs make for
+    /// solids far wider than high alone. 0: cells and lists in pictures of any size; UINT32_MAX:
     /// neither.
     uint32_t proxy_min_pixels;
     /// Not read.
@@ -906,7 +906,7 @@ typedef struct RevmapStatistics {
     uint32_t drawn_by_box;
     /// Number of objects drawn by hulls.
     uint32_t drawn_by_hull;
-    /// Number of objects drawn by tiles of the screen, or by rays that walk to copies.
+    /// Number of objects drawn by rays that walk to copies: all of them in compute.
     uint32_t drawn_by_tiles;
     /// Notes that revmap_renderer_note() gives.
     uint32_t notes;

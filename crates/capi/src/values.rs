@@ -141,8 +141,8 @@ pub struct RevmapSearch {
     /// A RevmapMapFormat.
     pub map_format: u32,
     /// Least pixels of an object's box for each visible frustum of its cells at which cells are
-    /// drawn; below it tiles or the box are. It also limits lists of patches in compute, which GPUs
-    /// make from 524,288 pixels on. 0: cells and lists in pictures of any size; UINT32_MAX:
+    /// drawn; below it the box is. It also limits lists of patches in compute, which GPUs make for
+    /// solids far wider than high alone. 0: cells and lists in pictures of any size; UINT32_MAX:
     /// neither.
     pub proxy_min_pixels: u32,
     /// Not read.
@@ -323,7 +323,6 @@ impl RevmapSearch {
             map_format: enums::map_format(self.map_format)?,
             proxy_min_pixels: self.proxy_min_pixels,
             tolerance: Tolerance::new(self.tolerance)?,
-            ..SearchSettings::default()
         })
     }
 

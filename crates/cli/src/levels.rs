@@ -65,7 +65,7 @@ mod tests {
         let mut scene = Scene::new(Camera::new(DVec3::X, DVec3::ZERO));
         scene.objects = vec![object.clone(), object];
         let cost = ObjectCost {
-            path: DrawPath::Tiles,
+            path: DrawPath::Walk,
             level: Some(3),
             error_pixels: None,
             patches: 1,

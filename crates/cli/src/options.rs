@@ -8,7 +8,7 @@ use revmap::error::Result;
 use revmap::gpu::Device;
 use revmap::maps::{MapFormat, MapSource};
 use revmap::scene::Scene;
-use revmap::settings::{DrawStage, Planes, Planning, Solver, Tolerance};
+use revmap::settings::{DrawStage, Planes, Solver, Tolerance};
 use revmap_bench::plan::method::{Edges, Method, MethodSettings};
 use revmap_files::SceneFile;
 use revmap_searches::{cache, folder};
@@ -97,10 +97,6 @@ pub struct Drawing {
     /// .exr is written]
     #[arg(long, value_name = "PIXELS", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
-    /// Where the compute stage finds the copies that a pixel may show: by the CPU for each view, or on
-    /// the device, the default on GPUs
-    #[arg(long, value_name = "WHERE", default_value = "auto", value_parser = named(&Planning::NAMES))]
-    pub planning: Planning,
     #[command(flatten)]
     pub device: DeviceChoice,
     /// The most memory that buffers and pictures may take on the device, MiB [default: as much as
@@ -137,7 +133,6 @@ impl Drawing {
             map_format: self.map_format,
             planes,
             tolerance: self.tolerance.unwrap_or_default(),
-            planning: self.planning,
             edges: Edges::OneRay,
         }
     }
@@ -170,7 +165,6 @@ impl Drawing {
             ("--map-format", self.map_format != MapFormat::R32),
             ("--solver", self.solver != Method::DEFAULT),
             ("--tolerance", self.tolerance.is_some()),
-            ("--planning", self.planning != Planning::Auto),
             ("--device", self.device.name().is_some()),
         ];
         let (who, reads): (String, &[&str]) = match self.stage {
@@ -294,7 +288,7 @@ fn read_by(method: Method) -> &'static [&'static str] {
         _ if method.reads_map() => &OF_MAPS,
         _ if method.reads_own_table() && method.default_steps(false) > 1 => &OF_MAPS[..4],
         _ if method.reads_own_table() => &OF_MAPS[..3],
-        Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance", "--planning"],
+        Method::Search(_) | Method::Floor => &["--solver", "--device", "--tolerance"],
         Method::Mesh { .. } | Method::MeshWithin { .. } => &OF_MAPS[..2],
     }
 }

@@ -6,7 +6,7 @@ pub mod renderer;
 
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::maps::{MapFormat, MapSource};
-use revmap::settings::{DrawStage, Planes, Planning, Settings, Solver, Tolerance};
+use revmap::settings::{DrawStage, Planes, Settings, Solver, Tolerance};
 use revmap_mesh::Fineness;
 use revmap_searches::folder;
 use std::fmt;
@@ -302,8 +302,6 @@ pub struct MethodSettings {
     pub planes: Planes,
     /// Allowed error of searches on patches.
     pub tolerance: Tolerance,
-    /// Where the copies that a pixel may show are found.
-    pub planning: Planning,
     /// How edges are treated.
     pub edges: Edges,
 }
@@ -376,7 +374,6 @@ impl Default for MethodSettings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            planning: settings.planning,
             edges: Edges::OneRay,
         }
     }
@@ -396,7 +393,6 @@ impl From<&MethodSettings> for Settings {
             map_format: settings.map_format,
             planes: settings.planes,
             tolerance: settings.tolerance,
-            planning: settings.planning,
             antialias: settings.edges == Edges::Silhouettes,
             ..Self::default()
         }

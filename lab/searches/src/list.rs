@@ -24,7 +24,7 @@ impl Listed {
 /// Every module.
 pub fn modules() -> Vec<Listed> {
     let mut all = Vec::new();
-    for pass in [Pass::Fragment, Pass::Tile, Pass::Copies] {
+    for pass in [Pass::Fragment, Pass::Compute] {
         for (hook, table, bounded) in [
             ("circle/search.glsl", false, true),
             ("linear/search.glsl", false, true),

@@ -168,9 +168,9 @@ struct LevelTables {
     vec4 limits; // level n + 1 is allowed from this multiple of the copy's largest scale on (src/plan/levels.rs)
     uvec4 tables; // first vector of the tables of levels 0 to 3
     uint last_table; // of level 4
+    uint listed; // first vector of the patches for lists, of all levels
     uint unused_0;
     uint unused_1;
-    uint unused_2;
 };
 
 // A node of a hierarchy. `index` of a node without children is its copy, or INNER_NODE. The node before the root has
@@ -180,57 +180,25 @@ struct WalkNode {
     uint index;
 };
 
-// A square of pixels in which one copy may be visible: a tile in compute, also smaller for fragments.
-struct CopyTile {
-    uint square; // its corner: x | y << QUAD_BITS, pixels
-    uint instance; // index of the copy
-    uvec2 unused;
-};
-
-// A tile with a queue of copies.
-struct QueueTile {
-    uint place; // column | row << TILE_BITS
-    uint first; // index of its first QueueBlock
-    uint count; // number of copies
-    uint unused;
-};
-
-// A copy in a queue.
-struct QueuedCopy {
-    uint instance; // index of the copy
-    float near; // its nearest depth
-};
-
-// QUEUE_BLOCK copies of a queue, nearest first. The rest of the last block is zero.
-struct QueueBlock {
-    QueuedCopy copies[QUEUE_BLOCK];
-    uint marks[QUEUE_MARKS]; // QUEUE_BLOCK bits per pixel of the tile, one for each copy that the pixel may show
-};
-
-// A pixel of a tile with a queue, among pixels of other tiles.
-struct GatheredPixel {
-    uint position; // x | y << 16; NO_PIXEL fills up the last work group
-    uint tile; // index of the QueueTile
-};
-
-// A tile of one copy in a bin.
+// A tile whose patches are listed, in a bin.
 struct BinTile {
-    uint square; // as in CopyTile
-    uint instance;
-    uvec2 found; // lists: two runs of patches (first | number << 9 | first << 15 | number << 24), 1 << 31 if rays
-                 // begin at a height; that height, else 0.5; tree: range of t of possible hits (bits of floats)
+    uint square; // its corner: x | y << QUAD_BITS, pixels
+    uint instance; // index of its only copy
+    uvec2 found; // two runs of patches (first | number << 9 | first << 15 | number << 24), 1 << 31 if rays begin at a
+                 // height; that height, else 0.5 (bits of floats)
 };
 
 // Push constants of a dispatch.
 struct Pushed {
-    uint first; // index of the first tile, or of the first gathered pixel; walks: of the first tile, row by row; of the
-                // first instance that is placed
-    uint count; // number of tiles whose patches are listed; 0 if tiles come from the host; walks: of tiles in a row; of
-                // instances
-    uint heads; // index of the first head of their bins; walks: of the hierarchy
-    uint tiles; // index of the first tile of their bins; walks: of the first vector of the tiles' walks
-    uint bin; // number of the bin that is read; walks: end of the tiles that are listed, 0 if none is
-    uint gathered; // 1 if a work group's pixels come from several tiles; lists of walks: index of their head
+    uint first; // index of the first tile, block of tiles, open pixel or instance
+    uint placed; // number of instances that are placed
+    uint corner; // upper left pixel of the rectangle of tiles: x | y << QUAD_BITS
+    uint size; // tiles across | down << 16
+    uint root; // index of the hierarchy
+    uint heads; // index of the first head of the bins
+    uint tiles; // index of the first tile of the bins, or of the bin that is read; of the first vector of walks
+    uint room; // lists: number of tiles that a bin holds
+    uint listed; // 1 if walks are of listed tiles, 0 if of all tiles of the rectangle
     uint object; // index of the only object
     uint instance; // index of its only copy
 };

@@ -76,6 +76,7 @@ layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch th
 layout(constant_id = 19) const uint SINGLE_CELLS = 0u; // 1: each cell of the draw has one patch
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
+layout(constant_id = 17) const uint OPEN_PIXELS = 0u; // 1: each invocation of a walk reads its pixel
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile
 
@@ -116,8 +117,8 @@ const uint RING_CORNERS = 12u; // corners of a frustum's rings
 const uint PATCHES_PER_CELL = 8u; // upper limit on patches of a cell
 const uint FRUSTUM_VECTORS = 17u; // vectors of a frustum: its rings, then the cell's quadrics and guards
 const uint LISTED_PATCHES = 340u; // upper limit on patches of a solid with lists, three vectors each
-const uint TREE_BIN = 4u; // bin of tiles that use the tree; before it, one bin for each length of a list of patches
-const uint TILE_BINS = 5u; // number of bins
+const uint WALK_BIN = 4u; // head of the tiles that walk; before it, one for the bin of each length of a list of patches
+const uint TILE_BINS = 5u; // number of heads
 const uint SHORT_LIST = 8u; // first of the list lengths
 const uint MIDDLE_LIST = 16u;
 const uint LONG_LIST = 32u;
@@ -128,11 +129,8 @@ const uint PLACED = 4294967295u; // in place of a copy's table: the device place
 const uint TILE_WALK_VECTORS = 2u; // vectors of a tile's walk
 const uint LEVEL_WORDS = 12u; // words of LevelTables
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
-const uint QUAD_BITS = 15u; // bits of each coordinate of a tile's corner
-const uint TILE_BITS = 13u; // bits of the column, and of the row, of a tile with a queue
-const uint QUEUE_BLOCK = 16u; // copies of a block of a queue
-const uint QUEUE_MARKS = 32u; // words with a bit for each copy of a block and each pixel of a tile
-const uint NO_PIXEL = 4294967295u; // position outside of any picture
+const uint QUAD_BITS = 15u; // bits of each coordinate of a pixel
+const uint NO_PIXEL = 4294967295u; // position outside of any picture, which fills up the last group of open pixels
 const uint MOST_GROUPS = 65535u; // work groups of a dispatch along one axis, on every device
 const uint BOX_INDICES = 36u; // indices of a shape box
 

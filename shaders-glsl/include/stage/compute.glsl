@@ -1,7 +1,8 @@
-// Inputs of every dispatch: push constants and bins of tiles.
+// Inputs of every dispatch: push constants, rectangles of tiles, and bins of tiles. A tile is a square of GROUP_PIXELS^2
+// pixels.
 #ifndef COMPUTE_GLSL
 #define COMPUTE_GLSL
-#include "stage/tiles.glsl"
+#include "core/structures.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -9,8 +10,9 @@ layout(push_constant) uniform PushedBlock {
     Pushed pushed;
 };
 
-// Bins of tiles by the length of their lists of patches, filled by tile_lists.comp from N tiles: TILE_BINS heads, each an
-// indirect dispatch with one work group per tile in the bin, then N tiles per bin. Tiles of the last bin use the tree.
+// Bins of tiles that lists are made for: TILE_BINS heads, each an indirect dispatch with a work group for each tile of the
+// bin, or one head if no patches are listed. Then pushed.room tiles for each length of a list of patches, if patches are
+// listed, and walks of as many tiles (walk_lists.glsl).
 #ifndef BIN_ACCESS
 #define BIN_ACCESS readonly
 #endif
@@ -21,10 +23,21 @@ layout(set = 2, binding = 6, std430) BIN_ACCESS buffer BinTiles {
     BinTile bin_tiles[];
 };
 
-// Returns the index of the first tile of bin `k`.
-uint bin_start(uint k)
+// Returns the pixel of 2 * QUAD_BITS bits.
+uvec2 square_corner(uint square)
 {
-    return pushed.tiles + k * pushed.count;
+    return uvec2(square, square >> QUAD_BITS) & ((1u << QUAD_BITS) - 1u);
+}
+
+uint square_of(uvec2 corner)
+{
+    return corner.x | corner.y << QUAD_BITS;
+}
+
+// Returns tiles across and down the rectangle.
+uvec2 tiles_of_rectangle()
+{
+    return uvec2(pushed.size & 0xffffu, pushed.size >> 16);
 }
 
 #endif

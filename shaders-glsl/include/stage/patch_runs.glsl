@@ -5,8 +5,7 @@
 // three vectors per patch: its quadric, its guard, its bounds (read by beam.glsl). The last record is one without hits.
 #ifndef PATCH_RUNS_GLSL
 #define PATCH_RUNS_GLSL
-#define BIN_ACCESS
-#include "stage/compute.glsl"
+#include "stage/walk_lists.glsl"
 
 // The first and the last patch, and the widest gap between two successive ones.
 struct PatchRuns {
@@ -35,20 +34,9 @@ uvec2 lengths_of(PatchRuns runs)
                  : uvec2(runs.last + 1u - runs.first, 0u);
 }
 
-// Adds a tile to bin `n`. Heads are zero at first; the first tile completes the indirect dispatch.
-void append(uint n, BinTile tile)
-{
-    uint head = pushed.heads + n;
-    uint index = atomicAdd(bin_heads[head].x, 1u);
-    if (index == 0u) {
-        bin_heads[head].yz = uvec2(1u);
-    }
-    bin_tiles[bin_start(n) + index] = tile;
-}
-
 // Adds a tile if its runs are short enough for a list. Returns false if not; then the tile must use the tree. `by_tip`:
 // rays begin at the height `tip`.
-bool append_runs(CopyTile tile, PatchRuns runs, bool by_tip, float tip)
+bool append_runs(uvec2 corner, uint instance, PatchRuns runs, bool by_tip, float tip)
 {
     uvec2 lengths = lengths_of(runs);
     uint listed = lengths.x + lengths.y;
@@ -57,7 +45,8 @@ bool append_runs(CopyTile tile, PatchRuns runs, bool by_tip, float tip)
     }
     uint n = uint(listed > SHORT_LIST) + uint(listed > MIDDLE_LIST) + uint(listed > LONG_LIST);
     uint found = runs.first | lengths.x << 9 | runs.gap.y << 15 | lengths.y << 24 | uint(by_tip) << 31;
-    append(n, BinTile(tile.square, tile.instance, uvec2(found, floatBitsToUint(by_tip ? tip : 0.5))));
+    BinTile tile = BinTile(square_of(corner), instance, uvec2(found, floatBitsToUint(by_tip ? tip : 0.5)));
+    bin_tiles[pushed.tiles + n * pushed.room + count_tile(pushed.heads + n)] = tile;
     return true;
 }
 

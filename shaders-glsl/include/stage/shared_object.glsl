@@ -1,4 +1,4 @@
-// The instance and the object of a tile with a single copy, through memory that the group shares. Software drivers read
+// The instance and the object of a tile, through memory that the group shares. Software drivers read
 // storage buffers lane by lane, and shared memory at constant places once for all lanes.
 #ifndef SHARED_OBJECT_GLSL
 #define SHARED_OBJECT_GLSL

@@ -1,27 +1,16 @@
-// State of a tile with a single copy.
+// State of a tile with a list of patches.
 #ifndef TILE_GLSL
 #define TILE_GLSL
 #include "stage/stores.glsl"
 
-BinTile tile; // `found` is set for tiles of bins alone
+BinTile tile;
 Instance tile_instance;
 Look tile_look;
 PixelRays tile_rays;
 
-// Returns true if the dispatch reads a bin. Otherwise it reads tiles from the host.
-bool reads_bin()
-{
-    return pushed.count != 0u;
-}
-
 void load_tile()
 {
-    if (reads_bin()) {
-        tile = bin_tiles[bin_start(pushed.bin) + gl_WorkGroupID.x];
-    } else {
-        CopyTile from_host = copy_tiles[pushed.first + gl_WorkGroupID.x];
-        tile = BinTile(from_host.square, from_host.instance, uvec2(0u));
-    }
+    tile = bin_tiles[pushed.tiles + gl_WorkGroupID.x];
 }
 
 // Index of the tile's instance among all. It is the same for all lanes if it is not read from memory.

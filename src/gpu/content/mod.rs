@@ -19,7 +19,7 @@ use crate::plan::path::MOST_LOOKS;
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
-use crate::settings::{Planes, Planning, SearchSettings};
+use crate::settings::{Planes, SearchSettings};
 use crate::shader::{InstanceBlock, Lights};
 use crate::solid::offset_surface::OffsetSurface;
 use entry::Stale;
@@ -75,14 +75,7 @@ impl Content {
             geometry,
             rebuilds: 0,
             notes: Vec::new(),
-            settings: SearchSettings {
-                planning: match settings.planning {
-                    Planning::Auto if tiles_pay(device, &output) => Planning::Host,
-                    Planning::Auto => Planning::Device,
-                    chosen => chosen,
-                },
-                ..*settings
-            },
+            settings: *settings,
             output,
             host_shades,
             device: device.clone(),
@@ -158,7 +151,6 @@ impl Content {
             tolerance: self.settings.tolerance,
             casts: self.casts(),
             parallel: self.is_parallel(),
-            walks: with.walks,
         };
         let known = self.plan.as_ref().filter(|known| {
             Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
@@ -171,7 +163,7 @@ impl Content {
             // Boxes are those of the levels of surfaces.
             let levels = known.objects.iter().map(|object| object.level);
             let shadows = known.walks.casters.is_some() == shadowed;
-            shadows && known.with.walks == with.walks && levels.eq(objects.iter().map(|o| o.level))
+            shadows && levels.eq(objects.iter().map(|o| o.level))
         };
         let known = known.filter(is_same).map(|known| known.walks.clone());
         self.make_surfaces(objects.iter().flat_map(|object| &object.surfaces));
@@ -198,10 +190,9 @@ impl Content {
     /// The inputs of a plan of a snapshot, other than view and objects.
     pub fn conditions(&self, snapshot: &Snapshot) -> Conditions {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
-        let walks = !self.is_compute() || self.settings.planning == Planning::Device;
-        let plans_on_device = walks && !self.is_parallel();
         Conditions {
             compute: self.is_compute(),
+            opens: self.open.is_some(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
@@ -209,11 +200,9 @@ impl Content {
             subgroup_size: chosen.subgroup_size,
             most_storage: limits.max_storage_buffer_range,
             least_pixels: self.settings.proxy_min_pixels,
-            occlusion_culling: self.settings.occlusion_culling,
             ray_spread: self.output.ray_spread(),
             level_pixels: self.settings.tolerance.pixels() / GRAZING,
-            plans_on_device,
-            walks: plans_on_device && self.open.is_none(),
+            parallel: self.is_parallel(),
             takes_patches: self.settings.takes_patches(),
             lights: match self.casts() || self.host_shades {
                 true => Lights::Any,
@@ -250,13 +239,6 @@ fn in_parallel(
     let all = distinct(&mut all);
     all.par_iter().for_each(|surface| make(surface));
     all.len()
-}
-
-/// True if a crowd takes less time by tiles of the host than by walks, `prepare` among it: in the
-/// compute stage of software drivers. Walks take 0.8 to 1.5 of the time of tiles there on lavapipe 22
-/// and 25, and 1.6 to 2.3 on SwiftShader.
-fn tiles_pay(device: &Shared, output: &Output) -> bool {
-    device.chosen.report.kind == "cpu" && matches!(output, Output::Compute(_))
 }
 
 /// Upper limit on instances: their records are in one storage buffer, with those of the last frame

@@ -9,7 +9,7 @@ use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{InstanceBlock, SearchCode, Technique};
+use crate::shader::{InstanceBlock, Technique};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use std::ops::Range;
 use std::sync::Arc;
@@ -53,28 +53,24 @@ impl PlannedObject {
 
     /// The number of a copy's surface among all.
     pub fn surface_of(&self, copy: &InstanceBlock) -> usize {
-        let coarser = |levels: &CopyLevels| levels.of_block(copy) - levels.first;
-        self.levels.as_ref().map_or(0, coarser)
+        (self.levels.as_ref()).map_or(0, |levels| levels.of_block(copy))
     }
 
     /// The object in the form that a plan reads. `look_copies`: number of copies of its look.
     pub fn input(&self, look_copies: usize) -> PlanObject<'_> {
-        let (prepared, derived) = (&*self.object, &self.object.derived);
+        let prepared = &*self.object;
         let object = prepared.drawn();
         let bounds = prepared.bounds(&self.surfaces[..self.surfaces.len().min(1)]);
-        let texels = 2.0 / f64::from(derived.facts.rows);
-        let away = object.offset.largest_width().max(0.0) + texels;
         PlanObject {
             object,
             number: prepared.number,
             first_instance: prepared.instances.start,
-            technique: derived.technique,
+            technique: prepared.derived.technique,
             textures: prepared.look().1,
             look_copies,
             surfaces: &self.surfaces,
             levels: self.levels.as_ref(),
             shape: shape_of(object, bounds.map(f64::from)),
-            outline: Some((prepared.boundary.solid.as_ref(), away)),
         }
     }
 }
@@ -88,9 +84,6 @@ pub(super) struct LevelRules {
     pub casts: bool,
     /// True if rays are parallel.
     pub parallel: bool,
-    /// True if the device finds the level of each copy that it walks to: then no view rules a level
-    /// out.
-    pub walks: bool,
 }
 
 impl LevelRules {
@@ -107,10 +100,8 @@ impl LevelRules {
             all.iter_mut().for_each(|f| f.level = finest);
         }
         for one in &mut all {
-            let coarser = one
-                .levels
-                .iter()
-                .flat_map(|of| &COPY_LEVELS[of.first + 1..]);
+            // The device finds the level of each copy, so no view rules a level out.
+            let coarser = one.levels.iter().flat_map(|_| &COPY_LEVELS[1..]);
             for level in [one.level].iter().chain(coarser) {
                 one.surfaces.extend(one.object.surface(*level)?);
             }
@@ -133,10 +124,13 @@ impl LevelRules {
         }
         if self.levels_copies(object) {
             let height = object.growth().height();
-            let any = self.walks && object.derived.technique.search == SearchCode::Quadric;
-            let levels = CopyLevels::new(object.drawn(), height, view, (self.tolerance, any));
-            planned.level = COPY_LEVELS[levels.first];
-            planned.levels = Some(levels);
+            planned.level = COPY_LEVELS[0];
+            planned.levels = Some(CopyLevels::new(
+                object.drawn(),
+                height,
+                view,
+                self.tolerance,
+            ));
         } else {
             let pixels = object.pixels_per_unit(view, self.casts);
             // An object that does not show takes a level that is already made.

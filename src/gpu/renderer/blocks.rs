@@ -103,14 +103,15 @@ pub(super) fn level_tables(planned: &PlannedObject) -> LevelTables {
     let start = |surface: &Arc<OffsetSurface>| surface.start(Part::Tables);
     let limits = planned.levels.as_ref().map(|levels| levels.limits);
     let at = |level: usize| {
-        let first = planned.levels.as_ref().map_or(0, |levels| levels.first);
-        let surface = planned.surfaces.get(level.saturating_sub(first));
+        let surface = planned.surfaces.get(level);
         surface.or(planned.surfaces.last()).map_or(0, start)
     };
+    let finest = planned.surfaces.first();
     LevelTables {
         limits: limits.unwrap_or([f32::INFINITY; 4]),
         tables: std::array::from_fn(at),
         last_table: at(4),
+        listed: finest.map_or(0, |surface| surface.start(Part::Patches)),
         ..LevelTables::default()
     }
 }

@@ -11,11 +11,11 @@ use super::output_check::check_viewport;
 use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::{PlannedObject, ViewPlan};
+use crate::plan::path::MOST_PROXIES;
 use crate::plan::{DrawPath, View};
 use crate::shader::{Drawn, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use ash::vk;
-use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -252,10 +252,11 @@ impl Renderer {
         let records = u64::from(snapshot.instances) * if motion { 2 } else { 1 };
         let bytes = records * size_of::<InstanceBlock>() as u64;
         let are_placed = to.write_walks(&plan.walks, bytes)?;
-        // A single copy costs the host less than the device would need in each pixel. The host finds
-        // what lags.
+        // The host places few copies in less time than a dispatch takes, single ones for less than the
+        // device would need in each pixel, and what lags.
         let is_placed = |(planned, path): (&PlannedObject, &DrawPath)| {
-            let many = planned.object.drawn().placements().len() > 1;
+            let copies = planned.object.drawn().placements().len();
+            let many = copies > 1 && snapshot.looks[&planned.object.look()] > MOST_PROXIES;
             *path == DrawPath::Walk && many && plan.precedence.is_empty()
         };
         let mut places = plan.objects.iter().zip(&plan.frame.paths);
@@ -264,9 +265,8 @@ impl Renderer {
         let bytes = snapshot.number_count as u64 * u64::from(OBJECT_STRIDE);
         to.fit(SlotBuffer::Objects, bytes)?;
         to.write_plan(&plan.frame)?;
-        let facts = plan.frame.copies.iter().zip(&plan.frame.outside);
-        let facts = facts.zip(&plan.frame.paths);
-        for (planned, ((copies, outside), path)) in plan.objects.iter().zip(facts) {
+        let facts = plan.frame.outside.iter().zip(&plan.frame.paths);
+        for (planned, (outside, path)) in plan.objects.iter().zip(facts) {
             let (object, number) = (&planned.object, planned.object.number);
             let drawn = object.drawn();
             let placements = drawn.placements();
@@ -280,30 +280,25 @@ impl Renderer {
             if placed && are_placed && !motion {
                 continue;
             }
-            let shown: Cow<[u32]> = match copies {
-                Some(shown) => shown.into(),
-                None => (0..placements.len() as u32).collect(),
-            };
-            let first = object.instances.start;
+            let (first, count) = (object.instances.start, placements.len());
             if placed && !are_placed {
-                let block = |copy| placed_block(&placements[copy as usize], number);
-                to.write_instances(first, &shown, block)?;
+                let block = |copy: usize| placed_block(&placements[copy], number);
+                to.write_instances(first, count, block)?;
             } else if !placed {
                 let starts =
                     |s: &Arc<OffsetSurface>| [Part::Patches, Part::Tables].map(|p| s.start(p));
                 let starts: Vec<_> = planned.surfaces.iter().map(starts).collect();
-                to.write_instances(first, &shown, |copy| {
-                    let placement = &placements[copy as usize];
-                    let mut block = instance_block(drawn, placement, number, view);
-                    block.lag = plan.precedence.lag(first + copy, &block, view);
+                to.write_instances(first, count, |copy| {
+                    let mut block = instance_block(drawn, &placements[copy], number, view);
+                    block.lag = plan.precedence.lag(first + copy as u32, &block, view);
                     let starts = starts.get(planned.surface_of(&block));
                     [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
                     block
                 })?;
             }
             if motion {
-                let last = |copy| last_copy(object, copy as usize, view);
-                to.write_instances(snapshot.instances + first, &shown, last)?;
+                let last = |copy| last_copy(object, copy, view);
+                to.write_instances(snapshot.instances + first, count, last)?;
             }
         }
         to.walks = Some(plan.walks.clone());

@@ -62,7 +62,7 @@ impl Renderer {
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         self.content.refresh()?;
         let mut wanted = self.content.prewarmed_forms();
-        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles);
+        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles | Kind::WalkPixels);
         if wanted.iter().any(walks) {
             wanted.push(PLACE);
         }

@@ -185,15 +185,12 @@ impl Renderer {
             }
             for first in (0..slot.placed).step_by((MOST_GROUPS * PLACES) as usize) {
                 let groups = (slot.placed - first).div_ceil(PLACES).min(MOST_GROUPS);
-                let count = slot.placed;
-                self.push(
-                    cmd,
-                    &Pushed {
-                        first,
-                        count,
-                        ..Pushed::default()
-                    },
-                );
+                let pushed = Pushed {
+                    first,
+                    placed: slot.placed,
+                    ..Pushed::default()
+                };
+                self.push(cmd, &pushed);
                 // SAFETY: `cmd` is recording, outside of a pass.
                 unsafe { raw.cmd_dispatch(cmd, groups, 1, 1) };
             }

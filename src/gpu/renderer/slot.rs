@@ -15,11 +15,11 @@ use crate::gpu::vk::usage::Usage;
 use crate::plan::walk::Walks;
 use crate::plan::{Call, DrawPath, FramePlan};
 use crate::shader::{
-    BinTile, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, QueueBlock, Variant,
-    WalkNode,
+    BinTile, FrameBlock, InstanceBlock, Kind, OBJECT_STRIDE, ObjectBlock, Variant, WalkNode,
 };
 use ash::vk;
 use bytemuck::Zeroable;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A buffer of a slot.
@@ -31,7 +31,7 @@ pub(crate) enum SlotBuffer {
     /// The instances as the device places them.
     Placed,
     Nodes,
-    Tiles,
+    OpenPixels,
     Bins,
     Draws,
     /// The lower word of the number of the last frame with uploads that has run.
@@ -45,7 +45,7 @@ const BUFFERS: [(Use, &str, usize); 9] = [
     (Use::Storage, "instances", size_of::<InstanceBlock>()),
     (Use::Placed, "placed instances", 0),
     (Use::Storage, "hierarchies", size_of::<WalkNode>()),
-    (Use::Storage, "tiles", size_of::<QueueBlock>()),
+    (Use::Storage, "open pixels", size_of::<u32>()),
     (Use::Bins, "bins of tiles", 0),
     (Use::Draws, "draws", 0),
     (Use::Mark, "mark of uploads", 4),
@@ -53,10 +53,10 @@ const BUFFERS: [(Use, &str, usize); 9] = [
 
 /// Buffers that are this many times as large as their contents are made anew, with less memory.
 const SPARE: u64 = 8;
+/// Copies of which one core writes the blocks.
+const FEW: usize = 2048;
 /// Bytes of contents below which buffers keep their memory.
 const LEAST_SPARE: u64 = 1 << 12;
-/// The first block of tiles, which holds no copies.
-const EMPTY_BLOCK: [u32; size_of::<QueueBlock>() / 4] = [0; size_of::<QueueBlock>() / 4];
 
 /// The buffers and descriptor sets of one prepared frame.
 pub(crate) struct FrameSlot {
@@ -151,7 +151,6 @@ impl FrameSlot {
         write(&mut buffers[SlotBuffer::Mark as usize], 0, &0u32)?;
         let instance = InstanceBlock::zeroed();
         write(&mut buffers[SlotBuffer::Instances as usize], 0, &instance)?;
-        write_slice(&mut buffers[SlotBuffer::Tiles as usize], &EMPTY_BLOCK)?;
         let (pool, [frame_set, target_set]) = sets(device)?;
         Ok(Self {
             frame_set,
@@ -306,18 +305,22 @@ impl FrameSlot {
         write(self.buffer_mut(buffer), at, block)
     }
 
-    /// Writes the instances of these copies, in ascending order, on all cores. `first`: number of
-    /// the instance of copy 0.
+    /// Writes the instances of so many copies, on all cores. `first`: number of the instance of
+    /// copy 0.
     pub fn write_instances<Block: bytemuck::Pod>(
         &mut self,
         first: u32,
-        copies: &[u32],
-        block: impl Fn(u32) -> Block + Sync,
+        copies: usize,
+        block: impl Fn(usize) -> Block + Sync,
     ) -> Result<()> {
         const { assert!(size_of::<Block>() == size_of::<InstanceBlock>()) };
         let from = first as usize * size_of::<InstanceBlock>();
         let instances = self.buffer_mut(SlotBuffer::Instances).mapped()?;
-        fill(instances[from..].as_chunks_mut().0, 0, copies, &block);
+        let blocks = &mut instances[from..]
+            .as_chunks_mut::<{ size_of::<InstanceBlock>() }>()
+            .0[..copies];
+        let blocks = blocks.par_iter_mut().with_min_len(FEW).enumerate();
+        blocks.for_each(|(copy, to)| to.copy_from_slice(bytemuck::bytes_of(&block(copy))));
         Ok(())
     }
 
@@ -355,18 +358,14 @@ impl FrameSlot {
         Ok(())
     }
 
-    /// Writes a plan's tiles and draws, and makes room for its bins.
+    /// Writes a plan's open pixels and draws, and makes room for its bins.
     pub fn write_plan(&mut self, plan: &FramePlan) -> Result<()> {
-        // Draws that only warm up pipelines read the first block.
-        let words = match plan.tile_words.as_slice() {
-            [] => &EMPTY_BLOCK,
-            words => words,
-        };
-        self.fit(SlotBuffer::Tiles, size_of_val(words) as u64)?;
+        let open = plan.open_pixels.as_slice();
+        self.fit(SlotBuffer::OpenPixels, size_of_val(open) as u64)?;
         let bins = size_of::<BinTile>() as u64 * u64::from(plan.bin_vectors);
         self.fit(SlotBuffer::Bins, bins)?;
         self.fit(SlotBuffer::Draws, size_of_val(plan.draws.as_slice()) as u64)?;
-        write_slice(self.buffer_mut(SlotBuffer::Tiles), words)?;
+        write_slice(self.buffer_mut(SlotBuffer::OpenPixels), open)?;
         write_slice(self.buffer_mut(SlotBuffer::Draws), &plan.draws)
     }
 
@@ -407,7 +406,7 @@ impl FrameSlot {
             own(SlotBuffer::Instances),
         ];
         let frame: Vec<_> = (0u32..).zip(frame).collect();
-        let mut of_target = vec![(1, own(SlotBuffer::Tiles)), (6, own(SlotBuffer::Bins))];
+        let mut of_target = vec![(1, own(SlotBuffer::OpenPixels)), (6, own(SlotBuffer::Bins))];
         if let Some(target) = target {
             of_target.push((0, Resource::Buffer(target.words, vk::WHOLE_SIZE)));
             let images = target.images.iter().map(|view| Resource::Image(*view));
@@ -448,28 +447,6 @@ impl Drop for Retired {
         // SAFETY: the commands that read the sets have run; a null pool may be destroyed.
         unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
     }
-}
-
-/// Fills `blocks`, of which the first belongs to copy `first`.
-fn fill<Block: bytemuck::Pod>(
-    blocks: &mut [[u8; size_of::<InstanceBlock>()]],
-    first: u32,
-    copies: &[u32],
-    block: &(impl Fn(u32) -> Block + Sync),
-) {
-    const FEW: usize = 4096;
-    if copies.len() <= FEW {
-        for copy in copies {
-            blocks[(copy - first) as usize].copy_from_slice(bytemuck::bytes_of(&block(*copy)));
-        }
-        return;
-    }
-    let (near, far) = copies.split_at(copies.len() / 2);
-    let (a, b) = blocks.split_at_mut((far[0] - first) as usize);
-    rayon::join(
-        || fill(a, first, near, block),
-        || fill(b, far[0], far, block),
-    );
 }
 
 impl Drop for FrameSlot {

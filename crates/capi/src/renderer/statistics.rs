@@ -28,7 +28,7 @@ pub struct RevmapStatistics {
     pub drawn_by_box: u32,
     /// Number of objects drawn by hulls.
     pub drawn_by_hull: u32,
-    /// Number of objects drawn by tiles of the screen, or by rays that walk to copies.
+    /// Number of objects drawn by rays that walk to copies: all of them in compute.
     pub drawn_by_tiles: u32,
     /// Notes that revmap_renderer_note() gives.
     pub notes: u32,
@@ -88,7 +88,7 @@ impl Recorder {
             drawn_not: drawn(DrawPath::Nothing),
             drawn_by_box: drawn(DrawPath::Box),
             drawn_by_hull: drawn(DrawPath::Cells),
-            drawn_by_tiles: drawn(DrawPath::Tiles) + drawn(DrawPath::Walk),
+            drawn_by_tiles: drawn(DrawPath::Walk),
             notes: number(self.renderer.notes().len()),
             ..sized()
         }

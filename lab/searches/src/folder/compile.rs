@@ -22,7 +22,7 @@ pub fn compile(solver: Solver) -> Result<()> {
     let Some(folder) = super::of(solver) else {
         return Ok(());
     };
-    for pass in [Pass::Fragment, Pass::Tile] {
+    for pass in [Pass::Fragment, Pass::Compute] {
         words(
             folder,
             &SearchModule {

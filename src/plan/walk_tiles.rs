@@ -1,0 +1,269 @@
+//! Dispatches of walks in the compute stage. Each layer of a scene has a rectangle of tiles. Lists of
+//! what the tiles may show come first, an invocation a tile; then the pixels of tiles that show
+//! something. Few large solids have lists of patches too, for tiles of one copy.
+
+use super::open_pixels::OpenPixels;
+use super::path::{LIST_LENGTHS, MOST_PROXIES, is_flat};
+use super::projector::{Projector, Rectangle, TILE_PIXELS};
+use super::walk::{Layer, Walks};
+use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
+use crate::shader::generated::{
+    GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
+};
+use crate::shader::{Kind, Pushed, Variant};
+use crate::solid::offset_surface::Part;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Blocks of tiles for which one dispatch makes lists. No bin has more tiles than a dispatch has work
+/// groups.
+const MOST_BLOCKS: u32 = MOST_GROUPS / TILE_PIXELS;
+
+/// How the tiles of a layer are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lists {
+    /// All tiles of its rectangle are drawn.
+    None,
+    Copies,
+    /// Lists of copies, and of patches where there is one copy.
+    Patches,
+}
+
+impl Lists {
+    /// Heads of bins for each dispatch.
+    const fn heads(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Copies => 1,
+            Self::Patches => TILE_BINS,
+        }
+    }
+
+    /// Vectors of the bins for each tile, walks of tiles among them.
+    const fn vectors(self) -> u32 {
+        match self {
+            Self::None => 0,
+            Self::Copies => TILE_WALK_VECTORS,
+            Self::Patches => TILE_WALK_VECTORS + WALK_BIN,
+        }
+    }
+}
+
+/// A layer that may show.
+struct Shown<'a> {
+    layer: &'a Layer,
+    variant: Variant,
+    pixels: Rectangle,
+    /// Tiles across and down that hold these pixels.
+    size: [u32; 2],
+    lists: Lists,
+}
+
+impl Shown<'_> {
+    /// Blocks of tiles that hold its rectangle.
+    fn blocks(&self) -> u32 {
+        let [across, down] = self.size.map(|tiles| tiles.div_ceil(GROUP_PIXELS));
+        across * down
+    }
+
+    /// Dispatches that make its lists.
+    fn chunks(&self) -> u32 {
+        self.blocks().div_ceil(MOST_BLOCKS)
+    }
+}
+
+/// Tiles across and down that hold a rectangle of pixels.
+fn tiles([left, top, right, bottom]: Rectangle) -> [u32; 2] {
+    [[left, right], [top, bottom]]
+        .map(|[first, last]| last / GROUP_PIXELS - first / GROUP_PIXELS + 1)
+}
+
+impl FramePlan {
+    /// The dispatches of all walks. `variants`: one for each layer. `open`: the pixels that are
+    /// drawn; all if none.
+    pub(super) fn add_walk_tiles(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        (walks, variants): (&Walks, &[Variant]),
+        (with, open): (&Conditions, Option<&OpenPixels>),
+    ) {
+        let projector = projector(view, objects, with);
+        let layers = walks.layers.iter().zip(variants);
+        let mut shown: Vec<Shown> = layers
+            .filter_map(|(layer, &variant)| {
+                let (pixels, covered) = covered(&projector, objects, walks, layer)?;
+                let lists = match open {
+                    Some(_) => Lists::None,
+                    None if self.lists_patches(view, objects, layer, (covered, with)) => {
+                        Lists::Patches
+                    }
+                    None if layer.is_of_one(objects) => Lists::None,
+                    None => Lists::Copies,
+                };
+                Some(Shown {
+                    layer,
+                    variant,
+                    pixels,
+                    size: tiles(pixels),
+                    lists,
+                })
+            })
+            .collect();
+        let vectors =
+            |s: &Shown| u64::from(s.lists.vectors()) * u64::from(s.blocks() * TILE_PIXELS);
+        if 16 * shown.iter().map(vectors).sum::<u64>() > with.room() {
+            shown.iter_mut().for_each(|s| s.lists = Lists::None);
+        }
+        self.bin_heads = shown.iter().map(|s| s.chunks() * s.lists.heads()).sum();
+        self.bin_vectors = self.bin_heads;
+        let (mut head, mut draws) = (0, Vec::new());
+        // Each layer compares its depths with those of the layers before it.
+        for (phase, shown) in (1..).zip(&shown) {
+            let object = shown.layer.objects[0];
+            let of = &objects[object as usize];
+            let [left, top] = [0, 1].map(|axis| shown.pixels[axis] / GROUP_PIXELS * GROUP_PIXELS);
+            let [across, down] = shown.size;
+            let pushed = Pushed {
+                corner: left | top << QUAD_BITS,
+                size: across | down << 16,
+                root: shown.layer.root,
+                object: of.number,
+                instance: of.first_instance,
+                ..Pushed::default()
+            };
+            let step = |phase, kind, call| Step {
+                phase,
+                variant: shown.variant.of_kind(kind),
+                kind,
+                object,
+                call,
+            };
+            if let Some(open) = open {
+                let from = self.open_pixels.len() as u32;
+                open.add_within(shown.pixels, &mut self.open_pixels);
+                for first in chunks(
+                    from..self.open_pixels.len() as u32,
+                    MOST_GROUPS * TILE_PIXELS,
+                ) {
+                    let pushed = Pushed {
+                        first: first.start,
+                        ..pushed
+                    };
+                    let call = Call::Groups(first.len() as u32 / TILE_PIXELS, pushed);
+                    draws.push(step(phase, Kind::WalkPixels, call));
+                }
+                continue;
+            }
+            if shown.lists == Lists::None {
+                for tiles in chunks(0..across * down, MOST_GROUPS) {
+                    let pushed = Pushed {
+                        first: tiles.start,
+                        ..pushed
+                    };
+                    let call = Call::Groups(tiles.len() as u32, pushed);
+                    draws.push(step(phase, Kind::WalkTiles, call));
+                }
+                continue;
+            }
+            let makes = match shown.lists {
+                Lists::Patches => Kind::TileLists,
+                _ => Kind::WalkLists,
+            };
+            for blocks in chunks(0..shown.blocks(), MOST_BLOCKS) {
+                let room = blocks.len() as u32 * TILE_PIXELS;
+                let lists = Pushed {
+                    first: blocks.start,
+                    heads: head,
+                    tiles: self.bin_vectors,
+                    room,
+                    ..pushed
+                };
+                let call = Call::Groups(blocks.len() as u32, lists);
+                self.steps.push(step(0, makes, call));
+                if shown.lists == Lists::Patches {
+                    for length in LIST_LENGTHS {
+                        let pushed = Pushed {
+                            tiles: self.bin_vectors,
+                            ..pushed
+                        };
+                        let call = Call::Indirect(head, pushed);
+                        draws.push(step(phase, Kind::TilePatches(length), call));
+                        self.bin_vectors += room;
+                        head += 1;
+                    }
+                }
+                let pushed = Pushed {
+                    tiles: self.bin_vectors,
+                    listed: 1,
+                    ..pushed
+                };
+                draws.push(step(phase, Kind::WalkTiles, Call::Indirect(head, pushed)));
+                self.bin_vectors += TILE_WALK_VECTORS * room;
+                head += 1;
+            }
+        }
+        self.steps.extend(draws);
+    }
+
+    /// True if patches are listed for a layer, of which the copies cover so many tiles.
+    fn lists_patches(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        layer: &Layer,
+        (tiles, with): (u64, &Conditions),
+    ) -> bool {
+        let of_layer = || layer.objects.iter().map(|&n| &objects[n as usize]);
+        let permits = |&n: &u32| {
+            let of = &objects[n as usize];
+            let apart = |surface: &Arc<_>| proxy::is_apart_from_all(of.object, surface, view);
+            with.permits_lists(of) && of.surface().is_some_and(apart)
+        };
+        if layer.copies(objects) > MOST_PROXIES || !layer.objects.iter().all(permits) {
+            return false;
+        }
+        let patches = of_layer().filter_map(PlanObject::surface);
+        let patches: u64 = patches.map(|surface| surface.patches() as u64).sum();
+        let tiles = view.tiles_of_all_rows(tiles);
+        let flat = || of_layer().any(|of| is_flat(of.object));
+        let lists = with.gains_by_lists(tiles, patches / layer.objects.len() as u64, flat);
+        for &n in layer.objects.iter().filter(|_| lists) {
+            self.parts[n as usize][Part::Patches as usize] = true;
+        }
+        lists
+    }
+}
+
+/// The pixels that may show a copy of a layer, if any, and the number of tiles that its copies cover.
+/// Of many copies the box of all is taken.
+fn covered(
+    projector: &Projector,
+    objects: &[PlanObject],
+    walks: &Walks,
+    layer: &Layer,
+) -> Option<(Rectangle, u64)> {
+    let count = |[across, down]: [u32; 2]| u64::from(across) * u64::from(down);
+    if layer.copies(objects) > MOST_PROXIES {
+        let pixels = projector.box_bounds(walks.bounds(layer))?;
+        return Some((pixels, count(tiles(pixels))));
+    }
+    let of_layer = layer.objects.iter().map(|&n| &objects[n as usize]);
+    let copies =
+        of_layer.flat_map(|of| of.object.placements().iter().map(|copy| (copy, &of.shape)));
+    let seen = copies.filter_map(|(copy, shape)| projector.bounds(copy, shape));
+    seen.map(|pixels| (pixels, count(tiles(pixels)))).reduce(
+        |([a, b, c, d], tiles), ([left, top, right, bottom], more)| {
+            let pixels = [a.min(left), b.min(top), c.max(right), d.max(bottom)];
+            (pixels, tiles + more)
+        },
+    )
+}
+
+/// Parts of a range that are no longer than `most`.
+fn chunks(range: Range<u32>, most: u32) -> impl Iterator<Item = Range<u32>> {
+    let Range { start, end } = range;
+    (start..end)
+        .step_by(most as usize)
+        .map(move |first| first..end.min(first.saturating_add(most)))
+}
