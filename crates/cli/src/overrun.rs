@@ -4,6 +4,7 @@
 use super::output;
 use revmap_searches::folder;
 use revmap_searches::watchdog::{self, Overrun};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Once, OnceLock};
@@ -92,7 +93,7 @@ fn end(Overrun { name, reason }: &Overrun) -> ! {
     let runs = words.get(1).and_then(|word| word.to_str());
     if !runs.is_some_and(|word| RUNS.contains(&word)) {
         output::complain(reason);
-        std::process::exit(1);
+        leave();
     }
     output::warn(&format!("{reason}; the run begins again without {name}"));
     let mut left_out = std::env::var(LEFT_OUT).unwrap_or_default();
@@ -111,6 +112,16 @@ fn end(Overrun { name, reason }: &Overrun) -> ! {
     }
     let error = replace(command);
     output::complain(&format!("cannot begin again ({error})"));
+    leave();
+}
+
+/// Ends this process without the driver's exit handlers: these free the code that its threads run, so
+/// the process may end by a signal.
+fn leave() -> ! {
+    let _ = std::io::stdout().flush();
+    #[cfg(unix)]
+    signal_hook::low_level::exit(1);
+    #[cfg(not(unix))]
     std::process::exit(1);
 }
 
