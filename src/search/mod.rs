@@ -21,7 +21,7 @@
 //!     pass: Pass::Fragment, output: StoredPlanes::Color, table: false, bounded: true,
 //! };
 //! assert_eq!(module.entry(), "tree.frag");
-//! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL")]);
+//! assert_eq!(module.macros(), [("SEARCH", "SEARCH_EXTERNAL"), ("REPEATED", "1")]);
 //! ```
 
 mod module;
