@@ -80,8 +80,8 @@ pub(crate) struct Step {
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
     Draws(Range<u32>),
-    /// So many points over tiles, for fragments that walk the hierarchy of this index.
-    Walk(u32, u32),
+    /// Points over tiles of the picture, for fragments that walk the hierarchy of this index.
+    Walk(Range<u32>, u32),
     /// Work groups; this head of the bins holds their number.
     Indirect(u32, Pushed),
     /// This many work groups.

@@ -92,8 +92,6 @@ pub(crate) struct Conditions {
     pub casts: bool,
     /// True if depths are compared with the target's and written to it.
     pub host_depths: bool,
-    /// True if all objects together have few techniques and sets of textures.
-    pub few_looks: bool,
     /// True if all objects together, in any view, have one copy: then no pixel is drawn twice.
     pub single_copy: bool,
 }
@@ -103,9 +101,6 @@ pub(crate) struct Conditions {
 /// 0.93 to 0.97 with 1,024. On lavapipe 64 copies take 0.8 of the time of a walk by proxies from above,
 /// and 1.3 from the side.
 pub(crate) const MOST_PROXIES: usize = 64;
-
-/// Most looks of a scene of which each has a walk over all of the picture.
-pub(crate) const MOST_LOOKS: usize = 16;
 
 /// Subgroup size below which walking a tree is faster than testing a list: fewer invocations wait
 /// for the slowest one, and branches are taken. SwiftShader has 4 invocations, and its lists take 1.14
@@ -146,7 +141,7 @@ impl Conditions {
     /// hidden pixel.
     pub fn walks_to(&self, of: &PlanObject) -> bool {
         let many = of.look_copies > MOST_PROXIES;
-        let pays = many || (self.casts && self.few_looks && !self.single_copy);
+        let pays = many || (self.casts && !self.single_copy);
         let may = of.surface().is_some() && self.may_walk(&of.technique);
         !self.parallel && (self.compute || pays && may)
     }

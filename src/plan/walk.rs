@@ -7,7 +7,8 @@
 
 use super::open_pixels::OpenPixels;
 use super::path::MOST_PROXIES;
-use super::projector::Cylinder;
+use super::projector::{Cylinder, Rectangle};
+use super::walk_tiles::covered;
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::scene::Placement;
 use crate::shader::generated::{GROUP_PIXELS, INNER_NODE};
@@ -300,7 +301,8 @@ impl FramePlan {
         (walks, with): (&Walks, &Conditions),
         open: Option<&OpenPixels>,
     ) {
-        if let Some([left, top, right, bottom]) = projector(view, objects, with).picture() {
+        let projector = projector(view, objects, with);
+        if let Some([left, top, right, bottom]) = projector.picture() {
             self.picture = [left, top, right + 1 - left, bottom + 1 - top];
         }
         // What is drawn by one walk needs no depths.
@@ -329,26 +331,29 @@ impl FramePlan {
         if with.compute {
             return self.add_walk_tiles(view, objects, (walks, &variants), (with, open));
         }
-        let [_, _, width, height] = self.picture;
         for (layer, variant) in walks.layers.iter().zip(variants) {
+            let Some((pixels, _)) = covered(&projector, objects, walks, layer) else {
+                continue;
+            };
             self.steps.push(Step {
                 phase: 0,
                 variant: variant.of_kind(Kind::Walk),
                 kind: Kind::Walk,
                 object: layer.objects[0],
-                call: Call::Walk(points(width, height), layer.root),
+                call: Call::Walk(points(self.picture, pixels), layer.root),
             });
         }
     }
 }
 
-/// The number of points over a picture, as in `walk.vert`.
-fn points(width: u32, height: u32) -> u32 {
+/// The points over the rows of a picture that have pixels of a rectangle, as in `walk.vert`.
+fn points([_, begin, width, height]: [u32; 4], [_, top, _, bottom]: Rectangle) -> Range<u32> {
     let side = match width.min(height) {
         ..GROUP_PIXELS => 1,
         _ => GROUP_PIXELS,
     };
-    width.div_ceil(side) * height.div_ceil(side)
+    let across = width.div_ceil(side);
+    across * ((top - begin) / side)..across * ((bottom - begin) / side + 1)
 }
 
 #[cfg(test)]

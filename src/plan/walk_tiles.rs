@@ -237,7 +237,7 @@ impl FramePlan {
 
 /// The pixels that may show a copy of a layer, if any, and the number of tiles that its copies cover.
 /// Of many copies the box of all is taken.
-fn covered(
+pub(super) fn covered(
     projector: &Projector,
     objects: &[PlanObject],
     walks: &Walks,

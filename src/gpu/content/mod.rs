@@ -15,7 +15,6 @@ use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
 use crate::plan::levels::GRAZING;
-use crate::plan::path::MOST_LOOKS;
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
@@ -209,7 +208,6 @@ impl Content {
                 false => Lights::of(self.lighting.lights.len()),
             },
             casts: self.casts(),
-            few_looks: snapshot.looks.len() <= MOST_LOOKS,
             single_copy: match snapshot.objects.as_slice() {
                 [object] => object.drawn().placements().len() == 1,
                 _ => false,

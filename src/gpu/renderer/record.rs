@@ -152,8 +152,9 @@ impl Renderer {
                 Call::Draws(range) => self.draw(cmd, slot, bound, range.clone()),
                 Call::Walk(points, root) => {
                     let large_points = self.device.chosen.constants().large_points;
-                    let corners = if large_points { *points } else { 6 };
-                    raw.cmd_draw(cmd, corners, 1, 0, *root);
+                    // Without large points two triangles cover the picture.
+                    let corners = if large_points { points.clone() } else { 0..6 };
+                    raw.cmd_draw(cmd, corners.len() as u32, 1, corners.start, *root);
                 }
                 Call::Indirect(head, pushed) => {
                     self.push(cmd, pushed);

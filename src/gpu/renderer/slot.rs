@@ -283,7 +283,7 @@ impl FrameSlot {
                 Call::Draws(range) => all.draws += range.end - range.start,
                 Call::Walk(points, _) => {
                     all.draws += 1;
-                    all.tiles += points;
+                    all.tiles += points.len() as u32;
                 }
                 Call::Groups(groups, _) => {
                     all.dispatches += 1;
