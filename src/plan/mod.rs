@@ -2,7 +2,7 @@
 //! here uses Vulkan, and [`plan()`] cannot fail.
 //!
 //! The fragment stage draws proxies ([`proxy`]) or [walks](walk), the compute stage
-//! [walks](walk_tiles). Objects with the same pipeline and the same set of textures share
+//! [walks](walk_steps). Objects with the same pipeline and the same set of textures share
 //! draws and dispatches, so their number does not grow with the number of objects.
 
 pub(crate) mod levels;
@@ -15,7 +15,7 @@ mod view;
 #[cfg(test)]
 mod viewports;
 pub(crate) mod walk;
-mod walk_tiles;
+mod walk_steps;
 
 pub use path::DrawPath;
 pub(crate) use path::{Conditions, Path, PlanObject, shape_of};

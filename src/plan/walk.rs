@@ -5,20 +5,15 @@
 //! one level, so a walk needs no stack. Boxes have 16 bits per coordinate, in steps of one grid
 //! around all copies.
 
-use super::open_pixels::OpenPixels;
-use super::path::MOST_PROXIES;
-use super::projector::{Cylinder, Rectangle};
-use super::walk_tiles::covered;
-use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
+use super::projector::Cylinder;
+use super::{Conditions, PlanObject};
 use crate::scene::Placement;
-use crate::shader::generated::{GROUP_PIXELS, INNER_NODE};
-use crate::shader::{Drawn, Kind, Variant, WalkNode};
-use crate::solid::offset_surface::Part;
+use crate::shader::WalkNode;
+use crate::shader::generated::INNER_NODE;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
 
 /// Steps of the grid along each axis.
 const STEPS: f64 = 65535.0;
@@ -289,71 +284,6 @@ fn leaves(objects: &[PlanObject], numbers: &[u32]) -> Vec<Leaf> {
         }));
     }
     all
-}
-
-impl FramePlan {
-    /// The walks, after all else. `open`: the pixels that compute draws; all if none.
-    pub(super) fn add_walks(
-        &mut self,
-        view: &View,
-        objects: &[PlanObject],
-        variants: &[Variant],
-        (walks, with): (&Walks, &Conditions),
-        open: Option<&OpenPixels>,
-    ) {
-        let projector = projector(view, objects, with);
-        if let Some([left, top, right, bottom]) = projector.picture() {
-            self.picture = [left, top, right + 1 - left, bottom + 1 - top];
-        }
-        // What is drawn by one walk needs no depths.
-        let alone = walks.layers.len() == 1 && !with.host_depths;
-        let of_layer = |layer: &Layer| {
-            let apart = |n: &u32| {
-                let of = &objects[*n as usize];
-                let apart = |s: &Arc<_>| proxy::is_seen_from_outside(of.object, s, view);
-                of.surface().is_some_and(apart)
-            };
-            // Few copies cost the host less than a test of each ray.
-            let few = layer.copies(objects) <= MOST_PROXIES;
-            let outside = few && layer.objects.iter().all(apart);
-            for &n in &layer.objects {
-                self.parts[n as usize][Part::Tables as usize] = true;
-                self.outside[n as usize] = outside;
-            }
-            let mut variant = variants[layer.objects[0] as usize];
-            if layer.objects.len() > 1 {
-                variant.speciality.drawn = Drawn::Objects;
-            }
-            variant.speciality.depths &= !alone;
-            variant.seen_from_outside(outside)
-        };
-        let variants: Vec<Variant> = walks.layers.iter().map(of_layer).collect();
-        if with.compute {
-            return self.add_walk_tiles(view, objects, (walks, &variants), (with, open));
-        }
-        for (layer, variant) in walks.layers.iter().zip(variants) {
-            let Some((pixels, _)) = covered(&projector, objects, walks, layer) else {
-                continue;
-            };
-            self.steps.push(Step {
-                phase: 0,
-                variant: variant.of_kind(Kind::Walk),
-                kind: Kind::Walk,
-                object: layer.objects[0],
-                call: Call::Walk(points(self.picture, pixels), layer.root),
-            });
-        }
-    }
-}
-
-/// The points over the rows of a picture that have pixels of a rectangle, as in `walk.vert`.
-fn points([_, begin, width, height]: [u32; 4], [_, top, _, bottom]: Rectangle) -> Range<u32> {
-    let side = match width.min(height) {
-        ..GROUP_PIXELS => 1,
-        _ => GROUP_PIXELS,
-    };
-    let across = width.div_ceil(side);
-    across * ((top - begin) / side)..across * ((bottom - begin) / side + 1)
 }
 
 #[cfg(test)]

@@ -1,6 +1,9 @@
-//! Dispatches of walks in the compute stage. Each layer of a scene has a rectangle of tiles. Lists of
-//! what the tiles may show come first, an invocation a tile; then the pixels of tiles that show
-//! something. Few large solids have lists of patches too, for tiles of one copy.
+//! Steps of walks. In fragments each layer of a scene has a draw of points over the rows of the
+//! picture that may show it.
+//!
+//! In compute each layer has a rectangle of tiles. Lists of what the tiles may show come first, an
+//! invocation a tile; then the pixels of tiles that show something. Few large solids have lists of
+//! patches too, for tiles of one copy.
 
 use super::open_pixels::OpenPixels;
 use super::path::{LIST_LENGTHS, MOST_PROXIES, is_flat};
@@ -10,7 +13,7 @@ use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, prox
 use crate::shader::generated::{
     GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
 };
-use crate::shader::{Kind, Pushed, Variant};
+use crate::shader::{Drawn, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
 use std::ops::Range;
 use std::sync::Arc;
@@ -79,9 +82,62 @@ fn tiles([left, top, right, bottom]: Rectangle) -> [u32; 2] {
 }
 
 impl FramePlan {
+    /// The walks, after all else. `open`: the pixels that compute draws; all if none.
+    pub(super) fn add_walks(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        variants: &[Variant],
+        (walks, with): (&Walks, &Conditions),
+        open: Option<&OpenPixels>,
+    ) {
+        let projector = projector(view, objects, with);
+        if let Some([left, top, right, bottom]) = projector.picture() {
+            self.picture = [left, top, right + 1 - left, bottom + 1 - top];
+        }
+        // What is drawn by one walk needs no depths.
+        let alone = walks.layers.len() == 1 && !with.host_depths;
+        let of_layer = |layer: &Layer| {
+            let apart = |n: &u32| {
+                let of = &objects[*n as usize];
+                let apart = |s: &Arc<_>| proxy::is_seen_from_outside(of.object, s, view);
+                of.surface().is_some_and(apart)
+            };
+            // Few copies cost the host less than a test of each ray.
+            let few = layer.copies(objects) <= MOST_PROXIES;
+            let outside = few && layer.objects.iter().all(apart);
+            for &n in &layer.objects {
+                self.parts[n as usize][Part::Tables as usize] = true;
+                self.outside[n as usize] = outside;
+            }
+            let mut variant = variants[layer.objects[0] as usize];
+            if layer.objects.len() > 1 {
+                variant.speciality.drawn = Drawn::Objects;
+            }
+            variant.speciality.depths &= !alone;
+            variant.seen_from_outside(outside)
+        };
+        let variants: Vec<Variant> = walks.layers.iter().map(of_layer).collect();
+        if with.compute {
+            return self.add_walk_tiles(view, objects, (walks, &variants), (with, open));
+        }
+        for (layer, variant) in walks.layers.iter().zip(variants) {
+            let Some((pixels, _)) = covered(&projector, objects, walks, layer) else {
+                continue;
+            };
+            self.steps.push(Step {
+                phase: 0,
+                variant: variant.of_kind(Kind::Walk),
+                kind: Kind::Walk,
+                object: layer.objects[0],
+                call: Call::Walk(points(self.picture, pixels), layer.root),
+            });
+        }
+    }
+
     /// The dispatches of all walks. `variants`: one for each layer. `open`: the pixels that are
     /// drawn; all if none.
-    pub(super) fn add_walk_tiles(
+    fn add_walk_tiles(
         &mut self,
         view: &View,
         objects: &[PlanObject],
@@ -237,7 +293,7 @@ impl FramePlan {
 
 /// The pixels that may show a copy of a layer, if any, and the number of tiles that its copies cover.
 /// Of many copies the box of all is taken.
-pub(super) fn covered(
+fn covered(
     projector: &Projector,
     objects: &[PlanObject],
     walks: &Walks,
@@ -258,6 +314,16 @@ pub(super) fn covered(
             (pixels, tiles + more)
         },
     )
+}
+
+/// The points over the rows of a picture that have pixels of a rectangle, as in `walk.vert`.
+fn points([_, begin, width, height]: [u32; 4], [_, top, _, bottom]: Rectangle) -> Range<u32> {
+    let side = match width.min(height) {
+        ..GROUP_PIXELS => 1,
+        _ => GROUP_PIXELS,
+    };
+    let across = width.div_ceil(side);
+    across * ((top - begin) / side)..across * ((bottom - begin) / side + 1)
 }
 
 /// Parts of a range that are no longer than `most`.
