@@ -14,7 +14,7 @@ void main()
     load_tree_varyings();
     PixelRays rays = varying_rays();
     Hit hit = NO_HIT;
-    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, EVERYWHERE, hit);
+    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;

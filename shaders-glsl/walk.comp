@@ -26,7 +26,8 @@ void main()
     TileWalk tile = FROM_ROOT;
     uvec2 pixel;
     if (OPEN_PIXELS != 0u) {
-        uint position = open_pixels[pushed.first + GROUP_PIXELS * GROUP_PIXELS * gl_WorkGroupID.x + gl_LocalInvocationIndex];
+        uint before = GROUP_PIXELS * GROUP_PIXELS * gl_WorkGroupID.x;
+        uint position = open_pixels[pushed.first + before + gl_LocalInvocationIndex];
         pixel = uvec2(position & 0xffffu, position >> 16);
     } else {
         uint across = tiles_of_rectangle().x;

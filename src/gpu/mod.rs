@@ -30,7 +30,7 @@ pub use renderer::Renderer;
 pub use renderer::costs::{INSTANCE_BYTES, ObjectCost};
 pub use renderer::prepare::PreparedFrame;
 pub use renderer::prewarm::Prewarm;
-pub use renderer::slot::FrameStatistics;
+pub use renderer::statistics::FrameStatistics;
 pub use resources::textures::HostImage;
 #[doc(hidden)]
 pub use vk::call::allocation_error;

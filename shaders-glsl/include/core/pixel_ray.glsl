@@ -9,7 +9,6 @@
 #define PIXEL_RAY_GLSL
 #include "core/placement.glsl"
 
-const vec2 EVERYWHERE = vec2(-3e38, 3e38); // an unbounded range of t
 
 struct PixelRays {
     vec3 origin; // pixel (0, 0), relative to the axis at z = 0

@@ -106,7 +106,7 @@ uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, ui
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
         Hit hit;
         uint ray = 1u << k % LIGHT_RAYS;
-        if ((left & ray) != 0u && trace(eye, v, 0.0, EVERYWHERE, hit)) {
+        if ((left & ray) != 0u && trace(eye, v, 0.0, hit)) {
             left &= ~ray;
         }
         angle = next_angle(angle);

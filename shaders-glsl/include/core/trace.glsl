@@ -43,12 +43,12 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 #endif
 }
 
-// Finds the first hit; `quadric` is the patch hit, for tables. `span`: range of s outside which the ray has no hit.
-uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout uint steps, out vec4 quadric)
+// Finds the first hit; `quadric` is the patch hit, for tables.
+uint search_any(Meridian m, float side, float f, inout float s, inout uint steps, out vec4 quadric)
 {
     quadric = vec4(0.0);
 #if SEARCH == SEARCH_QUADRIC
-    return search_quadric(m, side, span, s, steps, quadric);
+    return search_quadric(m, side, s, steps, quadric);
 #elif READS_TABLES
     return search(m, side, s, steps, quadric);
 #else
@@ -59,8 +59,8 @@ uint search_any(Meridian m, float side, float f, vec2 span, inout float s, inout
 // Traces the solid. Unlike clip_ray it has several returns: measurements show the shortest lavapipe code for this form.
 //
 // `hit.steps` counts look-ups even without a hit. `inside`: the ray comes from a replica that is solid where the ray
-// enters. `span`: range of t outside which the ray has no hit.
-bool trace_solid(vec3 eye, vec3 v, float base, float start, vec2 span, bool inside, inout Hit hit)
+// enters.
+bool trace_solid(vec3 eye, vec3 v, float base, float start, bool inside, inout Hit hit)
 {
     Meridian m;
     if (!clip_ray(eye, v, base, start, m)) {
@@ -84,7 +84,7 @@ bool trace_solid(vec3 eye, vec3 v, float base, float start, vec2 span, bool insi
     // A ray within the solid hits the back of its boundary. Unsigned distances cannot distinguish inside from outside.
     float side = within && (inside || m.from_eye) && RGBA8 == 0u ? -1.0 : 1.0;
     vec4 quadric;
-    uint end = search_any(m, side, f, span - m.t_start, s, hit.steps, quadric);
+    uint end = search_any(m, side, f, s, hit.steps, quadric);
 #if SEARCH == SEARCH_QUADRIC
     // A floor or ceiling at a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
@@ -144,7 +144,7 @@ bool is_solid(vec3 p, inout uint steps)
 #endif
 }
 
-bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout Hit hit)
+bool trace_replicas(vec3 eye, vec3 v, float base, float start, inout Hit hit)
 {
     // Lattice units: a cell has size 1 and the box's lower corner is at 0.
     vec3 count = vec3(shape.replicas);
@@ -171,7 +171,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout 
             local = in_cell(o, cell);
             local_v = d * sense * size;
         }
-        bool met = trace_solid(local, local_v, base, start, REPLICAS == 0u ? span : EVERYWHERE, inside, hit);
+        bool met = trace_solid(local, local_v, base, start, inside, hit);
         vec3 next = (cell + stride - o) * inverse;
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
@@ -197,12 +197,12 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, vec2 span, inout 
 
 // Traces the ray `eye + t v`. The eye, or the point that is shaded, is at t = -base. Rays from the eye begin at the
 // host's near plane, also where it is known to cut no solid: roots count from there, and their last bits must not
-// depend on what else is drawn with a copy. The ray has no hit outside the range `span` of t.
-bool trace(vec3 eye, vec3 v, float base, vec2 span, out Hit hit)
+// depend on what else is drawn with a copy.
+bool trace(vec3 eye, vec3 v, float base, out Hit hit)
 {
     hit = NO_HIT;
     float start = (casts() ? 0.0 : frame_block.ray_start) - base;
-    return trace_replicas(eye, v, base, start, span, hit);
+    return trace_replicas(eye, v, base, start, hit);
 }
 
 #endif

@@ -61,9 +61,8 @@ bool starts_within(Meridian m)
     return (beyond & 1u) != 0u;
 }
 
-// Returns FOUND or LEFT; `hit_quadric` is that of the patch that was hit, as quadric_normal() reads it. `span`: range of s
-// in which rows are visited.
-uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint steps, out vec4 hit_quadric)
+// Returns FOUND or LEFT; `hit_quadric` is that of the patch that was hit, as quadric_normal() reads it.
+uint search_quadric(Meridian m, float side, inout float s, inout uint steps, out vec4 hit_quadric)
 {
     const int rows = int(PATCH_ROWS);
     float n = float(rows);
@@ -75,8 +74,8 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
     float slack = 4e-6 * m.inverse_speed + 4e-7 * abs(m.t_start);
     const int top = 3;
     int level = top;
-    float t = max(span.x, 0.0);
-    float last = min(span.y, m.s_end);
+    float t = 0.0;
+    float last = m.s_end;
     int row = clamp(int(floor((m.o.z + t * m.v.z) * n)), 0, rows - 1);
     float most = square_at(m, t);
     float best = 3e38;
@@ -113,9 +112,8 @@ uint search_quadric(Meridian m, float side, vec2 span, inout float s, inout uint
             most = most_out;
             level = min(findLSB(border) >> 1, top);
         }
-        // Roots count from the middle of the row, which is near the anchors of patches that end on the axis. The middle
-        // does not depend on `span`, which must not change the roots' last bits. `square_at(near, x)` is
-        // `square_at(m, middle + x)`.
+        // Roots count from the middle of the row, which is near the anchors of patches that end on the axis.
+        // `square_at(near, x)` is `square_at(m, middle + x)`.
         float middle = clamp(((float(row) + 0.5) / n - m.o.z) * per_z, 0.0, m.s_end);
         Meridian near = m;
         near.o = m.o + middle * m.v;

@@ -59,7 +59,7 @@ void take_nearer(uint number, vec2 at, inout Nearest nearest)
     load_shape(i);
     PixelRays rays = pixel_rays(i);
     Hit hit;
-    bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, EVERYWHERE, hit);
+    bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, hit);
     uint steps = nearest.hit.steps + hit.steps;
     bool exhausted = nearest.hit.exhausted || hit.exhausted;
     float t = rays.base + hit.t;

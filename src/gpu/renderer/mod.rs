@@ -12,6 +12,7 @@ pub(super) mod prepare;
 pub(super) mod prewarm;
 mod record;
 pub(super) mod slot;
+pub(super) mod statistics;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::content::Content;

@@ -8,7 +8,8 @@ use super::blocks::{
     placed_eye,
 };
 use super::output_check::check_viewport;
-use super::slot::{BoundPlan, BoundStep, FrameStatistics, SlotBuffer};
+use super::slot::{BoundPlan, BoundStep, SlotBuffer};
+use super::statistics::FrameStatistics;
 use crate::error::{Error, ErrorKind, Result, lock};
 use crate::gpu::content::view_plan::{PlannedObject, ViewPlan};
 use crate::plan::path::MOST_PROXIES;
