@@ -203,7 +203,7 @@ fn the_page_leads_to_a_search_that_is_right() {
 fn patches_and_binary_maps_are_read() {
     let patches = own_search(
         &reading("'patches'").replace("'mine'", "'tree'"),
-        &quadric_search("return search_quadric(m, side, vec2(-1e30, 1e30), s, steps, quadric);"),
+        &quadric_search("return search_quadric(m, side, s, steps, quadric);"),
     );
     let binary = own_search(
         &TOML
