@@ -1,6 +1,7 @@
 // Blocks of the frame, of objects and of copies, and the values of the current ones.
 #ifndef BLOCKS_GLSL
 #define BLOCKS_GLSL
+#extension GL_EXT_samplerless_texture_functions : require
 #include "core/words.glsl"
 
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
@@ -46,9 +47,9 @@ layout(set = 0, binding = 2, std430) readonly buffer LastCopyBlock {
 
 // The vectors of the objects, of the instances and of the nodes. Lavapipe reads a storage buffer in a loop over the
 // lanes, and such a view without a loop. So it reads these where lanes read different places.
-layout(set = 0, binding = 7) uniform usamplerBuffer object_texels;
-layout(set = 0, binding = 8) uniform usamplerBuffer instance_texels;
-layout(set = 0, binding = 9) uniform usamplerBuffer node_texels;
+layout(set = 0, binding = 7) uniform utextureBuffer object_texels;
+layout(set = 0, binding = 8) uniform utextureBuffer instance_texels;
+layout(set = 0, binding = 9) uniform utextureBuffer node_texels;
 
 uvec4 instance_words(uint number, int at)
 {

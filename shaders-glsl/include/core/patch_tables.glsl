@@ -7,12 +7,13 @@
 // Frusta of cells are stored separately (proxy_cells.vert).
 #ifndef PATCH_TABLES_GLSL
 #define PATCH_TABLES_GLSL
+#extension GL_EXT_samplerless_texture_functions : require
 #include "core/shape_map.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer PatchTables {
     uvec4 patch_tables[];
 };
-layout(set = 0, binding = 10) uniform usamplerBuffer table_texels;
+layout(set = 0, binding = 10) uniform utextureBuffer table_texels;
 
 // Tables of a draw or dispatch that has one object, of all its levels; for listed patches, their table. Software
 // drivers gather from uniform buffers several times faster.
