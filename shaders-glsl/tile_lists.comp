@@ -8,7 +8,6 @@
 #define MAKES_LISTS
 #include "stage/patch_runs.glsl"
 #include "stage/beam.glsl"
-#include "core/meridian.glsl"
 
 const uint MET_WORDS = (LISTED_PATCHES + 31u) / 32u;
 const uint TILES = GROUP_PIXELS * GROUP_PIXELS;
@@ -99,17 +98,11 @@ void main()
     barrier();
 
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
-    // If the box cuts the solid, a ray may be inside the solid before it enters the box, and then hits the cut face.
-    // The tile of such a ray uses the tree.
     bool cut = false;
     vec2 outer = vec2(-1e30, 1e30);
     vec2 inner = vec2(-1e30, 1e30);
     if (!is_outside()) {
-        vec4 wider = beam.width.x * vec4(-1.0, -1.0, 1.0, 1.0);
-        outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
-        inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
-        // Without a ray that is sure to be between the sides, any ray may be cut.
-        inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
+        cut_by_box(beam, outer, inner); // tiles of rays that may be cut use the tree
     }
     PatchRuns runs = NO_PATCHES;
     for (uint w = 0u; w << 5 < header.x; ++w) {

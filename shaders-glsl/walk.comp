@@ -12,12 +12,6 @@ layout(set = 2, binding = 1, std430) readonly buffer OpenPixelBlock {
     uint open_pixels[]; // x | y << 16, or NO_PIXEL
 };
 
-// Returns a pixel of a tile. Eight invocations that run together have 4 x 2 pixels, of which fewer are at an outline.
-uvec2 pixel_of_tile(uint k)
-{
-    return uvec2(k & 3u | k >> 1 & 4u, k >> 2 & 1u | k >> 3 & 6u);
-}
-
 void main()
 {
     load_frame(pushed.object);

@@ -108,6 +108,7 @@ impl PipelineCompiler {
             conditions: Conditions {
                 passes_cells: true,
                 subgroup_size: chosen.subgroup_size,
+                group_invocations: chosen.properties.limits.max_compute_work_group_invocations,
                 most_storage: u32::MAX,
                 ..Conditions::default()
             },

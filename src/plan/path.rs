@@ -6,7 +6,7 @@ use super::proxy;
 use super::view::View;
 use crate::scene::Object;
 use crate::shader::generated::{
-    GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, WALK_BIN,
+    CULLED_PIXELS, GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, WALK_BIN,
 };
 use crate::shader::{Kind, Lights, SearchCode, Technique};
 use crate::solid::offset_surface::OffsetSurface;
@@ -73,6 +73,8 @@ pub(crate) struct Conditions {
     pub software: bool,
     /// Invocations of a subgroup, which run together.
     pub subgroup_size: u32,
+    /// Most invocations of a compute work group.
+    pub group_invocations: u32,
     /// Most bytes in a storage buffer.
     pub most_storage: u32,
     /// Same value as
@@ -198,6 +200,17 @@ impl Conditions {
         self.subgroup_size >= LEAST_SUBGROUP
     }
 
+    /// True if work groups may cull the patches of a solid. On CPUs the invocations of a group run one
+    /// after another, and lists take half of the time.
+    fn culls_patches(&self) -> bool {
+        !self.software && self.group_invocations >= CULLED_PIXELS * CULLED_PIXELS
+    }
+
+    /// True if work groups cull the patches of an object of one copy.
+    pub fn culls(&self, of: &PlanObject) -> bool {
+        self.permits_lists(of) && self.culls_patches()
+    }
+
     /// True if pixels may be solved from a few patches. With shadows the search is a small part of
     /// a pixel. Pixels of cells, which are shaded before their depth is tested, take 1.6 to 2.0 of
     /// the time of tiles then, and lists 1.0 to 1.2 of that of the tree.
@@ -246,6 +259,9 @@ impl Conditions {
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
             all.extend(LIST_LENGTHS.map(Kind::TilePatches));
+            if self.culls_patches() {
+                all.push(Kind::CulledTiles);
+            }
         }
         all
     }

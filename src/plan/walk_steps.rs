@@ -11,7 +11,7 @@ use super::projector::{Projector, Rectangle, TILE_PIXELS};
 use super::walk::{Layer, Walks};
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::shader::generated::{
-    GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
+    CULLED_PIXELS, GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
 };
 use crate::shader::{Drawn, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
@@ -27,6 +27,8 @@ const MOST_BLOCKS: u32 = MOST_GROUPS / TILE_PIXELS;
 enum Lists {
     /// All tiles of its rectangle are drawn.
     None,
+    /// So are all squares, whose work groups cull the patches of its only copy.
+    Culled,
     Copies,
     /// Lists of copies, and of patches where there is one copy.
     Patches,
@@ -36,7 +38,7 @@ impl Lists {
     /// Heads of bins for each dispatch.
     const fn heads(self) -> u32 {
         match self {
-            Self::None => 0,
+            Self::None | Self::Culled => 0,
             Self::Copies => 1,
             Self::Patches => TILE_BINS,
         }
@@ -45,7 +47,7 @@ impl Lists {
     /// Vectors of the bins for each tile, walks of tiles among them.
     const fn vectors(self) -> u32 {
         match self {
-            Self::None => 0,
+            Self::None | Self::Culled => 0,
             Self::Copies => TILE_WALK_VECTORS,
             Self::Patches => TILE_WALK_VECTORS + WALK_BIN,
         }
@@ -57,15 +59,20 @@ struct Shown<'a> {
     layer: &'a Layer,
     variant: Variant,
     pixels: Rectangle,
-    /// Tiles across and down that hold these pixels.
-    size: [u32; 2],
     lists: Lists,
 }
 
 impl Shown<'_> {
+    /// Squares of so many pixels across and down that hold its rectangle.
+    fn squares(&self, side: u32) -> [u32; 2] {
+        squares(self.pixels, side)
+    }
+
     /// Blocks of tiles that hold its rectangle.
     fn blocks(&self) -> u32 {
-        let [across, down] = self.size.map(|tiles| tiles.div_ceil(GROUP_PIXELS));
+        let [across, down] = self
+            .squares(GROUP_PIXELS)
+            .map(|tiles| tiles.div_ceil(GROUP_PIXELS));
         across * down
     }
 
@@ -75,10 +82,15 @@ impl Shown<'_> {
     }
 }
 
-/// Tiles across and down that hold a rectangle of pixels.
-fn tiles([left, top, right, bottom]: Rectangle) -> [u32; 2] {
-    [[left, right], [top, bottom]]
-        .map(|[first, last]| last / GROUP_PIXELS - first / GROUP_PIXELS + 1)
+/// Squares of a grid, `side` pixels wide, across and down that hold a rectangle of pixels.
+fn squares([left, top, right, bottom]: Rectangle, side: u32) -> [u32; 2] {
+    [[left, right], [top, bottom]].map(|[first, last]| last / side - first / side + 1)
+}
+
+/// Tiles that hold a rectangle of pixels.
+fn tiles(pixels: Rectangle) -> u64 {
+    let [across, down] = squares(pixels, GROUP_PIXELS).map(u64::from);
+    across * down
 }
 
 impl FramePlan {
@@ -151,6 +163,7 @@ impl FramePlan {
                 let (pixels, covered) = covered(&projector, objects, walks, layer)?;
                 let lists = match open {
                     Some(_) => Lists::None,
+                    None if self.culls_patches(view, objects, layer, with) => Lists::Culled,
                     None if self.lists_patches(view, objects, layer, (covered, with)) => {
                         Lists::Patches
                     }
@@ -161,7 +174,6 @@ impl FramePlan {
                     layer,
                     variant,
                     pixels,
-                    size: tiles(pixels),
                     lists,
                 })
             })
@@ -178,8 +190,12 @@ impl FramePlan {
         for (phase, shown) in (1..).zip(&shown) {
             let object = shown.layer.objects[0];
             let of = &objects[object as usize];
-            let [left, top] = [0, 1].map(|axis| shown.pixels[axis] / GROUP_PIXELS * GROUP_PIXELS);
-            let [across, down] = shown.size;
+            let side = match shown.lists {
+                Lists::Culled => CULLED_PIXELS,
+                _ => GROUP_PIXELS,
+            };
+            let [left, top] = [0, 1].map(|axis| shown.pixels[axis] / side * side);
+            let [across, down] = shown.squares(side);
             let pushed = Pushed {
                 corner: left | top << QUAD_BITS,
                 size: across | down << 16,
@@ -211,14 +227,18 @@ impl FramePlan {
                 }
                 continue;
             }
-            if shown.lists == Lists::None {
+            if shown.lists.heads() == 0 {
+                let kind = match shown.lists {
+                    Lists::Culled => Kind::CulledTiles,
+                    _ => Kind::WalkTiles,
+                };
                 for tiles in chunks(0..across * down, MOST_GROUPS) {
                     let pushed = Pushed {
                         first: tiles.start,
                         ..pushed
                     };
                     let call = Call::Groups(tiles.len() as u32, pushed);
-                    draws.push(step(phase, Kind::WalkTiles, call));
+                    draws.push(step(phase, kind, call));
                 }
                 continue;
             }
@@ -262,6 +282,22 @@ impl FramePlan {
         self.steps.extend(draws);
     }
 
+    /// True if work groups cull the patches of a layer's only copy.
+    fn culls_patches(
+        &mut self,
+        view: &View,
+        objects: &[PlanObject],
+        layer: &Layer,
+        with: &Conditions,
+    ) -> bool {
+        let object = layer.objects[0] as usize;
+        let of = &objects[object];
+        let apart = |surface: &Arc<_>| proxy::is_apart_from_all(of.object, surface, view);
+        let culls = layer.is_of_one(objects) && with.culls(of) && of.surface().is_some_and(apart);
+        self.parts[object][Part::Patches as usize] |= culls;
+        culls
+    }
+
     /// True if patches are listed for a layer, of which the copies cover so many tiles.
     fn lists_patches(
         &mut self,
@@ -299,16 +335,15 @@ fn covered(
     walks: &Walks,
     layer: &Layer,
 ) -> Option<(Rectangle, u64)> {
-    let count = |[across, down]: [u32; 2]| u64::from(across) * u64::from(down);
     if layer.copies(objects) > MOST_PROXIES {
         let pixels = projector.box_bounds(walks.bounds(layer))?;
-        return Some((pixels, count(tiles(pixels))));
+        return Some((pixels, tiles(pixels)));
     }
     let of_layer = layer.objects.iter().map(|&n| &objects[n as usize]);
     let copies =
         of_layer.flat_map(|of| of.object.placements().iter().map(|copy| (copy, &of.shape)));
     let seen = copies.filter_map(|(copy, shape)| projector.bounds(copy, shape));
-    seen.map(|pixels| (pixels, count(tiles(pixels)))).reduce(
+    seen.map(|pixels| (pixels, tiles(pixels))).reduce(
         |([a, b, c, d], tiles), ([left, top, right, bottom], more)| {
             let pixels = [a.min(left), b.min(top), c.max(right), d.max(bottom)];
             (pixels, tiles + more)

@@ -17,6 +17,8 @@ pub enum Entry {
     TileLists,
     /// Pixels of tiles whose patches are listed.
     TilePatches,
+    /// Pixels of a solid of one copy, whose work groups cull its patches.
+    CulledTiles,
     /// Places of copies in a view.
     Place,
     /// Lists of the first copies that rays of tiles may meet.
@@ -43,6 +45,7 @@ impl Entry {
             Self::Tree => "tree.frag",
             Self::TileLists => "tile_lists.comp",
             Self::TilePatches => "tile_patches.comp",
+            Self::CulledTiles => "culled_tiles.comp",
             Self::Place => "place.comp",
             Self::WalkLists => "walk_lists.comp",
             Self::WalkVertex => "walk.vert",
@@ -61,7 +64,8 @@ impl Entry {
     #[must_use]
     #[allow(dead_code)]
     pub const fn shades(self) -> bool {
-        matches!(self, Self::Cells | Self::TilePatches) || self.searches()
+        let patches = matches!(self, Self::Cells | Self::TilePatches | Self::CulledTiles);
+        patches || self.searches()
     }
 
     /// True if its invocations search with code that another crate may provide. Build scripts do
@@ -205,9 +209,10 @@ pub fn modules() -> Vec<Module> {
     let mut all = plain.map(Module::plain).to_vec();
     let both: &[SearchCode] = &[SearchCode::Live, SearchCode::Quadric];
     let patches: &[SearchCode] = &[SearchCode::Quadric];
-    let rows: [(Entry, &[SearchCode], &[Stored]); 6] = [
+    let rows: [(Entry, &[SearchCode], &[Stored]); 7] = [
         (Entry::Tree, both, &[Planes, List, Depth]),
         (Entry::TilePatches, patches, &[Color, Planes]),
+        (Entry::CulledTiles, patches, &[Color, Planes]),
         (Entry::Cells, patches, &[Planes, List, Depth]),
         (Entry::Walk, patches, &[Planes, List, Depth]),
         (Entry::WalkTiles, both, &[Color, Planes]),

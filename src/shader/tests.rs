@@ -121,6 +121,7 @@ fn reachable_variants_have_modules() {
         Kind::Boxes,
         Kind::TileLists,
         Kind::TilePatches(g::LONGEST_LIST),
+        Kind::CulledTiles,
         Kind::Place,
         Kind::WalkLists,
         Kind::Walk,

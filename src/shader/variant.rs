@@ -22,6 +22,8 @@ pub enum Kind {
     TileLists,
     /// Compute: tiles whose patches are listed; each pixel tests this many.
     TilePatches(u32),
+    /// Compute: squares of the picture, whose work groups cull the patches of a solid of one copy.
+    CulledTiles,
     /// Compute: places of copies in a view.
     Place,
     /// Compute: lists of the first copies of a walk that rays of tiles may meet.
@@ -44,6 +46,7 @@ impl Kind {
             Self::Boxes => c"revmap boxes",
             Self::TileLists => c"revmap lists of patches",
             Self::TilePatches(_) => c"revmap tiles of listed patches",
+            Self::CulledTiles => c"revmap tiles that cull patches",
             Self::Place => c"revmap places of copies",
             Self::WalkLists => c"revmap lists of copies",
             Self::Walk => c"revmap walk",
@@ -57,7 +60,7 @@ impl Kind {
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
-            Self::TilePatches(_) | Self::WalkTiles | Self::WalkPixels
+            Self::TilePatches(_) | Self::CulledTiles | Self::WalkTiles | Self::WalkPixels
         )
     }
 
@@ -82,6 +85,7 @@ impl Kind {
             Self::Cells | Self::CutCells => Entry::Cells,
             Self::TileLists => Entry::TileLists,
             Self::TilePatches(_) => Entry::TilePatches,
+            Self::CulledTiles => Entry::CulledTiles,
             Self::Place => Entry::Place,
             Self::WalkLists => Entry::WalkLists,
             Self::Walk => Entry::Walk,

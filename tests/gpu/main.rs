@@ -15,6 +15,7 @@ mod clip;
 mod commands;
 mod coplanar;
 mod crowds;
+mod culled;
 mod deferred_host;
 mod embedding;
 mod embedding_bias;

@@ -152,7 +152,7 @@ void load_frame(uint only)
 void load_level(Instance i)
 {
     shape.listed = i.listed - (OWN_TABLES ? shape.listed_window : 0u);
-    shape.table = i.table - (OWN_TABLES ? shape.table_window : 0u);
+    shape.table = i.table - (OWN_TREE ? shape.table_window : 0u);
 }
 
 // Loads what a search reads of an instance's object.

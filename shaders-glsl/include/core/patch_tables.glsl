@@ -35,13 +35,13 @@ const uint FIRST_RECORD = (PATCH_NODES + PATCH_ROWS) / 4u;
 uint patch_word(uint at)
 {
     uint vector = shape.table + (at >> 2);
-    return OWN_TABLES ? own_patch_tables[vector][at & 3u] : stored_vector(vector)[at & 3u];
+    return OWN_TREE ? own_patch_tables[vector][at & 3u] : stored_vector(vector)[at & 3u];
 }
 
 vec4 patch_vector(uint at)
 {
     uint vector = shape.table + at;
-    return uintBitsToFloat(OWN_TABLES ? own_patch_tables[vector] : stored_vector(vector));
+    return uintBitsToFloat(OWN_TREE ? own_patch_tables[vector] : stored_vector(vector));
 }
 
 // Returns a vector of the table of listed patches.

@@ -19,6 +19,7 @@
 
 // Other macros are defined or not:
 // - STORED_TABLES: tables are read from the storage buffer even if there is one object;
+// - STORED_TREE: those of the tree alone;
 // - SINGLE: no replicas, in entries that do not draw them;
 // - UNSHADOWED: no shadows, in entries that do not draw them;
 // - HOST_SHADING: a function of the host shades; lights and shadows of the library are left out.
@@ -86,6 +87,11 @@ layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a l
 #else
 #define OWN_TABLES (ONE_OBJECT != 0u)
 #endif
+#ifdef STORED_TREE
+#define OWN_TREE false
+#else
+#define OWN_TREE OWN_TABLES
+#endif
 
 const uint PROJECTION_PLANAR = 1u;
 const uint PROJECTION_CYLINDRICAL = 2u;
@@ -129,6 +135,7 @@ const uint PLACED = 4294967295u; // in place of a copy's table: the device place
 const uint TILE_WALK_VECTORS = 2u; // vectors of a tile's walk
 const uint LEVEL_WORDS = 12u; // words of LevelTables
 const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
+const uint CULLED_PIXELS = 16u; // side of a compute workgroup that culls patches
 const uint QUAD_BITS = 15u; // bits of each coordinate of a pixel
 const uint NO_PIXEL = 4294967295u; // position outside of any picture, which fills up the last group of open pixels
 const uint MOST_GROUPS = 65535u; // work groups of a dispatch along one axis, on every device

@@ -1,9 +1,9 @@
 // A **beam** bounds the rays of a square of pixels: the middle ray and the largest deviation from it.
 #ifndef BEAM_GLSL
 #define BEAM_GLSL
+#include "core/meridian.glsl"
 #include "core/patch_tables.glsl"
 #include "core/pixel_ray.glsl"
-
 
 struct Beam {
     vec3 o;
@@ -83,6 +83,17 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     bool meets_behind = behind.x <= behind.y && faces_behind;
     span = vec2(meets_before ? before.x : behind.x, meets_behind ? behind.y : before.y);
     return outer * outer > beam.least && (meets_before || meets_behind);
+}
+
+// Returns ranges of t between the box's sides: `outer` that of any ray of a beam, `inner` that of all its rays. Where a ray
+// enters the solid before `inner`, the box may cut it: it may be inside the solid where it enters the box.
+void cut_by_box(Beam beam, out vec2 outer, out vec2 inner)
+{
+    vec4 wider = beam.width.x * vec4(-1.0, -1.0, 1.0, 1.0);
+    outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
+    inner = between_sides(beam.o, beam.v, sides_of_box() - wider);
+    // Without a ray that is sure to be between the sides, any ray may be cut.
+    inner.x = inner.x <= inner.y && beam.width.x < shape.half_side ? inner.x : 1e30;
 }
 
 // Returns the height at which s = 0 for the middle ray of a beam in a list of patches (search/listed.glsl).

@@ -4,7 +4,10 @@
 #define COMPUTE_GLSL
 #include "core/structures.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+#ifndef GROUP_SIDE
+#define GROUP_SIDE GROUP_PIXELS
+#endif
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 
 layout(push_constant) uniform PushedBlock {
     Pushed pushed;
@@ -29,12 +32,18 @@ uvec2 square_corner(uint square)
     return uvec2(square, square >> QUAD_BITS) & ((1u << QUAD_BITS) - 1u);
 }
 
+// Returns a pixel of a tile. Eight invocations that run together have 4 x 2 pixels, of which fewer are at an outline.
+uvec2 pixel_of_tile(uint k)
+{
+    return uvec2(k & 3u | k >> 1 & 4u, k >> 2 & 1u | k >> 3 & 6u);
+}
+
 uint square_of(uvec2 corner)
 {
     return corner.x | corner.y << QUAD_BITS;
 }
 
-// Returns tiles across and down the rectangle.
+// Returns work groups or tiles across and down the rectangle.
 uvec2 tiles_of_rectangle()
 {
     return uvec2(pushed.size & 0xffffu, pushed.size >> 16);

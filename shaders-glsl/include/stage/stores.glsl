@@ -51,4 +51,14 @@ void store(uvec2 pixel, float depth, Shaded s)
 #endif
 }
 
+// Stores a hit of a copy that is nearer than what is drawn. Without a hit it counts the look-ups alone.
+void store_nearer(uvec2 pixel, Look look, PixelRays rays, float lag, bool found, Hit hit)
+{
+    float depth = depth_of(rays.base + hit.t, lagging_terms(lag));
+    count_steps(pixel, hit);
+    if (found && (DEPTHS == 0u || depth < drawn_depth(pixel))) {
+        store(pixel, depth, shade(look, rays, pixel, hit));
+    }
+}
+
 #endif

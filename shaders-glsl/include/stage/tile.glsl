@@ -33,12 +33,8 @@ void begin_tile()
 
 void store_tile(uvec2 pixel, bool found, Hit hit)
 {
-    float depth = depth_of(tile_rays.base + hit.t, lagging_terms(tile_instance.lag));
     if (all(lessThan(pixel, frame.size))) {
-        count_steps(pixel, hit);
-        if (found && (DEPTHS == 0u || depth < drawn_depth(pixel))) {
-            store(pixel, depth, shade(tile_look, tile_rays, pixel, hit));
-        }
+        store_nearer(pixel, tile_look, tile_rays, tile_instance.lag, found, hit);
     }
 }
 

@@ -197,6 +197,7 @@ impl Content {
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,
             software: chosen.report.kind == "cpu",
             subgroup_size: chosen.subgroup_size,
+            group_invocations: limits.max_compute_work_group_invocations,
             most_storage: limits.max_storage_buffer_range,
             least_pixels: self.settings.proxy_min_pixels,
             ray_spread: self.output.ray_spread(),

@@ -201,7 +201,7 @@ impl Renderer {
             let planned = &plan.objects[step.object as usize];
             let object = &planned.object;
             let part = match step.kind {
-                Kind::TileLists | Kind::TilePatches(_) => Part::Patches,
+                Kind::TileLists | Kind::TilePatches(_) | Kind::CulledTiles => Part::Patches,
                 _ => Part::Tables,
             };
             let (mut variant, kind) = (step.variant, step.kind);
