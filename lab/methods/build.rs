@@ -43,6 +43,7 @@ fn compiled() -> Fallible<Vec<(String, Vec<u32>)>> {
         "tree.frag",
         "walk.frag",
         "tile_patches.comp",
+        "culled_tiles.comp",
         "walk.comp",
     ];
     let mut all = vec![module("proxy_cells.vert", Vec::new())];

@@ -20,7 +20,7 @@ mod kept;
 use kept::assert_kept;
 
 /// The number of modules.
-const MODULES: usize = 26;
+const MODULES: usize = 28;
 
 fn any(solver: Solver, planes: Planes) -> Technique {
     let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
@@ -86,7 +86,7 @@ fn modules_are_few_and_small() {
     let packed = |module: &Module| format!("{folder}/{}.spv.z", module.name());
     let bytes = |module| std::fs::metadata(packed(module)).unwrap().len();
     let packed: u64 = all.iter().map(bytes).sum();
-    assert!(packed < 530_000, "{packed} bytes in all");
+    assert!(packed < 560_000, "{packed} bytes in all");
 }
 
 /// Only shadows of searches on maps index an array of textures by a number that varies. Devices

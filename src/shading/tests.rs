@@ -13,7 +13,7 @@ fn some(stage: DrawStage) -> Shading {
 
 #[test]
 fn bytes_come_back() {
-    for (stage, count) in [(DrawStage::Fragment, 4), (DrawStage::Compute, 4)] {
+    for (stage, count) in [(DrawStage::Fragment, 4), (DrawStage::Compute, 5)] {
         let made = some(stage);
         assert_eq!(made.modules.len(), count);
         let read = Shading::from_bytes(&made.to_bytes().unwrap()).unwrap();

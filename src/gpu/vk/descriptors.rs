@@ -244,7 +244,7 @@ mod tests {
                 }
                 use ash::vk::DescriptorType as T;
                 let wanted: &[T] = match (w[2], of.0) {
-                    (_, SAMPLED) if is_view(defined(of.1[1])) => &[T::UNIFORM_TEXEL_BUFFER],
+                    (_, IMAGE) if is_view(of) => &[T::UNIFORM_TEXEL_BUFFER],
                     (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
                     (_, IMAGE) => &[T::STORAGE_IMAGE],
                     (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
