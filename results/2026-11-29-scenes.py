@@ -1,6 +1,6 @@
-"""Writes the scenes of "Rows of a look": pawns of one colour map each. In the repository's root:
+"""Writes the scenes of "Rows of a look", pawns of one colour map each, and 100,000 pawns. In the repository's root:
 
-    python3 results/2026-11-29-looks.py out/looks
+    python3 results/2026-11-29-scenes.py out/many
 """
 
 import os
@@ -31,3 +31,12 @@ for n in (4, 16, 64):
         x, y = (0.9 * (at - ROW // 2) for at in (i % ROW, i // ROW))
         text += f'[[object]]\nprofile = "{pawn}"\nposition = [{x:.1f}, {y:.1f}, 0]\ncolor_map = "{i}.png"\n'
     (out / f"{n}.toml").write_text(text)
+
+N, ROW = 100000, 316
+rows = "x,y,z,qx,qy,qz,qw,sx,sy,sz\n"
+for i in range(N):
+    x, y = (0.9 * (at - (ROW - 1) / 2) for at in (i % ROW, i // ROW))
+    rows += f"{x:.3f},{y:.3f},0,0,0,0,1,1,1,1\n"
+(out / f"{N}.csv").write_text(rows)
+camera = "camera = { eye = [-85.32, -71.1, 85.32], target = [0, 0, 0.2], fov_y = 45 }\n"
+(out / f"{N}-above.toml").write_text(f'{camera}[[object]]\nprofile = "{pawn}"\ninstances = "{N}.csv"\n')
