@@ -16,6 +16,9 @@ void main()
 {
     load_frame(pushed.object);
     load_grid();
+    if (ONE_OBJECT == 2u) {
+        only_copy = instances[pushed.instance];
+    }
     uint number = pushed.first + gl_WorkGroupID.x;
     TileWalk tile = FROM_ROOT;
     uvec2 pixel;
@@ -41,7 +44,12 @@ void main()
         walk(pushed.root, vec2(pixel), tile, nearest);
         count_steps(pixel, nearest.hit);
         if (nearest.found) {
-            Instance i = instance_at(nearest.index);
+            Instance i;
+            if (ONE_OBJECT == 2u) {
+                i = only_copy;
+            } else {
+                i = instance_at(nearest.index);
+            }
             load(i);
             store(pixel, nearest.depth, shade(look_of(i, nearest.index), pixel_rays(i), pixel, nearest.hit));
         }

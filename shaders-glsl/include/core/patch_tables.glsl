@@ -23,10 +23,12 @@ layout(set = 0, binding = 5, std140) uniform OwnPatchTables {
 
 uvec4 stored_vector(uint vector)
 {
-    if (TEXELS == 0u) {
-        return patch_tables[vector];
+#ifndef STORED_TABLES
+    if (TEXELS != 0u) {
+        return texelFetch(table_texels, int(vector));
     }
-    return texelFetch(table_texels, int(vector));
+#endif
+    return patch_tables[vector];
 }
 
 const uint RUN_BITS = 12u;

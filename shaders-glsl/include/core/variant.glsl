@@ -18,7 +18,7 @@
 #define OUTPUT_LIST 3   // planes by a host's list
 
 // Other macros are defined or not:
-// - STORED_TABLES: tables are read from the storage buffer even if there is one object;
+// - STORED_TABLES: tables are read from the storage buffer even if there is one object, and by no view of it;
 // - STORED_TREE: those of the tree alone;
 // - SINGLE: no replicas, in entries that do not draw them;
 // - UNSHADOWED: no shadows, in entries that do not draw them;

@@ -52,10 +52,14 @@ float farthest_before(float t, float lag)
     return part < 0.5 ? t * (1.0 + 1e-6) / (1.0 - part) : NEVER;
 }
 
+#ifndef CLIP_DEPTHS
+// The copy of a dispatch that has only one. It is loaded before invocations part: see blocks.glsl.
+Instance only_copy;
+#endif
+
 // Traces a copy. Of equal depths, the first copy wins.
-void take_nearer(uint number, vec2 at, inout Nearest nearest)
+void take_nearer(uint number, Instance i, vec2 at, inout Nearest nearest)
 {
-    Instance i = instance_at(number);
     load_shape(i);
     PixelRays rays = pixel_rays(i);
     Hit hit;
@@ -115,7 +119,7 @@ void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
     if (ONE_OBJECT == 2u) {
         // The only copy, which compute alone walks to, is the same for all invocations.
         if (entry_of(node_at(root + 1u), inverse, NEVER) < NEVER) {
-            take_nearer(node_at(root + 1u).index, at, nearest);
+            take_nearer(pushed.instance, only_copy, at, nearest);
         }
         return;
     }
@@ -126,7 +130,7 @@ void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
     uint met = next_copy(root, leaves, inverse, nearest.most, tile);
     if (met != INNER_NODE) {
         for (uint turn = 0u; turn < MOST_TURNS; ++turn) {
-            take_nearer(met, at, nearest);
+            take_nearer(met, instance_at(met), at, nearest);
             met = next_copy(root, leaves, inverse, nearest.most, tile);
             if (met == INNER_NODE) {
                 break;
