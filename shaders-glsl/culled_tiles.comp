@@ -82,7 +82,7 @@ void main()
     uint across = tiles_of_rectangle().x;
     uint number = pushed.first + gl_WorkGroupID.x;
     uvec2 square = square_corner(pushed.corner) + GROUP_SIDE * uvec2(number % across, number / across);
-    uvec4 header = listed_table(0u);
+    uvec4 header = listed_header();
     float farthest = farthest_of(rays, instance);
     float unit = uintBitsToFloat(header.y);
     Beam wide = beam_of(rays, square, GROUP_SIDE, farthest, unit);

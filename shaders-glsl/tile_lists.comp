@@ -21,7 +21,7 @@ bool shows_copy(uint number, uvec2 corner)
     Instance instance = instances[number];
     load(instance);
     PixelRays rays = pixel_rays(instance);
-    uvec4 header = listed_table(0u);
+    uvec4 header = listed_header();
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest_of(rays, instance), uintBitsToFloat(header.y));
     bool meets = false;
     vec2 unused;
@@ -79,7 +79,7 @@ void main()
     load(instance);
     PixelRays rays = pixel_rays(instance);
     float farthest = farthest_of(rays, instance);
-    uvec4 header = listed_table(0u);
+    uvec4 header = listed_header();
     float unit = uintBitsToFloat(header.y);
     if (self < MET_WORDS) {
         met[self] = shares ? 0u : 0xffffffffu;

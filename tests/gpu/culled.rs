@@ -89,5 +89,8 @@ fn culled_tiles_show_what_the_tree_shows() {
             assert!(differ <= 30, "{}", what(differ));
         }
     }
-    assert!(seen > 100_000 && culled > 20, "{seen} hits, {culled} culled");
+    assert!(
+        seen > 100_000 && culled > 20,
+        "{seen} hits, {culled} culled"
+    );
 }

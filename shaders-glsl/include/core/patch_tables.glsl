@@ -53,6 +53,15 @@ uvec4 listed_table(uint at)
     return OWN_TABLES ? own_patch_tables[vector] : stored_vector(vector);
 }
 
+// Returns the header of that table: see stage/patch_runs.glsl. Indices of shared memory follow from its number of patches,
+// and nothing else bounds them.
+uvec4 listed_header()
+{
+    uvec4 header = listed_table(0u);
+    header.x = min(header.x, LISTED_PATCHES);
+    return header;
+}
+
 // Returns one component of such a vector: software drivers load each component lane by lane.
 uint listed_word(uint at, uint k)
 {
