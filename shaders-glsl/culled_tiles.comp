@@ -21,11 +21,8 @@ shared uint tree_tiles; // one bit per tile
 // Finds the patches that rays of a tile may meet. `lane`: of the invocations of the tile, each of which tests some.
 void cull(Beam beam, uvec4 header, uint tile, uint lane)
 {
-    vec2 outer = vec2(-1e30, 1e30);
-    vec2 inner = vec2(-1e30, 1e30);
-    if (!is_outside()) {
-        cut_by_box(beam, outer, inner);
-    }
+    vec2 outer, inner;
+    cut_by_box(beam, outer, inner);
     float start = height_of_start(beam);
     for (uint k = lane; k < header.x; k += PIXELS) {
         vec2 span;
@@ -40,9 +37,9 @@ void cull(Beam beam, uvec4 header, uint tile, uint lane)
 }
 
 // Solves the patches that are left for a tile.
-bool search_culled(PixelRays rays, vec2 at, uint tile, out Hit hit)
+bool search_culled(PixelRays rays, vec2 pixel, uint tile, out Hit hit)
 {
-    PatchRow row = begin_row(rays, at, middle_of(rays, at));
+    PatchRow row = begin_row(rays, pixel, middle_of(rays, pixel));
     if (!is_outside()) {
         clip_to_sides(row);
     }
@@ -50,10 +47,10 @@ bool search_culled(PixelRays rays, vec2 at, uint tile, out Hit hit)
     for (uint w = 0u; w < MET_WORDS; ++w) {
         uint rest = met_by_tile[MET_WORDS * tile + w];
         while (rest != 0u) {
-            uint patch_vector = 1u + 3u * (w << 5 | uint(findLSB(rest)));
+            uint at = 1u + 3u * (w << 5 | uint(findLSB(rest)));
             rest &= rest - 1u;
-            vec4 quadric = uintBitsToFloat(listed_table(patch_vector));
-            vec4 guard = uintBitsToFloat(listed_table(patch_vector + 1u));
+            vec4 quadric = uintBitsToFloat(listed_table(at));
+            vec4 guard = uintBitsToFloat(listed_table(at + 1u));
             take_nearer(row.m, quadric, guard, row.least, row.best, row.quadric);
             ++count;
         }
@@ -79,7 +76,7 @@ void main()
         tree_tiles = 0u;
     }
     barrier();
-    uint across = tiles_of_rectangle().x;
+    uint across = squares_of_rectangle().x;
     uint number = pushed.first + gl_WorkGroupID.x;
     uvec2 square = square_corner(pushed.corner) + GROUP_SIDE * uvec2(number % across, number / across);
     uvec4 header = listed_header();
@@ -97,7 +94,8 @@ void main()
     cull(beam_of(rays, corner, GROUP_PIXELS, farthest, unit), header, tile, self % PIXELS);
     barrier();
     uvec2 pixel = corner + pixel_of_tile(self % PIXELS);
-    if (all(lessThan(pixel, frame.size))) {
+    uvec4 picture = frame_block.picture; // a square may reach beyond its rows
+    if (all(lessThan(pixel - picture.xy, picture.zw))) {
         Hit hit = NO_HIT;
         bool found;
         if ((tree_tiles >> tile & 1u) != 0u) {

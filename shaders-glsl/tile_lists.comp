@@ -99,11 +99,8 @@ void main()
 
     Beam beam = beam_of(rays, corner, GROUP_PIXELS, farthest, unit);
     bool cut = false;
-    vec2 outer = vec2(-1e30, 1e30);
-    vec2 inner = vec2(-1e30, 1e30);
-    if (!is_outside()) {
-        cut_by_box(beam, outer, inner); // tiles of rays that may be cut use the tree
-    }
+    vec2 outer, inner;
+    cut_by_box(beam, outer, inner); // tiles of rays that may be cut use the tree
     PatchRuns runs = NO_PATCHES;
     for (uint w = 0u; w << 5 < header.x; ++w) {
         uint rest = single ? met[w] : 0u;

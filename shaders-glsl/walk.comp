@@ -27,7 +27,7 @@ void main()
         uint position = open_pixels[pushed.first + before + gl_LocalInvocationIndex];
         pixel = uvec2(position & 0xffffu, position >> 16);
     } else {
-        uint across = tiles_of_rectangle().x;
+        uint across = squares_of_rectangle().x;
         uvec2 corner = square_corner(pushed.corner) + GROUP_PIXELS * uvec2(number % across, number / across);
         if (pushed.listed != 0u) {
             uint at = pushed.tiles + TILE_WALK_VECTORS * gl_WorkGroupID.x;

@@ -200,15 +200,10 @@ impl Conditions {
         self.subgroup_size >= LEAST_SUBGROUP
     }
 
-    /// True if work groups may cull the patches of a solid. On CPUs the invocations of a group run one
-    /// after another, and lists take half of the time.
-    fn culls_patches(&self) -> bool {
+    /// True if work groups may cull the patches of a solid, 256 invocations together. On CPUs they
+    /// run one after another, and lists take half of the time.
+    pub fn has_wide_groups(&self) -> bool {
         !self.software && self.group_invocations >= CULLED_PIXELS * CULLED_PIXELS
-    }
-
-    /// True if work groups cull the patches of an object of one copy.
-    pub fn culls(&self, of: &PlanObject) -> bool {
-        self.permits_lists(of) && self.culls_patches()
     }
 
     /// True if pixels may be solved from a few patches. With shadows the search is a small part of
@@ -259,7 +254,7 @@ impl Conditions {
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
             all.extend(LIST_LENGTHS.map(Kind::TilePatches));
-            if self.culls_patches() {
+            if self.has_wide_groups() {
                 all.push(Kind::CulledTiles);
             }
         }

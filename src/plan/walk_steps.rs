@@ -3,7 +3,8 @@
 //!
 //! In compute each layer has a rectangle of tiles. Lists of what the tiles may show come first, an
 //! invocation a tile; then the pixels of tiles that show something. Few large solids have lists of
-//! patches too, for tiles of one copy.
+//! patches too, for tiles of one copy. A lone solid needs no lists: on GPUs each work group culls
+//! its patches, and elsewhere all tiles of the rectangle walk.
 
 use super::open_pixels::OpenPixels;
 use super::path::{LIST_LENGTHS, MOST_PROXIES, is_flat};
@@ -35,6 +36,11 @@ enum Lists {
 }
 
 impl Lists {
+    /// Those of a layer whose patches are not listed. `alone`: true if it has one copy.
+    const fn without_patches(alone: bool) -> Self {
+        if alone { Self::None } else { Self::Copies }
+    }
+
     /// Heads of bins for each dispatch.
     const fn heads(self) -> u32 {
         match self {
@@ -163,12 +169,7 @@ impl FramePlan {
                 let (pixels, covered) = covered(&projector, objects, walks, layer)?;
                 let lists = match open {
                     Some(_) => Lists::None,
-                    None if self.culls_patches(view, objects, layer, with) => Lists::Culled,
-                    None if self.lists_patches(view, objects, layer, (covered, with)) => {
-                        Lists::Patches
-                    }
-                    None if layer.is_of_one(objects) => Lists::None,
-                    None => Lists::Copies,
+                    None => self.lists_of(view, objects, layer, (covered, with)),
                 };
                 Some(Shown {
                     layer,
@@ -181,7 +182,8 @@ impl FramePlan {
         let vectors =
             |s: &Shown| u64::from(s.lists.vectors()) * u64::from(s.blocks() * TILE_PIXELS);
         if 16 * shown.iter().map(vectors).sum::<u64>() > with.room() {
-            shown.iter_mut().for_each(|s| s.lists = Lists::None);
+            let listed = shown.iter_mut().filter(|s| s.lists.heads() > 0);
+            listed.for_each(|s| s.lists = Lists::None);
         }
         self.bin_heads = shown.iter().map(|s| s.chunks() * s.lists.heads()).sum();
         self.bin_vectors = self.bin_heads;
@@ -282,45 +284,40 @@ impl FramePlan {
         self.steps.extend(draws);
     }
 
-    /// True if work groups cull the patches of a layer's only copy.
-    fn culls_patches(
-        &mut self,
-        view: &View,
-        objects: &[PlanObject],
-        layer: &Layer,
-        with: &Conditions,
-    ) -> bool {
-        let object = layer.objects[0] as usize;
-        let of = &objects[object];
-        let apart = |surface: &Arc<_>| proxy::is_apart_from_all(of.object, surface, view);
-        let culls = layer.is_of_one(objects) && with.culls(of) && of.surface().is_some_and(apart);
-        self.parts[object][Part::Patches as usize] |= culls;
-        culls
-    }
-
-    /// True if patches are listed for a layer, of which the copies cover so many tiles.
-    fn lists_patches(
+    /// How the tiles of a layer are found, of which the copies cover so many tiles. Marks the tables
+    /// of patches that they read.
+    fn lists_of(
         &mut self,
         view: &View,
         objects: &[PlanObject],
         layer: &Layer,
         (tiles, with): (u64, &Conditions),
-    ) -> bool {
+    ) -> Lists {
         let of_layer = || layer.objects.iter().map(|&n| &objects[n as usize]);
-        let permits = |&n: &u32| {
-            let of = &objects[n as usize];
+        let permits = |of: &PlanObject| {
             let apart = |surface: &Arc<_>| proxy::is_apart_from_all(of.object, surface, view);
             with.permits_lists(of) && of.surface().is_some_and(apart)
         };
-        if layer.copies(objects) > MOST_PROXIES || !layer.objects.iter().all(permits) {
-            return false;
-        }
-        let patches = of_layer().filter_map(PlanObject::surface);
-        let patches: u64 = patches.map(|surface| surface.patches() as u64).sum();
-        let tiles = view.tiles_of_all_rows(tiles);
-        let flat = || of_layer().any(|of| is_flat(of.object));
-        let lists = with.gains_by_lists(tiles, patches / layer.objects.len() as u64, flat);
-        for &n in layer.objects.iter().filter(|_| lists) {
+        let alone = layer.is_of_one(objects);
+        let lists = match layer.copies(objects) <= MOST_PROXIES && of_layer().all(permits) {
+            true if alone && with.has_wide_groups() => Lists::Culled,
+            true => {
+                let patches = of_layer().filter_map(PlanObject::surface);
+                let patches: u64 = patches.map(|surface| surface.patches() as u64).sum();
+                let (each, tiles) = (
+                    patches / layer.objects.len() as u64,
+                    view.tiles_of_all_rows(tiles),
+                );
+                let flat = || of_layer().any(|of| is_flat(of.object));
+                match with.gains_by_lists(tiles, each, flat) {
+                    true => Lists::Patches,
+                    false => Lists::without_patches(alone),
+                }
+            }
+            false => Lists::without_patches(alone),
+        };
+        let reads = matches!(lists, Lists::Culled | Lists::Patches);
+        for &n in layer.objects.iter().filter(|_| reads) {
             self.parts[n as usize][Part::Patches as usize] = true;
         }
         lists

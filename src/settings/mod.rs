@@ -265,8 +265,9 @@ pub struct Settings {
     /// the fragment stage draws the cells. Triangles cost the same at any size. Smaller objects are
     /// drawn by boxes. Software drivers multiply this number by 2 to 11. Compute lists patches for
     /// up to 64 copies that have twice this number of pixels for each patch of a mean object; GPUs do
-    /// so only for solids whose radius is more than 32 times their height. 0 always draws
-    /// cells and lists; `u32::MAX` disables cells and lists of patches.
+    /// so only for solids whose radius is more than 32 times their height, and cull the patches of a
+    /// lone solid of any size. 0 always draws cells and lists; `u32::MAX` disables cells, lists of
+    /// patches and culling.
     pub proxy_min_pixels: u32,
     /// Allowed error of silhouettes and depths.
     pub tolerance: Tolerance,

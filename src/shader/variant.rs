@@ -9,7 +9,7 @@ use super::generated as g;
 use super::technique::Technique;
 use std::ffi::CStr;
 
-/// The geometry that a pipeline draws: a proxy (the first three), tiles of listed patches, or a walk.
+/// The geometry that a pipeline draws: a proxy (the first three), tiles with few patches, or a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Cells with their patches, rasterised.

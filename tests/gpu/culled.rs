@@ -1,12 +1,13 @@
 //! On GPUs work groups cull the patches of a lone solid. A device that says it is one draws so here.
 #![allow(unsafe_code)]
 
-use crate::calls::Layer;
-use crate::common::host::{borrow, open};
+use crate::calls::{Layer, Mask};
+use crate::common::host::open;
 use crate::common::outlines::outline;
 use crate::common::prelude::*;
 use crate::common::random::Random;
 use crate::common::ways::apart;
+use crate::submissions::both;
 use crate::trouble::picture;
 
 /// A solid from this eye, with these changes of its object.
@@ -55,25 +56,45 @@ fn scenes() -> Vec<(String, Scene)> {
     all
 }
 
+fn says_gpu(mask: &mut Mask) {
+    mask.properties = Some(|p| p.device_type = vk::PhysicalDeviceType::DISCRETE_GPU);
+}
+
+fn says_cpu(mask: &mut Mask) {
+    mask.properties = Some(|p| p.device_type = vk::PhysicalDeviceType::CPU);
+}
+
+/// Squares of 16 pixels draw the rows of their band alone, here 8 at a time.
+#[test]
+fn culled_tiles_keep_to_their_rows() {
+    let (layer, host) = (Layer::take(), open());
+    let gpu = layer.poorer(&host, says_gpu).unwrap();
+    let settings = Settings {
+        planes: Planes::All,
+        ..drawn_by((203, 150), DrawStage::Compute, Solver::Exact)
+    };
+    let scene = scene_of(shapes::vase(), eye(20.0, 1.8));
+    let [(whole, steps), (bands, steps_of_bands)] = both(&gpu, &scene, &settings, 1);
+    assert_eq!(whole.first_difference(&bands), None);
+    assert_eq!(steps, steps_of_bands);
+}
+
 /// They show what walks of the tree show: for rounding one pixel in 10,000 hits may differ, and two.
 #[test]
 fn culled_tiles_show_what_the_tree_shows() {
     let (layer, host) = (Layer::take(), open());
-    let plain = borrow(&host);
-    let gpu = |mask: &mut crate::calls::Mask| {
-        mask.properties = Some(|p| p.device_type = vk::PhysicalDeviceType::DISCRETE_GPU);
-    };
-    let gpu = layer.poorer(&host, gpu).unwrap();
+    let cpu = layer.poorer(&host, says_cpu).unwrap();
+    let gpu = layer.poorer(&host, says_gpu).unwrap();
     let (mut seen, mut culled) = (0, 0);
     for (n, (name, scene)) in scenes().into_iter().enumerate() {
         // The tree: no lists of patches, whatever the size.
         let settings = Settings {
             proxy_min_pixels: u32::MAX - 1,
             tolerance: [Tolerance::EXACT, Tolerance::DEFAULT][n % 2],
-            planes: [Planes::All, Planes::Color][n / 2 % 2].clone(),
+            planes: [Planes::All, Planes::Color][n / 2 % 2],
             ..drawn_by((331, 249), DrawStage::Compute, Solver::Exact)
         };
-        let [by_tree, found] = [&plain, &gpu].map(|device| picture(device, &scene, &settings));
+        let [by_tree, found] = [&cpu, &gpu].map(|device| picture(device, &scene, &settings));
         let what = |differ| format!("{name}: {differ} of {} pixels", hits(&by_tree));
         if settings.planes == Planes::All {
             let (hits, edges, far) = apart(&by_tree, &found);

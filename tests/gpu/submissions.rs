@@ -15,13 +15,18 @@ fn scenes() -> [(&'static str, Scene); 3] {
 }
 
 /// Draws a frame in one submission, then in bands of 8 rows. Returns both, their look-ups apart.
-fn both(scene: &Scene, settings: &Settings, samples: u32) -> [(Frame, f32); 2] {
+pub fn both(
+    device: &Device,
+    scene: &Scene,
+    settings: &Settings,
+    samples: u32,
+) -> [(Frame, f32); 2] {
     let options = OffscreenOptions {
         samples,
         submission_ms: Some(1e-6),
         ..OffscreenOptions::default()
     };
-    let mut drawn = Offscreen::with(device(), scene, settings, options).unwrap();
+    let mut drawn = Offscreen::with(device, scene, settings, options).unwrap();
     let mut paths = Vec::new();
     // A first frame of few rays is one submission; its time divides the second.
     [1, settings.height.div_ceil(8)].map(|submissions| {
@@ -72,7 +77,8 @@ fn bands_are_the_whole_frame() {
                 proxy_min_pixels,
                 ..sized(203, 150)
             };
-            let [(whole, steps), (bands, steps_of_bands)] = both(&scene, &settings, samples);
+            let [(whole, steps), (bands, steps_of_bands)] =
+                both(device(), &scene, &settings, samples);
             let what = format!("{name}, {stage:?}, {planes:?}, {samples} samples");
             match (stage, whole.first_difference(&bands)) {
                 (DrawStage::Compute, Some(_)) => assert!(rounded_alike(&whole, &bands), "{what}"),

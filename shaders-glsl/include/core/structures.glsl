@@ -190,10 +190,10 @@ struct BinTile {
 
 // Push constants of a dispatch.
 struct Pushed {
-    uint first; // index of the first tile, block of tiles, open pixel or instance
+    uint first; // index of the first square, block of tiles, open pixel or instance
     uint placed; // number of instances that are placed
-    uint corner; // upper left pixel of the rectangle of tiles: x | y << QUAD_BITS
-    uint size; // tiles across | down << 16
+    uint corner; // upper left pixel of the rectangle of squares: x | y << QUAD_BITS
+    uint size; // squares across | down << 16
     uint root; // index of the hierarchy
     uint heads; // index of the first head of the bins
     uint tiles; // index of the first tile of the bins, or of the bin that is read; of the first vector of walks

@@ -87,6 +87,7 @@ layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a l
 #else
 #define OWN_TABLES (ONE_OBJECT != 0u)
 #endif
+// The same of the tables of the tree.
 #ifdef STORED_TREE
 #define OWN_TREE false
 #else
@@ -134,7 +135,7 @@ const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of hierarch
 const uint PLACED = 4294967295u; // in place of a copy's table: the device places it
 const uint TILE_WALK_VECTORS = 2u; // vectors of a tile's walk
 const uint LEVEL_WORDS = 12u; // words of LevelTables
-const uint GROUP_PIXELS = 8u; // side of a compute workgroup, and of a tile
+const uint GROUP_PIXELS = 8u; // side of a tile, and of compute workgroups that cull no patches
 const uint CULLED_PIXELS = 16u; // side of a compute workgroup that culls patches
 const uint QUAD_BITS = 15u; // bits of each coordinate of a pixel
 const uint NO_PIXEL = 4294967295u; // position outside of any picture, which fills up the last group of open pixels

@@ -1,5 +1,4 @@
-// A pixel's ray and its nearest hit so far, for a few patches in sequence without branches: those of a cell or of a tile's
-// list.
+// A pixel's ray and its nearest hit so far, for a few patches in sequence without branches: those of a cell or of a tile.
 #ifndef PATCH_ROW_GLSL
 #define PATCH_ROW_GLSL
 #include "core/hit.glsl"

@@ -89,6 +89,10 @@ bool may_meet(Beam beam, uint k, out vec2 span)
 // enters the solid before `inner`, the box may cut it: it may be inside the solid where it enters the box.
 void cut_by_box(Beam beam, out vec2 outer, out vec2 inner)
 {
+    outer = inner = vec2(-1e30, 1e30);
+    if (is_outside()) {
+        return;
+    }
     vec4 wider = beam.width.x * vec4(-1.0, -1.0, 1.0, 1.0);
     outer = between_sides(beam.o, beam.v, sides_of_box() + wider);
     inner = between_sides(beam.o, beam.v, sides_of_box() - wider);

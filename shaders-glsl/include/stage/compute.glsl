@@ -43,8 +43,8 @@ uint square_of(uvec2 corner)
     return corner.x | corner.y << QUAD_BITS;
 }
 
-// Returns work groups or tiles across and down the rectangle.
-uvec2 tiles_of_rectangle()
+// Returns the squares across and down the rectangle of a dispatch: tiles, or squares whose groups cull patches.
+uvec2 squares_of_rectangle()
 {
     return uvec2(pushed.size & 0xffffu, pushed.size >> 16);
 }

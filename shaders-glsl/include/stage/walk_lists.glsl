@@ -14,7 +14,7 @@ layout(set = 2, binding = 6, std430) BIN_ACCESS buffer TileWalks {
 // across and down as it has invocations.
 bool tile_of_block(out uvec2 corner)
 {
-    uvec2 size = tiles_of_rectangle();
+    uvec2 size = squares_of_rectangle();
     uint across = (size.x + GROUP_PIXELS - 1u) / GROUP_PIXELS;
     uint block = pushed.first + gl_WorkGroupID.x;
     uvec2 tile = GROUP_PIXELS * uvec2(block % across, block / across) + gl_LocalInvocationID.xy;
