@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces a solid of one copy. A work group culls patches: first those that no ray of its square of pixels may meet, then
-// those that no ray of each of its tiles may. Each pixel solves what is left for its tile, in order. Tiles of rays that
-// the sides of the box may cut, or for which rounding decides, walk the tree.
+// Traces a solid of one copy. A work group first culls the patches that no ray of its square of pixels may meet, then
+// for each of its tiles those that no ray of the tile may. Each pixel solves what is left for its tile, in order. Tiles
+// of rays that the sides of the box may cut, or for which rounding decides, walk the tree.
 #define SINGLE
 #define UNSHADOWED
 #define STORED_TREE

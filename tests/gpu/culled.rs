@@ -107,7 +107,8 @@ fn culled_tiles_show_what_the_tree_shows() {
             let pairs = by_tree.color.iter().zip(&found.color);
             let differ = pairs.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 0.02));
             let differ = differ.count();
-            assert!(differ <= 30, "{}", what(differ));
+            println!("{}", what(differ));
+            assert!(differ <= 2, "{}", what(differ));
         }
     }
     assert!(

@@ -53,8 +53,8 @@ uvec4 listed_table(uint at)
     return OWN_TABLES ? own_patch_tables[vector] : stored_vector(vector);
 }
 
-// Returns the header of that table: see stage/patch_runs.glsl. Indices of shared memory follow from its number of patches,
-// and nothing else bounds them.
+// Returns the header of that table (stage/patch_runs.glsl). Indices of shared memory follow from its number of patches,
+// so the number is bounded here.
 uvec4 listed_header()
 {
     uvec4 header = listed_table(0u);

@@ -1,4 +1,4 @@
-// A pixel's ray and its nearest hit so far, for a few patches in sequence without branches: those of a cell or of a tile.
+// A pixel's ray and its nearest hit so far, for the few patches of a cell or of a tile, in sequence without branches.
 #ifndef PATCH_ROW_GLSL
 #define PATCH_ROW_GLSL
 #include "core/hit.glsl"

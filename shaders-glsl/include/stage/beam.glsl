@@ -85,8 +85,8 @@ bool may_meet(Beam beam, uint k, out vec2 span)
     return outer * outer > beam.least && (meets_before || meets_behind);
 }
 
-// Returns ranges of t between the box's sides: `outer` that of any ray of a beam, `inner` that of all its rays. Where a ray
-// enters the solid before `inner`, the box may cut it: it may be inside the solid where it enters the box.
+// Returns ranges of t between the box's sides: `outer` of any ray of a beam, `inner` of all its rays. Where a ray enters
+// the solid before `inner`, the box may cut it: it may be inside the solid where it enters the box.
 void cut_by_box(Beam beam, out vec2 outer, out vec2 inner)
 {
     outer = inner = vec2(-1e30, 1e30);
