@@ -4,6 +4,8 @@
 const ROWS: usize = 480;
 /// Less is not told from a rounded foot, degrees.
 const LEAST: f64 = 10.5;
+/// A rounder and narrower foot is a tip, as that of a light bulb. Part of the largest half width.
+const LEAST_FOOT: f64 = 0.25;
 
 /// Half of an ellipse at the end of an outline: half axes, and the row of its middle.
 struct Arc {
@@ -77,7 +79,9 @@ pub(crate) fn seen_from(radii: &[f64], step: f64) -> Option<View> {
         .collect();
     let upward: Vec<f64> = widths.iter().rev().copied().collect();
     let (foot, rim) = (Arc::of(&upward), Arc::of(&widths));
-    let mut low = foot.as_ref().and_then(|a| a.elevation(0.72));
+    let widest = widths.iter().copied().fold(0.0, f64::max);
+    let wide = foot.as_ref().filter(|a| a.across > LEAST_FOOT * widest);
+    let mut low = wide.and_then(|a| a.elevation(0.72));
     let high = rim.as_ref().filter(|a| a.across > 0.1 * ROWS as f64);
     let high = high.and_then(|a| a.elevation(0.5));
     if let Some(high) = high.filter(|high| *high > 14.0) {

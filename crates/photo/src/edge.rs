@@ -122,15 +122,15 @@ fn bilinear(p: [f64; 2], size: [usize; 2], at: impl Fn(usize, usize) -> Color) -
     })
 }
 
-/// Measures the thing of a mask. `sharp`: the mask's edges are exact already.
-pub(crate) fn halves(sampler: &Sampler, candidate: &Candidate, exact: bool) -> Halves {
+/// Measures the thing of a mask.
+pub(crate) fn halves(sampler: &Sampler, candidate: &Candidate) -> Halves {
     let (rows, work) = (&candidate.rows, sampler.work);
     let height = work.height as f64;
     let count = (rows.ends.len() as f64 * work.scale.max(1.0))
         .clamp(64.0, ROWS)
         .round();
     let vertical = |v: f64, way: f64| {
-        let inside = if exact || v < 3.0 || v > height - 3.0 {
+        let inside = if v < 3.0 || v > height - 3.0 {
             None
         } else {
             sampler.edge([candidate.axis, v], [0.0, way], 12.0)
@@ -151,7 +151,7 @@ pub(crate) fn halves(sampler: &Sampler, candidate: &Candidate, exact: bool) -> H
             }
             let deep = (r - l) * 0.5;
             let side = |u: f64, way: f64| {
-                let inside = !exact && (10.0..work.width as f64 - 10.0).contains(&u);
+                let inside = (10.0..work.width as f64 - 10.0).contains(&u);
                 let found = inside
                     .then(|| sampler.edge([u, v], [way, 0.0], deep))
                     .flatten();

@@ -24,6 +24,7 @@
 
 mod above;
 mod choice;
+mod cutout;
 mod drawing;
 mod edge;
 mod form;
@@ -37,7 +38,7 @@ mod work;
 pub use drawing::is_drawing;
 pub use edge::Half;
 pub use ground::Ground;
-pub use reading::{Doubt, Fault, LeftOut, Reading, Tone, read};
+pub use reading::{Doubt, End, Fault, LeftOut, Reading, Tone, read};
 
 use image::{ImageBuffer, Rgba};
 use imageproc::drawing::draw_filled_circle_mut;

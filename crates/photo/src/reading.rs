@@ -1,6 +1,7 @@
 //! A photograph's half profile.
 
 use crate::choice::{Candidate, candidates};
+use crate::cutout::Cutout;
 use crate::edge::{Half, Halves, Sampler, halves};
 use crate::ground::{Backdrop, Ground, backdrops, shade};
 use crate::mask::{Mask, largest, mask};
@@ -73,12 +74,23 @@ pub enum LeftOut {
 pub enum Doubt {
     /// The thing may go on above or below the outline.
     Part,
+    /// The picture's upper or lower edge cuts the thing.
+    Cut(End),
     /// Thing and ground are nearly alike along this part of the outline.
     Faint(f64),
     /// The thing is wider on one side by what looks like a shadow.
     Shadow,
     /// The thing is not alike on both sides of the axis.
     Uneven(f64),
+}
+
+/// The upper or lower end of a thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The top.
+    Upper,
+    /// The bottom.
+    Lower,
 }
 
 /// The reason why nothing was read.
@@ -101,6 +113,8 @@ const FAINT: f64 = 0.06;
 /// More than this part of the thing's area on one side, and a faint border, show that the symmetry
 /// is by chance.
 const ONE_SIDED: f64 = 0.2;
+/// A thing is cut where the picture's edge has this part of its width.
+const CUT: f64 = 0.1;
 /// What is left out is told from this part of the thing's area on.
 const TOLD: f64 = 0.03;
 
@@ -109,11 +123,15 @@ const TOLD: f64 = 0.03;
 /// # Errors
 /// If nothing differs from the ground, or nothing is alike on both sides of an axis.
 pub fn read(photo: &Photo) -> Result<Reading, Fault> {
-    let cuts = frame::margins(photo);
-    let work = Work::new(photo, cuts).ok_or(Fault::Nothing)?;
-    let (backdrops, found) = match &work.alpha {
-        Some(alpha) => (Vec::new(), opaque(&work, alpha).into_iter().collect()),
-        None => {
+    let cutout = Cutout::of(photo);
+    let (seen, cuts, added) = match &cutout {
+        Some(cutout) => (cutout.photo(), [0; 4], f64::from(cutout.margin)),
+        None => (*photo, frame::margins(photo), 0.0),
+    };
+    let work = Work::new(&seen, cuts).ok_or(Fault::Nothing)?;
+    let (backdrops, found) = match cutout.is_some() {
+        true => (Vec::new(), opaque(&work).into_iter().collect()),
+        false => {
             let backdrops = backdrops(&work);
             let found = candidates(&work, &backdrops);
             (backdrops, found)
@@ -131,12 +149,12 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
     }
     let margin = [f64::from(cuts[0]), f64::from(cuts[1])];
     let sampler = Sampler {
-        photo,
+        photo: &seen,
         work: &work,
         margin,
         angle: best.rows.angle,
     };
-    let halves = halves(&sampler, best, work.alpha.is_some());
+    let halves = halves(&sampler, best);
     let rows = halves.radii.len() as f64;
     let stands = halves.top + halves.step * rows < work.height as f64 - 1.5;
     let seen = above::seen_from(&halves.radii, halves.step).filter(|_| stands);
@@ -152,12 +170,13 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
     let place = |row: f64, u: f64| {
         let across = halves.axis + halves.slope * row + u;
         let p = sampler.place([across, halves.top + halves.step * (row + 0.5)]);
-        [0, 1].map(|i| p[i] * work.scale + margin[i])
+        [0, 1].map(|i| p[i] * work.scale + margin[i] - added)
     };
     let right = (0..count).map(|k| place(row(k), radii[k]));
     let left = (0..count).rev().map(|k| place(row(k), -radii[k]));
     let height = f64::from(photo.height);
-    let z = |row: f64| 1.0 - ((halves.top + halves.step * row) * work.scale + margin[1]) / height;
+    let from_top = margin[1] - added;
+    let z = |row: f64| 1.0 - ((halves.top + halves.step * row) * work.scale + from_top) / height;
     Ok(Reading {
         outline: right.chain(left).collect(),
         axis: place(0.5 * (from + to), 0.0)[0] / f64::from(photo.width),
@@ -199,7 +218,24 @@ fn doubts(best: &Candidate, sides: &Sides, halves: &Halves) -> Vec<Doubt> {
         [shadow, other] if shadow > other => Doubt::Shadow,
         _ => Doubt::Uneven(halves.differ),
     });
-    faint.or(uneven).into_iter().collect()
+    let cut = cut_end(&best.mask).map(Doubt::Cut);
+    faint.or(uneven).into_iter().chain(cut).collect()
+}
+
+/// The end that the picture's edge cuts.
+fn cut_end(mask: &Mask) -> Option<End> {
+    let (width, last) = (mask.width(), mask.height() - 1);
+    let row = |y: u32| {
+        (0..width)
+            .filter(|x| mask.get_pixel(*x, y).0[0] > 0)
+            .count() as f64
+    };
+    let widest = (0..=last).map(row).fold(1.0, f64::max);
+    let is_cut = |y: u32| row(y) > CUT * widest;
+    let ends = [(last, End::Lower), (0, End::Upper)];
+    ends.into_iter()
+        .find(|(y, _)| is_cut(*y))
+        .map(|(_, end)| end)
 }
 
 /// What is on both sides of a mask's border. Areas are parts of the mask's own.
@@ -259,7 +295,8 @@ impl Sides {
 }
 
 /// The opaque part, without a soft shadow.
-fn opaque(work: &Work, alpha: &[u8]) -> Option<Candidate> {
+fn opaque(work: &Work) -> Option<Candidate> {
+    let alpha = &work.alpha;
     let part = |is: &dyn Fn(u8) -> bool| alpha.iter().filter(|a| is(**a)).count() as f64;
     let core = part(&|a| a > 128);
     let soft = part(&|a| (13..200).contains(&a)) > 0.05 * core;

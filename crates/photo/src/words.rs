@@ -1,6 +1,6 @@
 //! Readings in words.
 
-use crate::{Doubt, Fault, Ground, Half, LeftOut, Reading, Tone};
+use crate::{Doubt, End, Fault, Ground, Half, LeftOut, Reading, Tone};
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for Reading {
@@ -85,6 +85,16 @@ impl Display for Doubt {
             Self::Part => f.write_str(
                 "the thing may go on above or below the outline, where the ground is nearly alike, as at a table's edge; look at it with --show-outline, and take the photograph before another ground",
             ),
+            Self::Cut(end) => {
+                let end = match end {
+                    End::Upper => "upper",
+                    End::Lower => "lower",
+                };
+                write!(
+                    f,
+                    "the {end} edge of the picture cuts the thing, and the solid ends there; look at it with --show-outline"
+                )
+            }
             Self::Shadow => f.write_str(
                 "the outline may hold a shadow; look at it with --show-outline, and move the thing away from the wall",
             ),

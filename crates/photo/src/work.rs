@@ -27,8 +27,8 @@ pub(crate) struct Work {
     /// Standard deviation of the noise in lightness, and of the blur.
     pub noise: f32,
     pub blur: f32,
-    /// Alpha of every pixel, where the picture has some.
-    pub alpha: Option<Vec<u8>>,
+    /// Alpha of every pixel.
+    pub alpha: Vec<u8>,
 }
 
 pub(crate) fn lab_of(rgb: [u8; 3]) -> Color {
@@ -91,8 +91,6 @@ impl Work {
         let linear = lab.as_raw().par_chunks_exact(3);
         let linear = linear.flat_map_iter(|c| linear_of([c[0], c[1], c[2]]));
         let linear = Colors::from_raw(width as u32, height as u32, linear.collect())?;
-        let alpha: Vec<u8> = pixels.iter().map(|p| p[3]).collect();
-        let clear = alpha.iter().filter(|a| **a <= 250).count();
         Some(Self {
             width,
             height,
@@ -102,7 +100,7 @@ impl Work {
             gradient,
             noise,
             blur,
-            alpha: (200 * clear > alpha.len()).then_some(alpha),
+            alpha: pixels.iter().map(|p| p[3]).collect(),
         })
     }
 

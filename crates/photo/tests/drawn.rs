@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
-use revmap_photo::{Doubt, Fault, Ground, Half, LeftOut, Photo, Reading, Tone, is_drawing, read};
+use revmap_photo::{
+    Doubt, End, Fault, Ground, Half, LeftOut, Photo, Reading, Tone, is_drawing, read,
+};
 
 const SIZE: [usize; 2] = [180, 240];
 
@@ -262,6 +264,98 @@ fn transparency_is_the_ground() {
     }
     let reading = assert_sure(&pixels, 0.95);
     assert_eq!(reading.ground, Ground::Transparent);
+}
+
+#[test]
+fn a_cut_out_may_fill_its_picture_and_be_as_clear_as_glass() {
+    let scene = Scene::default();
+    let coverage = |[u, z]: [f64; 2]| (200.0 * (radius(z) - u.abs()) + 0.5).clamp(0.0, 1.0);
+    for (opaque, background) in [(255.0, [0, 0, 0]), (70.0, [255, 255, 255])] {
+        let mut pixels = scene.plain();
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let place = scene.place((i % SIZE[0]) as f64 + 0.5, (i / SIZE[0]) as f64 + 0.5);
+            pixel[3] = (opaque * coverage(place)) as u8;
+            // Colours are those of the ground: only the transparency tells.
+            pixel[..3].copy_from_slice(&background);
+        }
+        let columns = |x: &usize| (0..SIZE[1]).any(|y| pixels[y * SIZE[0] + x][3] > 20);
+        let rows = |y: &usize| (0..SIZE[0]).any(|x| pixels[y * SIZE[0] + x][3] > 20);
+        let (left, right) = ((0..SIZE[0]).find(columns), (0..SIZE[0]).rfind(columns));
+        let (top, bottom) = ((0..SIZE[1]).find(rows), (0..SIZE[1]).rfind(rows));
+        let (across, down) = (
+            left.unwrap()..right.unwrap() + 1,
+            top.unwrap()..bottom.unwrap() + 1,
+        );
+        let tight: Vec<[u8; 4]> = down
+            .clone()
+            .flat_map(|y| pixels[y * SIZE[0]..][across.clone()].to_vec())
+            .collect();
+        let photo = Photo {
+            width: across.len() as u32,
+            height: down.len() as u32,
+            rgba: &tight,
+        };
+        let whole = read(&self::photo(&pixels)).unwrap();
+        let reading = read(&photo).unwrap();
+        assert_eq!(
+            (reading.ground, reading.half, &*reading.doubts),
+            (Ground::Transparent, Half::Both, &[][..])
+        );
+        let widest = |r: &Reading| r.radii.iter().copied().fold(0.0, f64::max);
+        let expected = widest(&whole) * SIZE[1] as f64 / down.len() as f64;
+        assert!(
+            (widest(&reading) - expected).abs() < 0.004,
+            "{} {expected}",
+            widest(&reading)
+        );
+        assert!(
+            reading.top > 0.99 && reading.bottom < 0.01,
+            "{} {}",
+            reading.top,
+            reading.bottom
+        );
+        assert!((reading.axis - 0.5).abs() < 0.01, "{}", reading.axis);
+    }
+}
+
+#[test]
+fn a_thing_that_the_lower_edge_cuts_is_told() {
+    let scene = changed(|s| s.noise = 0.004);
+    let pixels = scene.plain();
+    let from = SIZE[0] * (SIZE[1] * 3 / 5);
+    let cut = read(&Photo {
+        width: SIZE[0] as u32,
+        height: (SIZE[1] * 3 / 5) as u32,
+        rgba: &pixels[..from],
+    });
+    assert_eq!(cut.unwrap().doubts, [Doubt::Cut(End::Lower)]);
+}
+
+#[test]
+fn a_tip_is_no_foot_seen_from_above() {
+    // A light bulb: wide above, a thread, and a contact that is a flat arc.
+    let bulb = |z: f64| match z {
+        0.35.. => (0.33f64.powi(2) - (z - 0.67).powi(2)).max(0.0).sqrt(),
+        0.04.. => 0.13,
+        _ => 0.03 * (1.0 - ((0.04 - z) / 0.04).powi(2)).max(0.0).sqrt(),
+    };
+    let scene = Scene::default();
+    let mut pixels = scene.plain();
+    for (i, pixel) in pixels.iter_mut().enumerate() {
+        let [u, z] = scene.place((i % SIZE[0]) as f64 + 0.5, (i / SIZE[0]) as f64 + 0.5);
+        *pixel = [
+            0,
+            0,
+            0,
+            if u.abs() < bulb(z) && z < 1.0 && z > 0.0 {
+                255
+            } else {
+                0
+            },
+        ];
+    }
+    let reading = read(&photo(&pixels)).unwrap();
+    assert_eq!(reading.elevation, None, "{reading}");
 }
 
 #[test]
