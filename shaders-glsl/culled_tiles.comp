@@ -99,7 +99,8 @@ void main()
         Hit hit = NO_HIT;
         bool found;
         if ((tree_tiles >> tile & 1u) != 0u) {
-            found = trace(ray_origin(rays, vec2(pixel)), ray_direction(rays, vec2(pixel)), rays.base, hit);
+            RayStart start = FROM_EYE;
+            found = trace(ray_origin(rays, vec2(pixel)), ray_direction(rays, vec2(pixel)), rays.base, start, hit);
         } else {
             found = search_culled(rays, vec2(pixel), tile, hit);
         }

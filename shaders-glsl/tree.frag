@@ -14,7 +14,8 @@ void main()
     load_tree_varyings();
     PixelRays rays = varying_rays();
     Hit hit = NO_HIT;
-    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, hit);
+    RayStart start = FROM_EYE;
+    bool found = trace(ray_origin(rays, pixel), ray_direction(rays, pixel), rays.base, start, hit);
     count_steps(pixel, hit.steps, hit.exhausted);
     if (!found) {
         discard;

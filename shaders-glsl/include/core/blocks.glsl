@@ -114,15 +114,6 @@ Light first_light;
 Light second_light;
 Shape shape; // of the current object: the instance's, or one that may cast a shadow on it
 Appearance appearance;
-bool traces_caster = false;
-bool start_is_known = false;
-bool starts_within_caster; // if it is known
-
-// Returns true while the traced object is a possible shadow caster.
-bool casts()
-{
-    return SHADOW != SHADOW_OFF && traces_caster;
-}
 
 // True if the box cuts nothing of the object, and rays from the eye begin outside of it.
 bool is_outside()

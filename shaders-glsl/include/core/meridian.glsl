@@ -9,6 +9,16 @@ const uint FACE_Y = 1u;
 const uint FACE_Z = 2u;
 const uint FACE_NONE = 3u; // the start of the ray, or the clipping cylinder
 
+// What rays from one point have in common.
+struct RayStart {
+    bool to_light;
+    bool is_known; // an earlier ray has found `is_within`
+    bool is_within; // the point is in the solid
+};
+
+const RayStart FROM_EYE = RayStart(false, false, false);
+const RayStart TO_LIGHT = RayStart(true, false, false);
+
 struct Meridian {
     vec3 o; // point at s = 0, relative to the axis
     vec3 v; // direction per unit of s (and of t)
@@ -20,6 +30,7 @@ struct Meridian {
     uint face_in;        // face of entry
     uint face_out;       // face of exit
     bool from_eye;       // the ray starts within the box
+    bool to_light;       // the ray starts in a point that is shaded, not in the eye
 };
 
 vec2 point_rz(Meridian m, float s)

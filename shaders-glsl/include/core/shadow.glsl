@@ -100,13 +100,13 @@ bool may_meet(Cone cone, vec3 middle, vec3 half_size)
 uint unstopped_by(Instance i, vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 {
     vec3 eye = point_to_axis(i, origin, point);
-    start_is_known = false;
+    RayStart start = TO_LIGHT;
     vec2 angle = begin == SPIRAL_BEGIN ? disc.first : rotated(disc.first, RIM_ANGLE);
     for (uint k = begin; k < begin + PASS_RAYS; ++k) {
         vec3 v = direction_to_object(i, towards_disc(disc, k, angle));
         Hit hit;
         uint ray = 1u << k % LIGHT_RAYS;
-        if ((left & ray) != 0u && trace(eye, v, 0.0, hit)) {
+        if ((left & ray) != 0u && trace(eye, v, 0.0, start, hit)) {
             left &= ~ray;
         }
         angle = next_angle(angle);
@@ -167,6 +167,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 #if READS_MAP
             // This equals `map`. SwiftShader fetches by the index of an invocation that may be inactive; there a load
             // gives 0, and a loop's counter an index without a texture.
+            is_shadow_map = true;
             shadow_map = int(objects[i.object].object.shape.shadow_map);
 #endif
             left = unstopped_by(i, origin, point, disc, begin, left);
@@ -179,7 +180,6 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 // eye; world axes. The members of `shape` are those of another solid afterwards: restoring them would take registers.
 uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
 {
-    traces_caster = true;
     // If the first rays agree, their result holds for all rays.
     uint asked = FIRST_RAYS;
     uint lit = 0u;
@@ -189,8 +189,6 @@ uint reaching(vec3 origin, vec3 point, Disc disc, uint open)
         lit |= agree && left != 0u ? ALL_RAYS : left;
         asked = pass == 0u && !agree ? ALL_RAYS & ~FIRST_RAYS : 0u;
     }
-    traces_caster = false;
-    start_is_known = false;
     return lit & open;
 }
 

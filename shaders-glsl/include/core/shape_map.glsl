@@ -6,11 +6,13 @@
 
 layout(set = 1, binding = 0) uniform sampler2D shape_map;
 layout(set = 1, binding = 4) uniform sampler2D shadow_maps[MAX_SHADOW_MAPS];
-int shadow_map; // index of the map of the traced object, if casts()
+// The map of the current object, as `shape` is its block: that of the draw, or of a possible shadow caster.
+bool is_shadow_map = false;
+int shadow_map; // its index
 
 vec4 gather_map(vec2 at)
 {
-    if (casts()) {
+    if (SHADOW != SHADOW_OFF && is_shadow_map) {
         return textureGather(shadow_maps[shadow_map], at);
     }
     return textureGather(shape_map, at);
@@ -18,7 +20,7 @@ vec4 gather_map(vec2 at)
 
 vec4 filter_map(vec2 at)
 {
-    if (casts()) {
+    if (SHADOW != SHADOW_OFF && is_shadow_map) {
         return textureLod(shadow_maps[shadow_map], at, 0.0);
     }
     return textureLod(shape_map, at, 0.0);

@@ -21,18 +21,17 @@
 
 // Returns true if the ray begins in the solid. `inside`: the ray comes from within and always does. `f`: F at the
 // start, for searches on the map.
-bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
+bool begins_within(Meridian m, bool inside, inout RayStart start, inout uint steps, out float f)
 {
     f = 0.0;
 #if SEARCH == SEARCH_QUADRIC
     // Floor and ceiling are patches. A ray can enter the solid through a side only where the solid extends past it.
     float side_face = shape.half_side - max(abs(shape.axis.x), abs(shape.axis.y));
     bool open_side = m.face_in < FACE_Z && shape.clip_radius >= side_face;
-    bool within = inside || (start_is_known && m.from_eye ? starts_within_caster : (m.from_eye || open_side) && SOLID_AT(m));
-    // All rays of a pass towards a light begin in one point. If that is outside of the cylinder, nothing is solid where
-    // they enter it.
-    starts_within_caster = within;
-    start_is_known = casts() && REPLICAS == 0u && m.from_eye;
+    bool within = inside || (start.is_known && m.from_eye ? start.is_within : (m.from_eye || open_side) && SOLID_AT(m));
+    // If the point is outside of the cylinder, nothing is solid where rays enter it.
+    start.is_known = start.to_light && m.from_eye;
+    start.is_within = within;
     return within;
 #elif READS_TABLES
     return inside || SOLID_AT(m);
@@ -43,35 +42,23 @@ bool begins_within(Meridian m, bool inside, inout uint steps, out float f)
 #endif
 }
 
-// Finds the first hit; `quadric` is the patch hit, for tables.
-uint search_any(Meridian m, float side, float f, inout float s, inout uint steps, out vec4 quadric)
-{
-    quadric = vec4(0.0);
-#if SEARCH == SEARCH_QUADRIC
-    return search_quadric(m, side, s, steps, quadric);
-#elif READS_TABLES
-    return search(m, side, s, steps, quadric);
-#else
-    return search(m, side, max(side * f, 0.0), pixel_width(m.base + m.t_start), s, steps);
-#endif
-}
-
 // Traces the solid. Unlike clip_ray it has several returns: measurements show the shortest lavapipe code for this form.
 //
-// `hit.steps` counts look-ups even without a hit. `inside`: the ray comes from a replica that is solid where the ray
-// enters.
-bool trace_solid(vec3 eye, vec3 v, float base, float start, bool inside, inout Hit hit)
+// `hit.steps` counts look-ups even without a hit. `first`: least t; `inside`: the ray comes from a replica that is solid
+// where the ray enters.
+bool trace_solid(vec3 eye, vec3 v, float base, float first, bool inside, inout RayStart start, inout Hit hit)
 {
     Meridian m;
-    if (!clip_ray(eye, v, base, start, m)) {
+    if (!clip_ray(eye, v, base, first, m)) {
         return false;
     }
+    m.to_light = start.to_light;
     float s = 0.0;
     float f;
     bool within = false;
     // Rays towards lights may begin anywhere.
-    if (!is_outside() || casts()) {
-        within = begins_within(m, inside, hit.steps, f);
+    if (!is_outside() || start.to_light) {
+        within = begins_within(m, inside, start, hit.steps, f);
     }
     hit.at_border = false;
     if (within && !inside && m.face_in != FACE_NONE) {
@@ -83,12 +70,18 @@ bool trace_solid(vec3 eye, vec3 v, float base, float start, bool inside, inout H
     }
     // A ray within the solid hits the back of its boundary. Unsigned distances cannot distinguish inside from outside.
     float side = within && (inside || m.from_eye) && RGBA8 == 0u ? -1.0 : 1.0;
-    vec4 quadric;
-    uint end = search_any(m, side, f, s, hit.steps, quadric);
+#if READS_TABLES
+    vec4 quadric; // of the patch that is hit
+#endif
 #if SEARCH == SEARCH_QUADRIC
+    uint end = search_quadric(m, side, s, hit.steps, quadric);
     // A floor or ceiling at a border between cells is a patch, and is closed like the other borders.
     bool at_level = m.face_out == FACE_Z && s >= m.s_end - 1e-5 * m.inverse_speed;
     end = REPLICAS != 0u && side < 0.0 && end == FOUND && at_level ? LEFT : end;
+#elif READS_TABLES
+    uint end = search(m, side, s, hit.steps, quadric);
+#else
+    uint end = search(m, side, max(side * f, 0.0), pixel_width(m.base + m.t_start), s, hit.steps);
 #endif
     if (end == LEFT && side < 0.0 && m.face_out != FACE_NONE) {
         hit.t = m.t_start + m.s_end;
@@ -144,8 +137,13 @@ bool is_solid(vec3 p, inout uint steps)
 #endif
 }
 
-bool trace_replicas(vec3 eye, vec3 v, float base, float start, inout Hit hit)
+// Traces the ray `eye + t v`. The eye, or the point that is shaded, is at t = -base. Rays from the eye begin at the
+// host's near plane, also where it is known to cut no solid: roots count from there, and their last bits must not
+// depend on what else is drawn with a copy.
+bool trace(vec3 eye, vec3 v, float base, inout RayStart start, out Hit hit)
 {
+    hit = NO_HIT;
+    float first = (start.to_light ? 0.0 : frame_block.ray_start) - base;
     // Lattice units: a cell has size 1 and the box's lower corner is at 0.
     vec3 count = vec3(shape.replicas);
     vec3 size = vec3(2.0 * vec2(shape.half_side), 1.0);
@@ -156,7 +154,7 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, inout Hit hit)
     vec3 t_high = (count - o) * inverse;
     vec3 near = min(t_low, t_high);
     vec3 far = max(t_low, t_high);
-    float t = max(max(near.x, near.y), max(near.z, start));
+    float t = max(max(near.x, near.y), max(near.z, first));
     float t_out = min(far.x, min(far.y, far.z));
     vec3 stride = vec3(greaterThanEqual(d, vec3(0.0)));
     vec3 cell = clamp(floor(o + t * d), vec3(0.0), count - 1.0);
@@ -171,7 +169,12 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, inout Hit hit)
             local = in_cell(o, cell);
             local_v = d * sense * size;
         }
-        bool met = trace_solid(local, local_v, base, start, inside, hit);
+        // What is known of a start holds for one solid, not for the replicas beside it.
+        RayStart own = RayStart(start.to_light, REPLICAS == 0u && start.is_known, start.is_within);
+        bool met = trace_solid(local, local_v, base, first, inside, own, hit);
+        if (REPLICAS == 0u) {
+            start = own;
+        }
         vec3 next = (cell + stride - o) * inverse;
         t = min(next.x, min(next.y, next.z));
         vec3 beyond = cell + mix(vec3(0.0), sign(d), equal(next, vec3(t)));
@@ -193,16 +196,6 @@ bool trace_replicas(vec3 eye, vec3 v, float base, float start, inout Hit hit)
         cell = beyond;
     }
     return false;
-}
-
-// Traces the ray `eye + t v`. The eye, or the point that is shaded, is at t = -base. Rays from the eye begin at the
-// host's near plane, also where it is known to cut no solid: roots count from there, and their last bits must not
-// depend on what else is drawn with a copy.
-bool trace(vec3 eye, vec3 v, float base, out Hit hit)
-{
-    hit = NO_HIT;
-    float start = (casts() ? 0.0 : frame_block.ray_start) - base;
-    return trace_replicas(eye, v, base, start, hit);
 }
 
 #endif

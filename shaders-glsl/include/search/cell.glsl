@@ -43,7 +43,8 @@ bool trace_cell(vec2 pixel, out Hit hit)
     // A ray that enters the solid before a side may be in the solid there, or leave it into the shell of a cell that it
     // then enters from behind. The fragment of the cell where it entered searches all of the box.
     if (CUT_CELLS != 0u && by_side && entered) {
-        found = trace_solid(row.m.o, row.m.v, -eye, eye, false, hit);
+        RayStart start = FROM_EYE;
+        found = trace_solid(row.m.o, row.m.v, -eye, eye, false, start, hit);
         hit.t += row.shift;
     }
     return found;

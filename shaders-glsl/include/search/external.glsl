@@ -15,6 +15,7 @@
 // - `f`: max(side * F, 0) at s = 0. F is `field(point_rz(m, s))` (core/surface.glsl).
 // - `pixel`: width of a pixel at s = 0, object units.
 // - `steps`: number of look-ups of the map or of the table's rows.
+// - `m.to_light`: the ray leads from a point to a light.
 // - `quadric`: q of the hit patch, G = q.x r^2 + q.z (z - q.y) + q.w (z - q.y)^2 + any constant. The gradient of G is
 //   the normal.
 // `starts_in_table` returns true if the ray begins within the solid; it reads only m.o and m.c.

@@ -63,7 +63,8 @@ void take_nearer(uint number, Instance i, vec2 at, inout Nearest nearest)
     load_shape(i);
     PixelRays rays = pixel_rays(i);
     Hit hit;
-    bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, hit);
+    RayStart start = FROM_EYE;
+    bool hits = trace(ray_origin(rays, at), ray_direction(rays, at), rays.base, start, hit);
     uint steps = nearest.hit.steps + hit.steps;
     bool exhausted = nearest.hit.exhausted || hit.exhausted;
     float t = rays.base + hit.t;

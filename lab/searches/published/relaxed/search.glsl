@@ -69,7 +69,7 @@ uint search_relaxed(Meridian m, inout float s, inout uint steps, out vec4 hit_qu
 uint search(Meridian m, float side, inout float s, inout uint steps, out vec4 quadric)
 {
     uint end;
-    if (side > 0.0 && !casts()) {
+    if (side > 0.0 && !m.to_light) {
         end = search_relaxed(m, s, steps, quadric);
     } else {
         end = search_cone(m, side, s, steps, quadric);

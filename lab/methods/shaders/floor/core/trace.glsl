@@ -15,7 +15,7 @@ bool hit_at(vec3 o, vec3 v, float t, out Hit hit)
     return true;
 }
 
-bool trace(vec3 eye, vec3 v, float base, out Hit hit)
+bool trace(vec3 eye, vec3 v, float base, inout RayStart start, out Hit hit)
 {
     hit = NO_HIT;
     Meridian m;
