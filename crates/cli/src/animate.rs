@@ -181,7 +181,7 @@ impl Animate {
     ) -> Vec<String> {
         let blanks = &drawn.blanks;
         let mut warnings = self.drawing.warnings(first);
-        if self.samples.rays != Rays::Each(1) && self.output.is_none() {
+        if self.samples.rays() != Rays::Each(1) && self.output.is_none() {
             warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
         }
         let turn = self.turn.unwrap_or(0.0);
@@ -218,14 +218,17 @@ impl Animate {
         progress: &Progress,
     ) -> Result<Drawn> {
         let mut settings = self.drawing.settings(Planes::Color);
+        let shown = self.surroundings.studio || target.is_some_and(|t| t.format.is_some());
+        let shown = shown && self.drawing.solver.solver().is_some();
+        let samples = self.samples.or_adaptive(shown);
         // Silhouettes are smoothed only if pictures are written.
-        if self.samples.antialias(false) && target.is_some() {
+        if samples.antialias(false) && target.is_some() {
             settings.edges = Edges::Silhouettes;
         }
         let methods = MethodDevice::new(device.clone())?;
         let mut renderer = methods.renderer(first, &settings)?;
         renderer.offscreen.prewarm()?;
-        let adaptive = target.map(|_| self.samples.adaptive(device, first, &settings));
+        let adaptive = target.map(|_| samples.adaptive(device, first, &settings));
         let mut adaptive = adaptive.transpose()?.flatten();
         let mut drawn = Drawn::default();
         let (mut compiled, mut rebuilt) = (device.pipelines_compiled(), 0);
@@ -240,7 +243,7 @@ impl Animate {
                 Ok(())
             };
             if let Some(Target { path, format }) = target {
-                let mut frame = self.samples.draw(&scene, |scene| {
+                let mut frame = samples.draw(&scene, |scene| {
                     draw(&mut renderer, scene)?;
                     renderer.read()
                 })?;

@@ -73,7 +73,7 @@ struct DeviceWork {
 }
 
 impl Render {
-    pub fn run(self) -> Result<()> {
+    pub fn run(mut self) -> Result<()> {
         let outputs = self.input.outline.output();
         let outputs = outputs
             .and("--output", &self.output, &["png", "exr"])
@@ -81,6 +81,10 @@ impl Render {
             .and("--show-rays", &self.show_rays, &["png"]);
         outputs.check(&[&self.input.scene])?;
         let reference = self.drawing.stage == Tracing::Reference;
+        let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
+        let shown = self.surroundings.studio && !reference && !floats;
+        let shown = shown && self.drawing.solver.solver().is_some();
+        self.samples = self.samples.or_adaptive(shown);
         self.samples.check(reference, self.show_rays.is_some())?;
         let begin = Instant::now();
         let reading = format!("reading {}", self.input.scene.display());
@@ -96,7 +100,6 @@ impl Render {
         let silent = self.drawing.quiet || self.json;
         self.input.outline.finish(&file, &scene, silent)?;
         let loading = milliseconds(begin);
-        let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         // Searches that run out of steps are counted beside the planes; such pixels cause a
         // warning.
         let solver = self.drawing.solver;

@@ -16,9 +16,10 @@ use revmap_offscreen::samples::averaged;
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Samples {
     /// Rays per pixel. Colours are averaged; all other channels come from the middle ray. adaptive: one
-    /// ray, and up to 64 more in pixels whose colours they change
-    #[arg(long = "samples", value_name = "N", default_value = "1", value_parser = named(&RAYS))]
-    pub rays: Rays,
+    /// ray, and up to 64 more in pixels whose colours they change [default: 1, but adaptive with
+    /// --studio and for a moving picture]
+    #[arg(long = "samples", value_name = "N", value_parser = named(&RAYS))]
+    rays: Option<Rays>,
     /// Blends pixels that a silhouette cuts by the part beyond it; other channels than colour stay
     /// [default: on, but off with more than one ray per pixel, where an .exr is written, and in the
     /// stage reference]
@@ -45,11 +46,21 @@ const RAYS: [(&str, Rays); 5] = [
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 impl Samples {
+    /// These, with adaptive rays if the option is not given and the picture is `shown`.
+    pub fn or_adaptive(self, shown: bool) -> Self {
+        let rays = self.rays.or(shown.then_some(Rays::Adaptive));
+        Self { rays, ..self }
+    }
+
+    pub fn rays(self) -> Rays {
+        self.rays.unwrap_or(Rays::Each(1))
+    }
+
     /// Returns true if silhouettes are smoothed. With `exact`, for pictures that are compared with
     /// others, they are smoothed only if the option says so.
     pub fn antialias(self, exact: bool) -> bool {
         self.antialias
-            .unwrap_or(self.rays == Rays::Each(1) && !exact)
+            .unwrap_or(self.rays() == Rays::Each(1) && !exact)
     }
 
     /// Refuses adaptive rays of the reference, and their picture (`shows`) without them.
@@ -57,13 +68,13 @@ impl Samples {
     /// # Errors
     /// [`ErrorKind::Usage`](revmap::error::ErrorKind::Usage).
     pub fn check(self, reference: bool, shows: bool) -> Result<()> {
-        if shows && self.rays != Rays::Adaptive {
+        if shows && self.rays() != Rays::Adaptive {
             return Err(usage(
                 "--show-rays",
                 "all pixels have as many rays; add --samples adaptive",
             ));
         }
-        if reference && self.rays == Rays::Adaptive {
+        if reference && self.rays() == Rays::Adaptive {
             return Err(usage(
                 "--samples",
                 "adaptive rays are traced on a device; give 4, 16 or 64 in the stage reference",
@@ -74,7 +85,7 @@ impl Samples {
 
     /// The rays that each pixel has.
     pub fn count(self) -> u32 {
-        match self.rays {
+        match self.rays() {
             Rays::Each(count) => count,
             Rays::Adaptive => 1,
         }
@@ -99,7 +110,7 @@ impl Samples {
         scene: &Scene,
         settings: &MethodSettings,
     ) -> Result<Option<Adaptive>> {
-        if self.rays != Rays::Adaptive {
+        if self.rays() != Rays::Adaptive {
             return Ok(None);
         }
         if settings.method.solver().is_none() {

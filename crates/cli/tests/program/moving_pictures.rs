@@ -59,7 +59,7 @@ fn moving_pictures_show_the_frames_of_a_folder() {
         bench.done(&format!("{SMALL} --vary object.0.extend=0:0.1 {options}"));
     };
     let opaque = "--set background=[0.2,0.3,0.4,1]";
-    animate(&format!("-o folder {opaque}"));
+    animate(&format!("-o folder --samples adaptive {opaque}"));
     let folder: Vec<Vec<u8>> = (0..6)
         .map(|n| {
             bench
