@@ -239,26 +239,6 @@ impl Line {
         }
     }
 
-    /// The places of the rings at these points, as [`Line::strand_of`] has them but for the
-    /// direction in which they are moved, which is that between the chords.
-    pub(super) fn laid(&self, kept: &[usize]) -> Vec<DVec2> {
-        let chords = || kept.windows(2);
-        let bulges: Vec<f64> = chords().map(|k| self.bulge(k[0], k[1])).collect();
-        let outward = |k: &[usize]| -(self.points[k[1]] - self.points[k[0]]).perp();
-        let outwards: Vec<DVec2> = chords().map(outward).collect();
-        let place = |(n, &k): (usize, &usize)| {
-            let mut point = self.points[k];
-            if n > 0 && n < bulges.len() && self.fixed.binary_search(&k).is_err() {
-                let outward = [n - 1, n].map(|n| outwards[n].normalize_or_zero());
-                let outward = (outward[0] + outward[1]).normalize_or_zero();
-                point += outward * (0.25 * (bulges[n - 1] + bulges[n]));
-                point.x = point.x.max(0.0);
-            }
-            point
-        };
-        kept.iter().enumerate().map(place).collect()
-    }
-
     /// The chord between two points, with the normals that are nearest to the contour's if they
     /// turn evenly along it: least squares of the angle over the length.
     fn chord(&self, a: usize, b: usize) -> Chord {

@@ -23,8 +23,7 @@ const DETAILS: f64 = 1e-3;
 const FIRST: f64 = 1.9;
 /// From one factor to the next where chords do not keep the tolerance.
 const NEXT: f64 = 0.85;
-/// The share of the tolerance that chords keep: rings are moved along normals, which differ a little
-/// from those between chords that they are measured with.
+/// The share of the tolerance that chords keep: the rest is for rounding.
 const MARGIN: f64 = 0.98;
 
 /// A contour as few rings and segments whose solid is nowhere farther than `tolerance` from the
@@ -45,8 +44,7 @@ pub fn turned_within(contour: &Contour, tolerance: f64) -> Turned {
         let mut all = Turned::default();
         let mut spread = f64::INFINITY;
         for line in &lines {
-            let kept = kept(line, corners, &share);
-            let strand = line.strand_of(&kept);
+            let (kept, strand) = kept(line, corners, &share);
             for (chord, ends) in strand.rings.windows(2).zip(kept.windows(2)) {
                 let [a, b] = [chord[0].point, chord[1].point];
                 let left = tolerance - error(line, ends, [a, b]);
@@ -82,8 +80,8 @@ fn quads(turned: &Turned) -> usize {
 }
 
 /// The points of a line that become rings: between fixed points the longest chords that, laid to
-/// both sides, keep `share`. Without `corners` only the line's ends are fixed.
-fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> Vec<usize> {
+/// both sides, keep `share`, and their strand. Without `corners` only the line's ends are fixed.
+fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> (Vec<usize>, Strand) {
     let last = line.points.len() - 1;
     let ends = [0, last];
     let fixed = if corners { &line.fixed[..] } else { &ends };
@@ -95,20 +93,21 @@ fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> Vec<usize>
                 kept.push(line.reach(at, section[1], !corners, &|k| tolerances[k]));
             }
         }
-        let laid = line.laid(&kept);
+        let strand = line.strand_of(&kept);
         let mut done = true;
-        for (ends, chord) in kept.windows(2).zip(laid.windows(2)) {
+        for (ends, chord) in kept.windows(2).zip(strand.rings.windows(2)) {
             let points = ends[0]..=ends[1];
             let allowed = line.points[points.clone()].iter().map(share);
             let allowed = MARGIN * allowed.fold(f64::INFINITY, f64::min);
             // As tolerances fall chords become the line itself.
-            if ends[1] > ends[0] + 1 && error(line, ends, [chord[0], chord[1]]) > allowed {
+            let places = [chord[0].point, chord[1].point];
+            if ends[1] > ends[0] + 1 && error(line, ends, places) > allowed {
                 tolerances[points].iter_mut().for_each(|t| *t *= NEXT);
                 done = false;
             }
         }
         if done {
-            return kept;
+            return (kept, strand);
         }
     }
 }
