@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used)]
 
 use divan::{Bencher, black_box};
-use revmap::maps::{BakeOptions, MapFormat, MapSource, ShapeMap};
+use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::Profile;
 use revmap_files::raster::rasterize;
-use revmap_files::{BINARY, COVERAGE, ProfileAxis};
+use revmap_files::{BINARY, ProfileAxis};
 
 fn main() {
     // Figures that can be compared between machines: one thread.
@@ -46,19 +46,10 @@ fn image(rows: u32) -> Profile {
     revmap_files::trace(rasterize(&polygon.outline, rows, rows).unwrap()).unwrap()
 }
 
-fn bake(bencher: Bencher, source: MapSource, rows: u32) {
-    let (profile, options) = (image(rows), BakeOptions::new(source, rows));
-    bencher.bench(|| ShapeMap::bake(black_box(&profile), &options));
-}
-
 #[divan::bench(args = [1024, 4096], sample_count = 10)]
 fn binary(bencher: Bencher, rows: u32) {
-    bake(bencher, BINARY, rows);
-}
-
-#[divan::bench(args = [1024, 4096], sample_count = 10)]
-fn coverage(bencher: Bencher, rows: u32) {
-    bake(bencher, COVERAGE, rows);
+    let (profile, options) = (image(rows), BakeOptions::new(BINARY, rows));
+    bencher.bench(|| ShapeMap::bake(black_box(&profile), &options));
 }
 
 /// From the file's bytes to the map.
@@ -71,18 +62,4 @@ fn drawing_exact(bencher: Bencher, rows: u32) {
         let profile = revmap_files::profile(black_box(&file), ProfileAxis::Left).unwrap();
         ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, rows))
     });
-}
-
-#[divan::bench(sample_count = 10)]
-fn drawing_load(bencher: Bencher) {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("curves.svg");
-    std::fs::write(&file, hundred_curves()).unwrap();
-    bencher.bench(|| revmap_files::profile(black_box(&file), ProfileAxis::Left));
-}
-
-#[divan::bench(args = [MapFormat::Rgba8, MapFormat::R16, MapFormat::R32], sample_count = 10)]
-fn encode(bencher: Bencher, format: &MapFormat) {
-    let map = ShapeMap::bake(&image(1024), &BakeOptions::new(BINARY, 1024)).unwrap();
-    bencher.bench(|| map.encode(*format));
 }

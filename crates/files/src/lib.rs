@@ -54,8 +54,8 @@ pub use atomic_file::{
     Sink, check_writable, destination, remove_unfinished, write_atomically, write_bytes,
 };
 pub use maps::{
-    BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, mark_projection, projection_of,
-    shape_map, write_displacement_map, write_shape_map,
+    BINARY, COVERAGE, MAP_SOURCES, color_map, displacement_map, projection_of, shape_map,
+    write_displacement_map, write_shape_map,
 };
 pub use mesh::{MESH_ENDINGS, mesh_files, stl_rounding, write_meshes};
 pub use openexr::{read_exr, write_exr};

@@ -246,23 +246,4 @@ mod tests {
         exr::prelude::write_rgb_file(&bad, 4, 4, |_, _| (0.0f32, 0.0f32, 0.0f32)).unwrap();
         assert_eq!(read_exr(&bad).unwrap_err().key.as_deref(), Some("A"));
     }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_full_disk_is_one_line_that_names_the_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let frame = Frame::new(300, 200, [0.3; 4]).unwrap();
-        type Writer<'a> = &'a dyn Fn(&Path) -> Result<()>;
-        let writers: [(&str, Writer); 2] = [
-            ("a.exr", &|path| write_exr(&frame, path)),
-            ("a.png", &|path| crate::write_png(&frame, path)),
-        ];
-        for (name, write) in writers {
-            let path = folder.path().join(name);
-            std::os::unix::fs::symlink("/dev/full", &path).unwrap();
-            let text = write(&path).unwrap_err().to_string();
-            let said = text.contains(name) && text.contains("full") && !text.contains('\n');
-            assert!(said, "{text}");
-        }
-    }
 }

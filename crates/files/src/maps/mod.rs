@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// ```
 /// use revmap::maps::Projection;
 /// use revmap_files::projection_of;
-/// assert_eq!(projection_of("maps/vase.spherical.png"), Some(Projection::Spherical));
+/// assert_eq!(projection_of("maps/vase.Spherical.png"), Some(Projection::Spherical));
 /// assert_eq!(projection_of("vase.png"), None);
 /// ```
 #[must_use]
@@ -28,39 +28,4 @@ pub fn projection_of(path: impl AsRef<Path>) -> Option<Projection> {
     let mut named = Projection::NAMES.into_iter();
     let found = named.find(|(own, _)| own.eq_ignore_ascii_case(name));
     found.map(|(_, projection)| projection)
-}
-
-/// `path` with the projection before its extension, unless it has one already: `vase.png` becomes
-/// `vase.spherical.png`.
-#[must_use]
-pub fn mark_projection(path: impl AsRef<Path>, projection: Projection) -> PathBuf {
-    let path = path.as_ref();
-    match (projection_of(path), path.extension()) {
-        (None, Some(extension)) => {
-            let mut marked = std::ffi::OsString::from(projection.name());
-            marked.push(".");
-            marked.push(extension);
-            path.with_extension(marked)
-        }
-        _ => path.to_path_buf(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_carry_projections() {
-        for (name, p) in Projection::NAMES {
-            assert_eq!(projection_of(mark_projection("a/b.c.png", p)), Some(p));
-            let upper = format!("v.{}.png", name.to_uppercase());
-            assert_eq!(projection_of(upper), Some(p));
-        }
-        assert_eq!(projection_of("spherical.png"), None);
-        assert_eq!(
-            mark_projection("v.planar.png", Projection::Arc),
-            PathBuf::from("v.planar.png")
-        );
-    }
 }

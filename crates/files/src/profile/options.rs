@@ -24,8 +24,6 @@ pub enum ProfileAxis {
 impl ProfileAxis {
     /// The values with a name in options and scene files; a number is [`ProfileAxis::At`].
     pub const NAMES: [(&'static str, Self); 2] = [("left", Self::Left), ("center", Self::Center)];
-    /// A name that is read and not listed.
-    pub(crate) const BRITISH: (&'static str, Self) = ("centre", Self::Center);
 
     /// The axis as a fraction of the width.
     #[must_use]
@@ -43,8 +41,7 @@ impl std::str::FromStr for ProfileAxis {
 
     /// A name or a number, as in scene files.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let mut names = Self::NAMES.iter().chain([&Self::BRITISH]);
-        let named = names.find(|(name, _)| *name == text);
+        let named = Self::NAMES.iter().find(|(name, _)| *name == text);
         match (named, text.parse()) {
             (Some((_, axis)), _) => Ok(*axis),
             (None, Ok(fraction)) => Ok(Self::At(fraction)),
@@ -137,14 +134,8 @@ impl ProfileOptions {
             return wrong("profile_threshold", message);
         }
         if self.read == ProfileRead::Auto {
-            let found = Self {
-                smooth: Smooth::default(),
-                min_stroke: 0.0,
-                read: ProfileRead::default(),
-                ..*self
-            };
-            found
-                .unset("counts for profile_read = \"threshold\" alone; leave one of the two out")?;
+            let message = "counts for profile_read = \"threshold\" alone; leave one of the two out";
+            self.refuse(&Self::OF_THRESHOLD, message)?;
         }
         if let Smooth::Pixels(pixels) = self.smooth
             && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
@@ -166,46 +157,47 @@ impl ProfileOptions {
     /// Refuses options that apply only to pictures. [`Smooth::Auto`] and [`ProfileRead::Auto`] are
     /// accepted, since a drawing has no noise and is no photograph.
     pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
-        let mut own = Self {
-            axis: ProfileAxis::default(),
-            min_stroke: 0.0,
-            read: ProfileRead::default(),
-            ..*self
-        };
-        if own.smooth == Smooth::Auto {
-            own.smooth = Smooth::default();
-        }
-        own.unset("counts for pictures alone; leave it out for a drawing")?;
+        let keys = ["profile_threshold", "profile_invert", "profile_smooth"];
+        let keys = &keys[..3 - usize::from(self.smooth == Smooth::Auto)];
+        self.refuse(
+            keys,
+            "counts for pictures alone; leave it out for a drawing",
+        )?;
         Ok(self.axis)
     }
 
     /// Refuses options that apply only to drawings.
     pub(super) fn for_picture(&self) -> Result<()> {
-        let own = Self {
-            min_stroke: self.min_stroke,
-            ..Self::default()
-        };
-        own.unset("counts for drawings alone; leave it out for a picture")
+        let message = "counts for drawings alone; leave it out for a picture";
+        self.refuse(&["profile_min_stroke"], message)
     }
 
     /// Refuses every option: a polygon has no file.
     pub(crate) fn for_polygon(&self) -> Result<()> {
-        self.unset("counts for files alone; leave it out for a polygon")
+        let message = "counts for files alone; leave it out for a polygon";
+        self.refuse(&self.given().map(|(key, _)| key), message)
     }
 
-    /// Refuses the first option that differs from its default.
-    fn unset(&self, message: &str) -> Result<()> {
+    /// Every key, and whether its value differs from the default.
+    fn given(&self) -> [(&'static str, bool); 6] {
         let plain = Self::default();
-        let key = match self {
-            _ if self.axis != plain.axis => "profile_axis",
-            _ if self.read != plain.read => "profile_read",
-            _ if self.threshold != plain.threshold => "profile_threshold",
-            _ if self.invert => "profile_invert",
-            _ if self.smooth != plain.smooth => "profile_smooth",
-            _ if self.min_stroke != plain.min_stroke => "profile_min_stroke",
-            _ => return Ok(()),
-        };
-        Err(content_fault(message).at_key(key))
+        [
+            ("profile_axis", self.axis != plain.axis),
+            ("profile_read", self.read != plain.read),
+            ("profile_threshold", self.threshold != plain.threshold),
+            ("profile_invert", self.invert),
+            ("profile_smooth", self.smooth != plain.smooth),
+            ("profile_min_stroke", self.min_stroke != plain.min_stroke),
+        ]
+    }
+
+    /// Refuses the first of these keys that is given.
+    fn refuse(&self, keys: &[&str], message: &str) -> Result<()> {
+        let is_given = |(key, is): &(&str, bool)| *is && keys.contains(key);
+        match self.given().iter().find(|given| is_given(given)) {
+            Some((key, _)) => Err(content_fault(message).at_key(*key)),
+            None => Ok(()),
+        }
     }
 
     /// The darkness above which a pixel is solid; with `invert`, the lightness.

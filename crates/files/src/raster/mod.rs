@@ -147,17 +147,6 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_picture_is_empty() {
-        let full = Raster {
-            columns: 2,
-            rows: 2,
-            coverage: vec![1.0; 4],
-        };
-        let wide = resample(&full, 5, 2).unwrap();
-        assert_eq!(wide.coverage, [1.0, 1.0, 0.0, 0.0, 0.0].repeat(2));
-    }
-
-    #[test]
     fn bounds_surround_the_solid() {
         let mut r = Raster {
             columns: 8,

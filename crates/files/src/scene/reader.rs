@@ -44,8 +44,8 @@ const MOST_COLORS: usize = 64;
 pub(super) struct Reader {
     folder: PathBuf,
     profiles: Vec<(PathBuf, ProfileOptions, Arc<Profile>)>,
-    /// Polygon profiles with their points and radius.
-    polygons: Vec<(Vec<[f64; 2]>, f64, Arc<Profile>)>,
+    /// Polygon profiles by their points and radius as text.
+    polygons: HashMap<String, Arc<Profile>>,
     color_maps: HashMap<PathBuf, Arc<ColorMap>>,
     /// Colour maps with transparent texels over the colours of objects, which are told by their bits.
     opaque_maps: HashMap<(PathBuf, [u32; 3]), Arc<ColorMap>>,
@@ -203,12 +203,7 @@ impl Reader {
         let polygon = keys.pairs("polygon")?;
         let mut options = ProfileOptions::default();
         let (axis, names) = (&mut options.axis, &ProfileAxis::NAMES);
-        if keys
-            .choose("profile_axis", &[ProfileAxis::BRITISH], axis)
-            .is_err()
-        {
-            keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
-        }
+        keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
         keys.choose("profile_read", &ProfileRead::NAMES, &mut options.read)?;
         keys.set("profile_threshold", &mut options.threshold)?;
         keys.set("profile_invert", &mut options.invert)?;
@@ -237,18 +232,15 @@ impl Reader {
                 options
                     .for_polygon()
                     .map_err(|e| below(keys, "polygon", e))?;
-                let same =
-                    |known: &&(Vec<[f64; 2]>, f64, _)| known.0 == points && known.1 == radius;
-                if let Some((_, _, profile)) = self.polygons.iter().find(same) {
-                    return Ok(Object::new("polygon", profile.clone()));
-                }
-                let mut profile =
-                    Profile::polygon(&points, radius).map_err(|e| below(keys, "polygon", e))?;
-                profile.warnings.extend(polygon::cut_off(&points, radius));
-                profile.warnings.extend(polygon::open_wall(&points));
-                profile.warnings.extend(gap_hints(&profile.outline));
-                let profile = Arc::new(profile);
-                self.polygons.push((points, radius, profile.clone()));
+                let key = format!("{points:?} {radius:?}");
+                let profile = shared(&mut self.polygons, key, |_| {
+                    let mut profile = Profile::polygon(&points, radius)?;
+                    profile.warnings.extend(polygon::cut_off(&points, radius));
+                    profile.warnings.extend(polygon::open_wall(&points));
+                    profile.warnings.extend(gap_hints(&profile.outline));
+                    Ok(profile)
+                });
+                let profile = profile.map_err(|e| below(keys, "polygon", e))?;
                 Ok(Object::new("polygon", profile))
             }
             (None, None) => Err(keys.fail(

@@ -136,15 +136,6 @@ fn many_translucent_shapes_are_resolved() {
 }
 
 #[test]
-fn a_gap_of_rounding_at_the_axis_is_closed() {
-    let at_axis = |name: &str| profile_from_bytes(&file(name), ProfileAxis::Left).unwrap();
-    let (gap, control) = (at_axis("axis-gap.svg"), at_axis("axis-gap-control.svg"));
-    let surface = |p: &Profile| p.outline.surface_segments().count();
-    assert_eq!(surface(&gap), surface(&control));
-    assert!(difference(&gap.outline, &control.outline) < 1e-6);
-}
-
-#[test]
 fn a_drawing_says_what_it_seems_to_be() {
     let warning = |name: &str| read(name).unwrap().warnings.join("\n");
     holds(warning("outline-drawing.svg"), "fill the shape");
@@ -197,19 +188,6 @@ fn shapes_that_abut_leave_no_crack() {
         let body = format!("<rect x='10' y='10' width='30' height='30'/>{slit}");
         assert_eq!(loops(&body), count, "{width}");
     }
-}
-
-#[test]
-fn the_right_half_of_a_silhouette() {
-    let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-10 0 20 40'><circle cy='20' r='8'/></svg>";
-    let p = profile_from_bytes(text.as_bytes(), ProfileAxis::Center).unwrap();
-    let b = p.outline.bounds().unwrap();
-    assert_eq!((p.radius, b.r_min), (0.25, 0.0));
-    for (found, wanted) in [(b.r_max, 0.2), (b.z_min, 0.3), (b.z_max, 0.7)] {
-        assert!((found - wanted).abs() < 1e-5, "{b:?}");
-    }
-    let o = p.outline;
-    assert_eq!(o.segments().count() - o.surface_segments().count(), 1);
 }
 
 /// A highlight from white to transparent over black is light in part, though all of its stops are

@@ -80,22 +80,6 @@ fn text_has_the_digits_that_a_far_object_needs() {
 }
 
 #[test]
-fn nodes_keep_their_places() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.glb");
-    let scene = scene(1e8, 1.0);
-    write_meshes(&scene, &meshes(&scene), &path).unwrap();
-    let (document, _) = crate::meshes::glb(&path);
-    let copies: Vec<&Placement> = scene.objects.iter().flat_map(|o| o.placements()).collect();
-    for (n, copy) in copies.iter().enumerate() {
-        let node = &document["nodes"][n]["translation"];
-        let place = [0, 1, 2].map(|k| node[k].as_f64().unwrap());
-        assert_eq!(place, copy.position.to_array());
-    }
-    assert_eq!(copies.len(), 3);
-}
-
-#[test]
 fn an_stl_is_within_its_tolerance_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.stl");

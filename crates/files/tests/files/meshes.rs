@@ -62,7 +62,7 @@ fn float(bytes: &[u8], at: usize) -> f64 {
 }
 
 /// The document and the buffer of a file.
-pub fn glb(path: &Path) -> (Value, Vec<u8>) {
+fn glb(path: &Path) -> (Value, Vec<u8>) {
     let bytes = std::fs::read(path).unwrap();
     let head = (&bytes[..4], word(&bytes, 4), word(&bytes, 8) as usize);
     assert_eq!(head, (b"glTF".as_slice(), 2, bytes.len()));
@@ -202,6 +202,7 @@ fn glb_has_nodes_materials_and_one_picture() {
         (&0.into(), &0.into(), &1.into())
     );
     assert_eq!(nodes[1]["scale"][1], 2.0);
+    assert_eq!(nodes[1]["translation"][1], 5.0);
     assert_eq!(document["images"].as_array().unwrap().len(), 1);
     let look = &document["materials"][0]["pbrMetallicRoughness"];
     assert_eq!(

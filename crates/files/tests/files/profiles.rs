@@ -1,6 +1,5 @@
 //! Profiles from files: accepted files, and refused files with their messages.
 
-use glam::DVec2;
 use revmap::maps::{BakeOptions, MapSource, ShapeMap};
 use revmap::profile::Profile;
 use revmap_files::ProfileAxis;
@@ -115,44 +114,5 @@ fn an_image_of_a_drawing_gives_its_distances() {
             let rms = (outside.iter().map(|e| e * e).sum::<f64>() / outside.len() as f64).sqrt();
             assert!(rms < 0.045, "{name} at {rows}: rms {rms} pixels");
         }
-    }
-}
-
-/// A whole silhouette of odd width has half a pixel on its axis: nothing may move by that half.
-#[test]
-fn odd_widths_stay_where_they_are() {
-    let folder = tempfile::tempdir().unwrap();
-    let (radius, height) = (30.3, 80);
-    let mut maps = Vec::new();
-    for width in [80u32, 81] {
-        // A ball about the middle of the picture, with coverage by 16 x 16 samples.
-        let middle = DVec2::new(f64::from(width) / 2.0, 40.0);
-        let picture = image::GrayImage::from_fn(width, height, |x, y| {
-            let hits = (0..256)
-                .filter(|k| {
-                    let p = DVec2::new(f64::from(k % 16), f64::from(k / 16)) / 16.0 + 1.0 / 32.0;
-                    (p + DVec2::new(f64::from(x), f64::from(y))).distance(middle) < radius
-                })
-                .count();
-            image::Luma([(255.0 * (1.0 - hits as f64 / 256.0)).round() as u8])
-        });
-        let file = folder.path().join(format!("{width}.png"));
-        picture.save(&file).unwrap();
-        let profile = revmap_files::profile(&file, ProfileAxis::Center).unwrap();
-        assert_eq!(profile.radius, f64::from(width) / 160.0);
-        maps.push(ShapeMap::bake(&profile, &BakeOptions::new(MapSource::EXACT, 160)).unwrap());
-    }
-    for map in maps {
-        let mut worst = 0.0f64;
-        for k in 0..400 {
-            let p = DVec2::new(f64::from(k % 20) / 42.0, (f64::from(k / 20) + 0.5) / 20.0);
-            let exact = p.distance(DVec2::new(0.0, 0.5)) - radius / 80.0;
-            // The distance has a peak near the middle of the ball, which no bilinear grid can
-            // follow.
-            if exact > -0.3 {
-                worst = worst.max((map.distance_at(p.x, p.y) - exact).abs() * 80.0);
-            }
-        }
-        assert!(worst < 0.03, "off by {worst} pixels");
     }
 }

@@ -107,11 +107,6 @@ fn assert_mended(bytes: &[u8], factor: f64) {
 }
 
 #[test]
-fn gaussian_noise_is_named_and_smoothed() {
-    assert_mended(&png(&noisy(&vase([0.1, 0.03], 0.0), 10.0, 1)), 3.0);
-}
-
-#[test]
 fn jpeg_noise_is_named_and_smoothed() {
     let clean = vase([0.1, 0.03], 0.0);
     assert_mended(&jpeg(&picture(&clean, |g| g), 70), 1.8);
