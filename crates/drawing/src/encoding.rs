@@ -1,6 +1,6 @@
 //! The bytes of a drawing as text: gzip, UTF-8, UTF-16 and the encodings of one byte per letter.
 
-use crate::fault::{Fault, Result};
+use crate::notes::{Fault, Result};
 use flate2::read::GzDecoder;
 use std::borrow::Cow;
 use std::io::Read;
@@ -13,17 +13,19 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// Returns true if the bytes are XML in any encoding, after blanks and a byte order mark, or gzip.
 #[must_use]
 pub fn is_markup(bytes: &[u8]) -> bool {
-    wide(bytes).is_some() || is_narrow_markup(bytes)
-}
-
-/// Returns true if the bytes are XML with a byte for the letter that it begins with, or gzip.
-#[must_use]
-pub fn is_narrow_markup(bytes: &[u8]) -> bool {
-    if bytes.starts_with(&GZIP) {
-        return true;
-    }
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    text.iter().find(|b| !b.is_ascii_whitespace()) == Some(&b'<')
+    let first = match wide(bytes) {
+        Some((read, mark)) => {
+            let mut units = bytes[mark..].as_chunks().0.iter().map(|unit| read(*unit));
+            units.find(|unit| !matches!(unit, 9 | 10 | 12 | 13 | 32))
+        }
+        None => {
+            let mut letters = unmarked(bytes).iter();
+            letters
+                .find(|b| !b.is_ascii_whitespace())
+                .map(|b| u16::from(*b))
+        }
+    };
+    bytes.starts_with(&GZIP) || first == Some(u16::from(b'<'))
 }
 
 /// The bytes of a drawing, unpacked if they are gzip.
@@ -42,22 +44,31 @@ pub(crate) fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>> {
     Ok(Cow::Owned(unpacked))
 }
 
+/// The text of bytes in UTF-8, or in UTF-16 with a byte order mark or as XML; without the mark. `None`
+/// for other bytes.
+#[must_use]
+pub fn decoded(bytes: &[u8]) -> Option<Cow<'_, str>> {
+    let Some((read, mark)) = wide(bytes) else {
+        return std::str::from_utf8(unmarked(bytes)).ok().map(Cow::Borrowed);
+    };
+    let (units, rest) = bytes[mark..].as_chunks();
+    let letters = char::decode_utf16(units.iter().map(|unit| read(*unit)));
+    let text: std::result::Result<String, _> = letters.collect();
+    text.ok().filter(|_| rest.is_empty()).map(Cow::Owned)
+}
+
+fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// The text of a drawing.
 pub(crate) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
-    if let Some((read, mark)) = wide(bytes) {
-        let units = bytes[mark..].as_chunks().0.iter();
-        let letters = char::decode_utf16(units.map(|unit| read(*unit)));
-        let text: std::result::Result<String, _> = letters.collect();
-        return text
-            .map(Cow::Owned)
-            .map_err(|_| not_utf8("is damaged UTF-16"));
+    if let Some(text) = decoded(bytes) {
+        return Ok(text);
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let wrong = match std::str::from_utf8(bytes) {
-        Ok(text) => return Ok(Cow::Borrowed(text)),
-        Err(e) => e,
-    };
+    let bytes = unmarked(bytes);
     match declared(bytes).as_deref() {
+        _ if wide(bytes).is_some() => Err(not_utf8("is damaged UTF-16")),
         // These encodings differ from Unicode in 0x80 to 0x9f and eight letters, which occur only
         // in names and comments.
         Some(
@@ -67,10 +78,10 @@ pub(crate) fn text(bytes: &[u8]) -> Result<Cow<'_, str>> {
         Some(other) if !other.starts_with("utf-8") => {
             Err(not_utf8(&format!("is written in {other}")))
         }
-        _ => Err(not_utf8(&format!(
-            "is not UTF-8 (byte {})",
-            wrong.valid_up_to()
-        ))),
+        _ => {
+            let wrong = std::str::from_utf8(bytes).map_or_else(|e| e.valid_up_to(), str::len);
+            Err(not_utf8(&format!("is not UTF-8 (byte {wrong})")))
+        }
     }
 }
 

@@ -21,15 +21,14 @@
 mod css;
 mod element;
 mod encoding;
-mod fault;
 mod notes;
 mod reader;
 mod style;
 mod tree;
 mod value;
 
-pub use encoding::{is_markup, is_narrow_markup};
-pub use fault::{Fault, Result};
+pub use encoding::{decoded, is_markup};
+pub use notes::{Fault, Result};
 pub use tree::{Band, Clip, ClipShape, Drawing, FillRule, Group, Node, Path};
 pub use value::color::{Rgba, css_color, luminance};
 

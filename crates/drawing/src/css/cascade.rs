@@ -3,8 +3,7 @@
 use crate::css::selector::{Key, Matcher};
 use crate::css::{Declaration, Rule, declarations, media, one_line, plain, sheet};
 use crate::element::{XHTML, attribute, is_svg};
-use crate::fault::{Fault, Result};
-use crate::notes::{Notes, OTHER_SHEET};
+use crate::notes::{Fault, Notes, OTHER_SHEET, Result};
 use roxmltree::Node;
 use std::collections::HashMap;
 

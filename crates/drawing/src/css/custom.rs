@@ -1,7 +1,7 @@
 //! Custom properties of CSS, and the values that refer to them by `var()`.
 
 use crate::css::cascade::{Declared, Wide};
-use crate::fault::{Fault, Result};
+use crate::notes::{Fault, Result};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::rc::Rc;

@@ -1,8 +1,7 @@
 //! Clip paths: the union of their shapes, read once for each place that they are used in.
 
 use crate::element::{attribute, is_svg, passes};
-use crate::fault::Result;
-use crate::notes::{misled, unsupported};
+use crate::notes::{Result, misled, unsupported};
 use crate::reader::{MOST_NESTED, Place, Reader, SHAPES};
 use crate::style::Style;
 use crate::tree::{Clip, ClipShape, Node as Drawn, Path};

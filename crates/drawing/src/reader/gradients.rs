@@ -1,8 +1,7 @@
 //! Paints and gradients as colours.
 
 use crate::element::{attribute, href};
-use crate::fault::{Fault, Result};
-use crate::notes::{misled, unsupported};
+use crate::notes::{Fault, Result, misled, unsupported};
 use crate::reader::Reader;
 use crate::style::Style;
 use crate::value::color::{Rgba, luminance, premultiplied};

@@ -1,8 +1,7 @@
 //! Markers: the content that is repeated at the corners of a line.
 
 use crate::element::attribute;
-use crate::fault::Result;
-use crate::notes::misled;
+use crate::notes::{Result, misled};
 use crate::reader::shapes::Curve;
 use crate::reader::viewport::{fitted, view_box};
 use crate::reader::{Place, Reader, Shown};

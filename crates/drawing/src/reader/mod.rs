@@ -3,7 +3,6 @@
 mod clips;
 mod gradients;
 mod markers;
-mod motion;
 mod moved;
 mod references;
 mod shapes;
@@ -13,9 +12,7 @@ pub(crate) mod viewport;
 use crate::css::cascade::Sheets;
 use crate::element::{attribute, is_in};
 use crate::element::{href, is_svg, passes};
-use crate::fault::{Fault, Result};
-use crate::notes::{Notes, misled, unsupported};
-use crate::reader::motion::{is_motion, warn_of_motion};
+use crate::notes::{Fault, Notes, Result, is_motion, misled, unsupported, warn_of_motion};
 use crate::reader::shapes::{Curve, crossings, curve};
 use crate::reader::strokes::stroked;
 use crate::style::{Own, Reference, Style};

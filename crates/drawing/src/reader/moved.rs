@@ -1,7 +1,6 @@
 //! The transform of an element, from its attribute and from CSS.
 
-use crate::fault::Result;
-use crate::notes::unsupported;
+use crate::notes::{Result, unsupported};
 use crate::reader::{Place, Reader};
 use crate::style::{Own, Reference, Style};
 use crate::tree::{Node as Drawn, bounds};

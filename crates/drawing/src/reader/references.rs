@@ -1,8 +1,7 @@
 //! Content that is elsewhere or has a viewport of its own: `use`, `symbol`, nested `svg`.
 
 use crate::element::{href, passes};
-use crate::fault::Result;
-use crate::notes::misled;
+use crate::notes::{Result, misled};
 use crate::reader::viewport::{fitted, view_box};
 use crate::reader::{Place, Reader, Shown};
 use crate::style::Style;

@@ -2,8 +2,7 @@
 
 use crate::EXTENT;
 use crate::element::attribute;
-use crate::fault::Result;
-use crate::notes::unsupported;
+use crate::notes::{Result, unsupported};
 use crate::reader::Place;
 use crate::reader::shapes::Curve;
 use crate::style::Style;

@@ -2,8 +2,7 @@
 
 use crate::EXTENT;
 use crate::element::attribute;
-use crate::fault::{Fault, Result};
-use crate::notes::Notes;
+use crate::notes::{Fault, Notes, Result};
 use crate::style::Style;
 use crate::value::Length;
 use kurbo::{Affine, Rect};

@@ -4,7 +4,7 @@ pub(crate) mod properties;
 pub(crate) mod reading;
 
 use crate::css::custom::Custom;
-use crate::fault::{Fault, Result};
+use crate::notes::{Fault, Result};
 use crate::tree::FillRule;
 use crate::value::Target;
 use crate::value::color::BLACK;

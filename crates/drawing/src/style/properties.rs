@@ -1,8 +1,7 @@
 //! Reads the properties of an element into its style, by tables of names, fields and readings.
 
 use crate::css::cascade::Sheets;
-use crate::fault::Result;
-use crate::notes::Notes;
+use crate::notes::{Notes, Result};
 use crate::style::Reference::{Fill, Stroke, View};
 use crate::style::reading::Reading;
 use crate::style::{Own, Style};

@@ -4,8 +4,7 @@
 use crate::css::cascade::{Declared, Wide};
 use crate::css::custom::{Custom, filled};
 use crate::css::one_line;
-use crate::fault::{Fault, Result};
-use crate::notes::{Notes, unsupported};
+use crate::notes::{Fault, Notes, Result, unsupported};
 use crate::value::Unusable::{Unread, Wrong};
 use crate::value::Value;
 use crate::value::color::before_profile;

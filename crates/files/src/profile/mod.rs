@@ -104,5 +104,5 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>> {
 
 /// Returns true if the bytes are those of a picture or a drawing.
 pub(crate) fn is_profile(bytes: &[u8]) -> bool {
-    is_picture(bytes) || revmap_drawing::is_narrow_markup(bytes)
+    is_picture(bytes) || revmap_drawing::is_markup(bytes)
 }

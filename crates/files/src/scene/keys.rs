@@ -1,6 +1,7 @@
 //! A table of a scene file: only known keys, each read as its required type. Every message has the
 //! key's full path.
 
+use super::spelling::unquoted;
 use crate::{content_fault, css_color};
 use glam::DVec3;
 use revmap::error::{Error, Result};
@@ -145,7 +146,12 @@ impl<'a> Keys<'a> {
 
     /// The value of `key`, if the table has it.
     pub(super) fn get<T: Entry>(&self, key: &str) -> Result<Option<T>> {
-        let read = |v| T::read(v).map_err(|found| self.wrong(key, &T::wanted(), &found));
+        let read = |v| {
+            T::read(v).map_err(|found| {
+                let spelled = unquoted(v, |v| T::read(v).is_ok());
+                self.wrong(key, &T::wanted(), &(found + &spelled))
+            })
+        };
         self.table.get(key).map(read).transpose()
     }
 
@@ -294,31 +300,6 @@ fn describe(value: &Value) -> String {
         Value::Array(a) => format!("a list of {} values", a.len()),
         Value::Table(_) => "a table".to_owned(),
     }
-}
-
-/// A number that is written with a decimal comma, with a point in its place; `None` for other text.
-///
-/// ```
-/// use revmap_files::scene::decimal_comma;
-/// assert_eq!(decimal_comma("0,05").as_deref(), Some("0.05"));
-/// assert_eq!(decimal_comma("1,2,3"), None);
-/// assert_eq!(decimal_comma("1,000").as_deref(), Some("1.0 or 1000"));
-/// ```
-#[must_use]
-pub fn decimal_comma(text: &str) -> Option<String> {
-    let (whole, part) = text.split_once(',')?;
-    let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
-    let unsigned = whole.strip_prefix(['+', '-']).unwrap_or(whole);
-    let is_number = digits(part) && (unsigned.is_empty() || digits(unsigned));
-    let point = format!("{whole}.{part}").parse::<f64>().ok();
-    let point = point.filter(|_| is_number)?;
-    // A comma may stand between thousands, too.
-    let thousands =
-        part.len() == 3 && (1..=3).contains(&unsigned.len()) && !unsigned.starts_with('0');
-    Some(match thousands {
-        true => format!("{point:?} or {whole}{part}"),
-        false => format!("{point}"),
-    })
 }
 
 /// Keys of `[[object]]`.

@@ -14,7 +14,7 @@ mod spelling;
 mod warnings;
 
 pub use extent::Extent;
-pub use keys::decimal_comma;
+pub use spelling::decimal_comma;
 pub use warnings::{blank, warnings};
 
 use crate::pixels::{foreign, is_picture};
@@ -24,7 +24,7 @@ use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::scene::{Camera, Clip, MOST_GROWTH, Scene};
-use std::borrow::Cow;
+use revmap_drawing::decoded;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -215,8 +215,7 @@ impl SceneFile {
 
     fn read(&mut self, sets: &[String]) -> Result<Scene> {
         let root = self.applied(sets)?;
-        let scene = self.reader.scene(&root);
-        let scene = scene.map_err(|e| spelling::hinted(e, &root))?;
+        let scene = self.reader.scene(&root)?;
         scene.check()?;
         Ok(scene)
     }
@@ -251,25 +250,6 @@ fn is_named_profile(file: &Path) -> bool {
     ["svg", "svgz", "gz", "png", "jpg", "jpeg", "jfif"].contains(&ending(file).as_str())
 }
 
-/// The text of a file: UTF-8 with or without a byte order mark, or UTF-16 with one.
-fn decoded(bytes: &[u8]) -> Option<Cow<'_, str>> {
-    let wide = |units: &[u8], read: fn([u8; 2]) -> u16| {
-        let (units, rest) = units.as_chunks();
-        let text = char::decode_utf16(units.iter().map(|unit| read(*unit)));
-        text.collect::<std::result::Result<String, _>>()
-            .ok()
-            .filter(|_| rest.is_empty())
-    };
-    match bytes {
-        [0xff, 0xfe, units @ ..] => wide(units, u16::from_le_bytes).map(Cow::Owned),
-        [0xfe, 0xff, units @ ..] => wide(units, u16::from_be_bytes).map(Cow::Owned),
-        _ => {
-            let plain = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-            std::str::from_utf8(plain).ok().map(Cow::Borrowed)
-        }
-    }
-}
-
 /// A fault of TOML's grammar, on one line.
 fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let message = error.message().lines().collect::<Vec<_>>().join("; ");
@@ -280,24 +260,16 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     let spanned = error.span().and_then(|span| text.get(span)).unwrap_or("");
     let duplicate = (message == "duplicate key").then(|| format!(" `{}`", spanned.trim()));
     let whole = text.lines().nth(line - 1).unwrap_or("");
-    let header = |line: &&str| line.starts_with('[') && line.contains(|c: char| c.is_alphabetic());
-    let table = text.lines().take(line).filter(header).last();
-    let table = table.map_or("", |l| {
-        l.split('#')
-            .next()
-            .unwrap_or(l)
-            .trim()
-            .trim_matches(['[', ']'])
-    });
     // What the parser says of numbers beyond its types.
     let is_large = ["overflowed", "too large", "as i128"].map(|words| message.contains(words));
-    let (message, remedy) = match is_large.contains(&true) {
+    let (message, other) = match is_large.contains(&true) {
         true => (
-            "a number is too large".to_owned(),
-            spelling::range(whole, table),
+            "a number is too large",
+            Some("give a smaller one".to_owned()),
         ),
-        false => (message, spelling::of_line(whole, table)),
+        false => (&*message, None),
     };
+    let remedy = spelling::of_line(whole).or(other);
     let remedy = remedy.map_or(String::new(), |remedy| format!("; {remedy}"));
     let message = match not_toml(text) {
         Some(what) => what.to_owned(),

@@ -29,30 +29,21 @@ fn apply(root: &mut Table, assignment: &str) -> Result<()> {
             "a part of the key is empty; write it as in object.0.bevel".to_owned(),
         ));
     }
-    put(root, (&[], &steps), parse(value.trim())).map_err(fail)
+    put(root, &steps, parse(value.trim())).map_err(fail)
 }
 
-/// Writes a value at the end of the path `steps`, which begins in `table`; `above`: the steps to it.
-fn put<'s>(
-    table: &mut Table,
-    (above, steps): (&[&'s str], &[&'s str]),
-    value: Value,
-) -> std::result::Result<(), String> {
+/// Writes a value at the end of the path `steps`, which begins in `table`.
+fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(), String> {
     let [step, below @ ..] = steps else {
         return Ok(());
     };
-    let path = |steps: &[&'s str]| [above, steps].concat();
     let numbered = below.first().is_some_and(|b| b.parse::<usize>().is_ok());
     if numbered && !table.contains_key(*step) {
-        return Err(match step {
-            _ if !["light", "object"].contains(step) => format!(
-                "the scene has no `{step}` to change; set the whole list first, as in {}={}",
-                path(&[*step]).join("."),
-                example(step)
-            ),
-            _ => format!(
+        return Err(match ["light", "object"].contains(step) {
+            true => format!(
                 "the scene has no [[{step}]] to change; add one to the file, or set {step}=[{{}}] first"
             ),
+            false => format!("the scene has no `{step}` to change; set the whole list first"),
         });
     }
     if below.is_empty() {
@@ -61,7 +52,7 @@ fn put<'s>(
     }
     let entry = table.entry(*step);
     match (entry.or_insert_with(|| Table::new().into()), below) {
-        (Value::Table(inner), _) => put(inner, (&path(&[*step]), below), value),
+        (Value::Table(inner), _) => put(inner, below, value),
         (Value::Array(items), [last]) => {
             let (count, tables) = (items.len(), items.iter().any(Value::is_table));
             let index = last.parse::<usize>().ok();
@@ -83,23 +74,9 @@ fn put<'s>(
             let inner = item.and_then(Value::as_table_mut).ok_or_else(|| {
                 format!("there is no {step}.{index}: the scene has {count}, counted from 0")
             })?;
-            put(inner, (&path(&[*step, *index]), below), value)
+            put(inner, below, value)
         }
         _ => Err(format!("`{step}` is a value, which has no keys below it")),
-    }
-}
-
-/// A list that the key `name` takes.
-fn example(name: &str) -> &'static str {
-    match name {
-        "polygon" => "[[0, 0], [0.5, 0], [0, 1]]",
-        "up" => "[0, 0, 1]",
-        "direction" => "[0, 0, -1]",
-        "scale" | "repeat" => "[1, 1, 1]",
-        "mirror" => "[false, false, false]",
-        "rotation" | "background" => "[0, 0, 0, 1]",
-        "texture_repeat" | "texture_offset" | "axis" => "[1, 1]",
-        _ => "[0, 0, 0]",
     }
 }
 
@@ -199,7 +176,7 @@ bevel => sets: "bevel" assigns nothing
 object.2.bevel=1 => object.2.bevel: there is no object.2: the scene has 2
 object.bevel=1 => object.bevel: `object` is a list; say which: object.0.bevel
 object.0=1 => object.0: is a table; name a key of it
-camera.up.2=1 => no `up` to change; set the whole list first, as in camera.up=[0, 0, 1]
+camera.up.2=1 => no `up` to change; set the whole list first
 light.0.radius=1 => no [[light]] to change; add one
 camera.fov_y.x=1 => camera.fov_y.x: `fov_y` is a value
 camera..x=1 => a part of the key is empty
