@@ -1,6 +1,6 @@
 //! The cascade: which declaration of a property counts for an element.
 
-use crate::css::selector::{Key, Matcher};
+use crate::css::selector::Matcher;
 use crate::css::{Declaration, Rule, declarations, media, one_line, plain, sheet};
 use crate::element::{XHTML, attribute, is_svg};
 use crate::notes::{Fault, Notes, OTHER_SHEET, Result};
@@ -13,8 +13,6 @@ type Strength = (bool, u8, u32);
 /// All style sheets of a drawing.
 pub(crate) struct Sheets {
     rules: Vec<Rule>,
-    /// Places of rules by what the last part of a selector asks for.
-    index: HashMap<Key, Vec<usize>>,
     matcher: Matcher,
 }
 
@@ -50,18 +48,8 @@ impl Sheets {
             }
             rules.append(&mut own);
         }
-        let mut index: HashMap<Key, Vec<usize>> = HashMap::new();
-        for (i, rule) in rules.iter().enumerate() {
-            for key in rule.selectors.iter().map(Key::of) {
-                index.entry(key).or_default().push(i);
-            }
-            if rule.selectors.is_empty() {
-                index.entry(Key::Any).or_default().push(i);
-            }
-        }
         Self {
             rules,
-            index,
             matcher: Matcher::default(),
         }
     }
@@ -73,7 +61,7 @@ impl Sheets {
     pub fn declared(&self, node: Node) -> Result<Declared> {
         let mut found: Vec<(Strength, Declaration)> = attributes(node);
         let mut fault = None;
-        for rule in self.rules_for(node) {
+        for rule in &self.rules {
             let matching = rule
                 .selectors
                 .iter()
@@ -119,23 +107,6 @@ impl Sheets {
             declared.add(d)?;
         }
         Ok(declared)
-    }
-
-    /// The rules that may be for an element, in their order.
-    fn rules_for(&self, node: Node) -> impl Iterator<Item = &Rule> {
-        let classes = attribute(node, "class").unwrap_or_default();
-        let keys = classes
-            .split_ascii_whitespace()
-            .map(|c| Key::Class(c.to_owned()));
-        let keys = keys.chain(attribute(node, "id").map(|id| Key::Id(id.to_owned())));
-        let keys = keys.chain([Key::Type(node.tag_name().name().to_owned()), Key::Any]);
-        let mut found: Vec<usize> = Vec::new();
-        for key in keys {
-            found.extend(self.index.get(&key).into_iter().flatten());
-        }
-        found.sort_unstable();
-        found.dedup();
-        found.into_iter().map(|i| &self.rules[i])
     }
 }
 

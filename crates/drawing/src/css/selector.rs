@@ -26,7 +26,7 @@ use std::ptr::NonNull;
 const MOST_NESTED: u8 = 16;
 /// Most parts of a selector: matching goes deeper with each.
 const MOST_PARTS: usize = 100;
-/// Most steps from element to element while selectors of one drawing are matched.
+/// Most tries of a selector with an element, and steps from there to others, of one drawing.
 const MOST_STEPS: u64 = 30_000_000;
 /// Pseudo-elements, such as `::selection`.
 const ELEMENTS: &str = "before after selection marker first-line first-letter";
@@ -58,33 +58,6 @@ fn is_short(selector: &Selector) -> bool {
         })
 }
 
-/// What the last part of a selector asks for, so that few rules need be tried.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Key {
-    Id(String),
-    Class(String),
-    Type(String),
-    Any,
-}
-
-impl Key {
-    /// What an element needs for the last part of a selector.
-    pub fn of(selector: &Selector) -> Self {
-        let mut key = Self::Any;
-        for part in selector.iter() {
-            match part {
-                Component::ID(id) => return Self::Id(id.0.clone()),
-                Component::Class(class) => key = Self::Class(class.0.clone()),
-                Component::LocalName(name) if key == Self::Any => {
-                    key = Self::Type(name.name.0.clone());
-                }
-                _ => {}
-            }
-        }
-        key
-    }
-}
-
 /// Matches selectors with the elements of one drawing.
 #[derive(Default)]
 pub(crate) struct Matcher {
@@ -100,6 +73,10 @@ impl Matcher {
 
     /// Returns true if a selector is for this element.
     pub fn matches(&self, selector: &Selector, node: Node) -> bool {
+        self.steps.set(self.steps.get() + 1);
+        if self.is_spent() {
+            return false;
+        }
         let mut caches = self.caches.borrow_mut();
         let mut context = MatchingContext::new(
             MatchingMode::Normal,

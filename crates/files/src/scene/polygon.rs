@@ -73,7 +73,33 @@ pub(super) fn open_wall(points: &[[f64; 2]]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::open_wall;
+    use super::{cut_off, open_wall};
+
+    #[test]
+    fn points_beyond_the_box_are_told_how_to_fit() {
+        for (points, words) in [
+            (
+                [[50.0, -10.0], [65.0, 6.0], [44.5, 88.0]],
+                "give r / 98 and (z + 10) / 98, with scale = [98, 98, 98] and position = [0, 0, -10]; r goes to 0.66",
+            ),
+            (
+                [[0.0, -0.5], [0.3, 0.5], [0.0, 0.5]],
+                "give (z + 0.5) and position = [0, 0, -0.5]",
+            ),
+            (
+                [[0.0, 2.0], [40.0, 2.0], [0.0, 2.5]],
+                "give (z - 2) and position = [0, 0, 2]; r goes to 40, the box to 0.5: give radius = 40",
+            ),
+            (
+                [[0.0, 0.0], [0.8, 0.0], [0.0, 1.0]],
+                "cut off; r goes to 0.8, the box to 0.5: give radius = 0.8",
+            ),
+        ] {
+            let said = cut_off(&points, 0.5).unwrap_or_default();
+            assert!(said.contains(words), "{said}");
+        }
+        assert_eq!(cut_off(&[[0.0, 0.0], [0.5, 0.0], [0.0, 1.0]], 0.5), None);
+    }
 
     #[test]
     fn an_open_wall_is_named_and_closed_sections_are_not() {
