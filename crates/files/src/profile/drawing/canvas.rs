@@ -131,7 +131,7 @@ impl Canvas {
                     };
                     let lightest = path.lightest.map(|(color, line)| (self.tone(color), line));
                     let lightest = lightest.filter(|(color, _)| *color != self.tone(path.color));
-                    paints.push(Paint::Region(region, self.tone(path.color), lightest));
+                    paints.push(Paint::Region(Some(region), self.tone(path.color), lightest));
                 }
             }
         }

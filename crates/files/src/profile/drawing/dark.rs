@@ -1,12 +1,11 @@
 //! The visible result of paint laid over paint.
 //!
-//! A drawing is a list of paints, each a region and a colour. Within one tile of the plane, the
-//! list is laid down as a layer of disjoint cells, each of one colour. The number of cells grows
-//! with the square of the number of translucent borders that cross each other, so that a tile with
-//! many borders is split in two until each part has few.
+//! A drawing is a list of paints, each a region and a colour. A tile of the plane is cut at the
+//! borders of its paints, the top one first, until a part is dark or light whatever is below. The
+//! number of parts grows with the square of the number of translucent borders that cross each other,
+//! so that a tile with many borders is split in two until each part has few.
 
-use super::layer::Layer;
-use super::paint::{Paint, is_dark};
+use super::paint::{Paint, color, is_dark, keep_side, top_border};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
 use glam::DVec2;
@@ -28,14 +27,20 @@ const MOST_PAIRS: usize = 100_000;
 
 impl Tile {
     fn clipped(self, paints: &[Paint]) -> Vec<Paint> {
-        let mut parts = Vec::new();
+        // Of a region or clip that has a part in the tile; that part is `None` if it is all of it.
+        let part = |region: &Option<Region>| match region {
+            None => Some(None),
+            Some(region) => {
+                let part = self.part(region)?;
+                Some((!self.is_covered_by(&part)).then_some(part))
+            }
+        };
+        let mut parts: Vec<Paint> = Vec::new();
         for paint in paints {
             match paint {
                 Paint::Region(region, color, _) => {
-                    let Some(part) = self.part(region) else {
-                        continue;
-                    };
-                    if color[3] >= 1.0 && self.is_covered_by(&part) {
+                    let Some(part) = part(region) else { continue };
+                    if color[3] >= 1.0 && part.is_none() {
                         // Opaque paint hides everything below it.
                         parts.clear();
                     }
@@ -46,30 +51,22 @@ impl Tile {
                     clip,
                     paints,
                 } => {
-                    let clip = match clip {
-                        None => None,
-                        Some(clip) => match self.part(clip) {
-                            None => continue,
-                            Some(part) if self.is_covered_by(&part) => None,
-                            part => part,
-                        },
-                    };
-                    let paints = self.clipped(paints);
-                    if !paints.is_empty() {
-                        parts.push(Paint::Group {
-                            opacity: *opacity,
+                    let (opacity, paints) = (*opacity, self.clipped(paints));
+                    parts.extend(part(clip).filter(|_| !paints.is_empty()).map(|clip| {
+                        Paint::Group {
+                            opacity,
                             clip,
                             paints,
-                        });
-                    }
+                        }
+                    }));
                 }
             }
         }
-        parts
+        merged(&parts)
     }
 
-    /// Bounds of the luminance over white in the tile.
-    fn lightness(self, paints: &[Paint]) -> [f32; 2] {
+    /// Bounds of the luminance over white.
+    fn lightness(paints: &[Paint]) -> [f32; 2] {
         let [mut least, mut most] = [1.0f32; 2];
         for paint in paints {
             let (low, high) = match paint {
@@ -77,7 +74,7 @@ impl Tile {
                     let [r, g, b, alpha] = *color;
                     let laid = |below: f32| luminance([r, g, b]) + (1.0 - alpha) * below;
                     let (low, high) = (laid(least), laid(most));
-                    if self.is_covered_by(region) {
+                    if region.is_none() {
                         (least, most) = (low, high);
                         continue;
                     }
@@ -94,24 +91,15 @@ impl Tile {
         [least - 1e-5, most + 1e-5]
     }
 
-    /// Number of borders in the tile at which the colour changes.
-    fn borders(self, paints: &[Paint]) -> usize {
-        let mut last = None;
-        let mut count = 0;
-        for paint in paints {
-            match paint {
-                Paint::Region(region, color, _) => {
-                    let merged = color[3] >= 1.0 && last == Some(*color);
-                    count += usize::from(!merged && !self.is_covered_by(region));
-                    last = Some(*color);
-                }
-                Paint::Group { clip, paints, .. } => {
-                    count += self.borders(paints) + usize::from(clip.is_some());
-                    last = None;
-                }
+    /// Number of borders.
+    fn borders(paints: &[Paint]) -> usize {
+        let of = |paint: &Paint| match paint {
+            Paint::Region(region, ..) => usize::from(region.is_some()),
+            Paint::Group { clip, paints, .. } => {
+                Self::borders(paints) + usize::from(clip.is_some())
             }
-        }
-        count
+        };
+        paints.iter().map(of).sum()
     }
 
     /// The dark regions in the tile, which may abut. The second value is true if it was split.
@@ -124,14 +112,14 @@ impl Tile {
         halvings: usize,
         vain: usize,
     ) -> Result<(Vec<Region>, bool)> {
-        let [least, most] = self.lightness(paints);
+        let [least, most] = Self::lightness(paints);
         if most < 0.5 {
             return Ok((vec![self.region()], false));
         }
         if least >= 0.5 {
             return Ok((Vec::new(), false));
         }
-        let borders = self.borders(paints);
+        let borders = Self::borders(paints);
         let thin = (self.high - self.low).min_element() <= 0.0;
         if borders <= FEW || halvings == 0 || vain >= MOST_VAIN || thin {
             if borders > MOST_CROSSING {
@@ -140,15 +128,13 @@ impl Tile {
                      {MOST_CROSSING} can be resolved, make the shapes opaque"
                 )));
             }
-            let mut layer = Layer::new(self);
-            layer.lay(paints);
-            let cells = layer.into_cells().into_iter();
-            let dark = cells.filter(|(color, _)| is_dark(*color));
-            return Ok((dark.map(|(_, region)| region).collect(), false));
+            let mut parts = Vec::new();
+            self.cut(self.region(), paints.to_vec(), &mut parts);
+            return Ok((parts, false));
         }
         let half = |tile: Self| {
             let parts = tile.clipped(paints);
-            let vain = match 10 * tile.borders(&parts) > 9 * borders {
+            let vain = match 10 * Self::borders(&parts) > 9 * borders {
                 true => vain + 1,
                 false => 0,
             };
@@ -162,11 +148,38 @@ impl Tile {
         Ok((parts, true))
     }
 
+    /// Adds the dark parts of a region, which is cut at the borders of the paints.
+    fn cut(self, region: Region, paints: Vec<Paint>, dark: &mut Vec<Region>) {
+        let [least, most] = Self::lightness(&paints);
+        if region.is_empty() || least >= 0.5 {
+            return;
+        }
+        let Some(border) = top_border(&paints).filter(|_| most >= 0.5) else {
+            dark.extend((most < 0.5 || is_dark(color(&paints))).then_some(region));
+            return;
+        };
+        let is_beside = !overlap(region.extent(self.grid), border.extent(self.grid));
+        for inside in [true, false] {
+            let mut own = paints.clone();
+            keep_side(&mut own, inside);
+            // Nothing is cut for what is light.
+            if (is_beside && inside) || Self::lightness(&own)[0] >= 0.5 {
+                continue;
+            }
+            let part = match inside {
+                true => region.intersection(border),
+                false if is_beside => region.clone(),
+                false => region.difference(border),
+            };
+            self.cut(part, own, dark);
+        }
+    }
+
     /// The boxes of shapes that mix with what is below them.
     fn boxes(self, paints: &[Paint], is_clear: bool, found: &mut Vec<[DVec2; 2]>) {
         for paint in paints {
             match paint {
-                Paint::Region(region, color, _) if is_clear || color[3] < 1.0 => {
+                Paint::Region(Some(region), color, _) if is_clear || color[3] < 1.0 => {
                     found.extend(region.extent(self.grid));
                 }
                 Paint::Region(..) => {}
@@ -236,4 +249,26 @@ impl Tile {
         }
         Region::enclosed(self.grid, &loops, revmap::profile::FillRule::NonZero)
     }
+}
+
+/// Paints of which those of one opaque colour that follow each other are one: merging many shapes at
+/// once costs far less than one after the other.
+fn merged(paints: &[Paint]) -> Vec<Paint> {
+    let opaque = |paint: &Paint| match paint {
+        Paint::Region(Some(_), color, _) if color[3] >= 1.0 => Some(*color),
+        _ => None,
+    };
+    let region = |paint: &Paint| match paint {
+        Paint::Region(region, ..) => region.clone(),
+        Paint::Group { .. } => None,
+    };
+    let runs = paints.chunk_by(|a, b| opaque(a).is_some() && opaque(a) == opaque(b));
+    let joined = runs.flat_map(|run| match opaque(&run[0]).filter(|_| run.len() > 1) {
+        Some(color) => {
+            let all: Vec<Region> = run.iter().filter_map(region).collect();
+            vec![Paint::Region(Some(Region::merged(all)), color, None)]
+        }
+        None => run.to_vec(),
+    });
+    joined.collect()
 }

@@ -9,7 +9,6 @@
 
 pub(crate) mod canvas;
 mod dark;
-mod layer;
 mod paint;
 mod thin_strokes;
 mod tile;

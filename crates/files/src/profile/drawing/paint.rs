@@ -19,17 +19,57 @@ pub(super) fn over(top: Rgba, below: Rgba) -> Rgba {
     std::array::from_fn(|i| top[i] + below[i] * (1.0 - top[3]))
 }
 
-/// One step of painting.
-#[derive(Debug)]
+/// One step of painting. A region or a clip that is `None` is everything.
+#[derive(Clone, Debug)]
 pub(super) enum Paint {
     /// A region with its darkest colour, and the lightest with its line for a gradient between.
-    Region(Region, Rgba, Option<(Rgba, u32)>),
+    Region(Option<Region>, Rgba, Option<(Rgba, u32)>),
     /// Paints that are laid down by themselves, clipped and then shown with an opacity.
     Group {
         opacity: f32,
         clip: Option<Region>,
         paints: Vec<Paint>,
     },
+}
+
+/// The colour of paints without borders, the lowest first.
+pub(super) fn color(paints: &[Paint]) -> Rgba {
+    paints.iter().fold([0.0; 4], |below, paint| match paint {
+        Paint::Region(_, own, _) => over(*own, below),
+        Paint::Group {
+            opacity, paints, ..
+        } => over(color(paints).map(|v| v * opacity), below),
+    })
+}
+
+/// The border that is painted last: that of a region or of a clip.
+pub(super) fn top_border(paints: &[Paint]) -> Option<&Region> {
+    paints.iter().rev().find_map(|paint| match paint {
+        Paint::Region(region, ..) => region.as_ref(),
+        Paint::Group { clip, paints, .. } => clip.as_ref().or_else(|| top_border(paints)),
+    })
+}
+
+/// Keeps what paints are on one side of their [`top_border`]. Returns false if they have none.
+pub(super) fn keep_side(paints: &mut Vec<Paint>, inside: bool) -> bool {
+    for k in (0..paints.len()).rev() {
+        let (border, hides) = match &mut paints[k] {
+            Paint::Region(region, color, _) => (region, color[3] >= 1.0),
+            Paint::Group { clip, paints, .. } => match clip {
+                None if keep_side(paints, inside) => return true,
+                clip => (clip, false),
+            },
+        };
+        match (border.take().is_some(), inside) {
+            (false, _) => continue,
+            // Opaque paint hides everything below it.
+            (true, true) if hides => drop(paints.drain(..k)),
+            (true, true) => {}
+            (true, false) => drop(paints.remove(k)),
+        }
+        return true;
+    }
+    false
 }
 
 /// The lines of the gradients whose colours differ, each with true if they are dark and light by
