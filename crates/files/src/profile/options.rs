@@ -22,6 +22,8 @@ pub enum ProfileAxis {
 }
 
 impl ProfileAxis {
+    /// A name that is read and not listed.
+    pub(crate) const BRITISH: (&'static str, Self) = ("centre", Self::Center);
     /// The values with a name in options and scene files; a number is [`ProfileAxis::At`].
     pub const NAMES: [(&'static str, Self); 2] = [("left", Self::Left), ("center", Self::Center)];
 
@@ -41,7 +43,8 @@ impl std::str::FromStr for ProfileAxis {
 
     /// A name or a number, as in scene files.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let named = Self::NAMES.iter().find(|(name, _)| *name == text);
+        let mut names = Self::NAMES.iter().chain([&Self::BRITISH]);
+        let named = names.find(|(name, _)| *name == text);
         match (named, text.parse()) {
             (Some((_, axis)), _) => Ok(*axis),
             (None, Ok(fraction)) => Ok(Self::At(fraction)),

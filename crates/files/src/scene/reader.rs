@@ -203,7 +203,12 @@ impl Reader {
         let polygon = keys.pairs("polygon")?;
         let mut options = ProfileOptions::default();
         let (axis, names) = (&mut options.axis, &ProfileAxis::NAMES);
-        keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
+        if keys
+            .choose("profile_axis", &[ProfileAxis::BRITISH], axis)
+            .is_err()
+        {
+            keys.choose_or_number("profile_axis", names, ProfileAxis::At, axis)?;
+        }
         keys.choose("profile_read", &ProfileRead::NAMES, &mut options.read)?;
         keys.set("profile_threshold", &mut options.threshold)?;
         keys.set("profile_invert", &mut options.invert)?;

@@ -260,3 +260,18 @@ fn low_contrast() {
         silent(&ball(solid, ground, 0), Center);
     }
 }
+
+#[test]
+fn centre_is_center() {
+    assert_eq!("centre".parse(), Ok(Center));
+    let scene = |axis: &str| {
+        let text = format!(
+            "[camera]\neye = [2, 0, 0.5]\ntarget = [0, 0, 0.5]\n[[object]]\nprofile = \"king.svg\"\nprofile_axis = \"{axis}\""
+        );
+        let mut file = revmap_files::SceneFile::parse(&text, crate::asset("profiles")).unwrap();
+        file.scene(&[]).map(|scene| scene.objects[0].profile.radius)
+    };
+    assert_eq!(scene("centre").unwrap(), scene("center").unwrap());
+    let refusal = scene("middle").unwrap_err().to_string();
+    assert!(!refusal.contains("centre"), "{refusal}");
+}
