@@ -10,10 +10,11 @@ mod silhouette;
 
 pub use flip::{flip_map, mean_flip};
 pub use heat::{EMPTY, GHOST, Heat, MISSED, Scale, heat_map, heat_sheet, ramp};
-pub use outline::{TruePicture, ViewErrors};
+pub use outline::ViewErrors;
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
+use outline::TruePicture;
 use rayon::prelude::*;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::frame::Frame;
@@ -196,7 +197,7 @@ impl<'a> Reference<'a> {
     /// pixel.
     ///
     /// # Errors
-    /// Those of [`TruePicture::new`].
+    /// Those of a camera that sees nothing, and of the reference.
     pub fn of_scene(mut self, scene: &Scene) -> Result<Self> {
         let (width, height) = (self.frame.width, self.frame.height);
         self.picture = Some(TruePicture::new(scene, width, height)?);

@@ -1,7 +1,7 @@
 //! Errors in pixels of a view: how far silhouettes are from the true outline, below a pixel too, and
 //! depths. The reference gives the outline: it can be asked for any ray of the picture.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
@@ -43,17 +43,14 @@ pub struct ViewErrors {
 
 /// The true picture of a scene, at any point of it.
 #[derive(Debug)]
-pub struct TruePicture {
-    pub(crate) camera: CameraFrame,
+pub(crate) struct TruePicture {
+    camera: CameraFrame,
     reference: Reference,
 }
 
 impl TruePicture {
     /// The picture of this size.
-    ///
-    /// # Errors
-    /// Those of [`CameraFrame::new`] and [`Reference::new`].
-    pub fn new(scene: &Scene, width: u32, height: u32) -> Result<Self> {
+    pub(crate) fn new(scene: &Scene, width: u32, height: u32) -> Result<Self> {
         Ok(Self {
             camera: CameraFrame::new(&scene.camera, width, height)?,
             reference: Reference::new(scene)?,
@@ -62,8 +59,7 @@ impl TruePicture {
 
     /// The distance along the ray through the point `(x, y)`, in pixels from the upper left corner,
     /// to the first hit.
-    #[must_use]
-    pub fn at(&self, x: f64, y: f64) -> Option<f64> {
+    pub(crate) fn at(&self, x: f64, y: f64) -> Option<f64> {
         let direction = self.camera.direction(x, y);
         let ray = Ray {
             origin: self.camera.eye,
@@ -73,19 +69,14 @@ impl TruePicture {
         hit.map(|hit| hit.t * direction.length())
     }
 
-    /// The distance from a point of the picture to the outline in pixels: to the nearest point that
-    /// hits if this one does not, and the reverse. `None` beyond 4 pixels.
-    #[must_use]
-    pub fn outline_distance(&self, x: f64, y: f64) -> Option<f64> {
-        let hits = self.at(x, y).is_some();
-        nearest(MOST, |aside| {
-            self.at(x + aside.x, y + aside.y).is_some() != hits
-        })
-    }
-
-    /// The world size of a pixel at a distance along a ray.
-    pub(crate) fn pixel(&self, direction: DVec3, distance: f64) -> f64 {
-        self.camera.right.length() * distance / direction.length()
+    /// How far a pixel's depth is from the true one along its ray, over the size of a pixel there.
+    pub(crate) fn off(&self, [truth, frame]: [&Frame; 2], k: usize) -> f64 {
+        let direction = self
+            .camera
+            .pixel(k as u32 % truth.width, k as u32 / truth.width);
+        let [there, drawn] = [truth, frame].map(|f| f64::from(f.distance[k]));
+        let pixel = self.camera.right.length() * there / direction.length();
+        (there - drawn).abs() / pixel
     }
 
     /// The errors of a frame, whose true one is `truth`.
@@ -180,14 +171,12 @@ impl TruePicture {
 
     /// The errors of the distances along rays, over the size of a pixel there.
     fn depths(&self, truth: &Frame, frame: &Frame) -> Vec<f64> {
-        let error = |k: usize| {
-            let (x, y) = (k as u32 % truth.width, k as u32 / truth.width);
-            let [there, drawn] = [truth, frame].map(|f| f64::from(f.distance[k]));
-            (there - drawn).abs() / self.pixel(self.camera.pixel(x, y), there)
-        };
         let both = |k: &usize| truth.hits(*k) && frame.hits(*k);
         let pixels = (0..truth.pixels()).into_par_iter();
-        pixels.filter(both).map(error).collect()
+        pixels
+            .filter(both)
+            .map(|k| self.off([truth, frame], k))
+            .collect()
     }
 }
 
@@ -209,12 +198,12 @@ fn w(frame: &Frame) -> usize {
 }
 
 /// The centre of a pixel.
-fn middle(frame: &Frame, k: usize) -> DVec2 {
+pub(crate) fn middle(frame: &Frame, k: usize) -> DVec2 {
     DVec2::new((k % w(frame)) as f64 + 0.5, (k / w(frame)) as f64 + 0.5)
 }
 
 /// The pixels at most so many columns and rows away.
-fn around(frame: &Frame, k: usize, far: usize) -> impl Iterator<Item = usize> + use<> {
+pub(crate) fn around(frame: &Frame, k: usize, far: usize) -> impl Iterator<Item = usize> + use<> {
     let (width, height) = (w(frame), frame.height as usize);
     let (x, y) = (k % width, k / width);
     let rows = y.saturating_sub(far)..(y + far + 1).min(height);
@@ -238,7 +227,7 @@ fn first_on(to: DVec2, halvings: u32, is_so: impl Fn(DVec2) -> bool) -> DVec2 {
 
 /// The distance from the origin to the nearest point at which something is so, pixels; `None` if that
 /// is not below `most`, or beyond [`MOST`]. It is not so at the origin.
-pub(crate) fn nearest(most: f64, is_so: impl Fn(DVec2) -> bool) -> Option<f64> {
+fn nearest(most: f64, is_so: impl Fn(DVec2) -> bool) -> Option<f64> {
     let step = TAU / f64::from(DIRECTIONS);
     let found = |far: f64| -> Vec<f64> {
         let angles = (0..DIRECTIONS).map(|n| step * f64::from(n));
@@ -280,6 +269,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::pixels::tests::{cylinders, drawn};
+    use glam::DVec3;
 
     /// A half-plane at any distance and angle, a sliver, a disc, and nothing.
     #[test]

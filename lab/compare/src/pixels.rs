@@ -1,10 +1,12 @@
 //! Errors of silhouettes and depths in pixels of a view: what a tolerance bounds.
 
+use crate::outline::{TruePicture, around, middle};
+use glam::DVec2;
 use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
-use revmap::scene::{CameraFrame, Scene};
-use revmap_reference::{Ray, Reference};
+use revmap::scene::Scene;
+use std::f64::consts::TAU;
 
 /// Depths that differ by more pixels than this, where a neighbour of the reference has a nearer
 /// one, are a contour that has moved.
@@ -33,37 +35,26 @@ pub struct PixelErrors {
 
 /// Errors of a drawn frame of `scene`.
 pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<PixelErrors> {
-    let camera = CameraFrame::new(&scene.camera, truth.width, truth.height)?;
-    let reference = Reference::new(scene)?;
-    // Of a unit at unit depth, which rays' directions are scaled to.
-    let pixel = camera.right.length();
+    let picture = TruePicture::new(scene, truth.width, truth.height)?;
     let errors: Vec<(f64, bool)> = (0..truth.pixels())
         .into_par_iter()
         .filter(|&k| truth.hits(k) || frame.hits(k))
         .map(|k| {
-            let (x, y) = (k as u32 % truth.width, k as u32 / truth.width);
-            let direction = camera.pixel(x, y);
             let [there, drawn] = [truth, frame].map(|f| f64::from(f.distance[k]));
-            let size = |distance: f64| pixel * distance / direction.length();
-            let off = (there - drawn).abs() / size(there);
-            if truth.hits(k) && frame.hits(k) && !(off > JUMP && is_near(truth, k, drawn)) {
+            let off = picture.off([truth, frame], k);
+            let beside = |place: f64| (place - drawn).abs() <= 0.5 * (there - drawn).abs();
+            // Whether what is drawn is nearer to what the reference has beside it.
+            let is_near = || around(truth, k, 1).any(|n| beside(f64::from(truth.distance[n])));
+            if truth.hits(k) && frame.hits(k) && !(off > JUMP && is_near()) {
                 return (off, false);
             }
             // What the reference shows nearby, on the other side of the contour.
-            let shows = |x: f64, y: f64| {
-                let direction = direction + camera.right * x - camera.up * y;
-                let ray = Ray {
-                    origin: camera.eye,
-                    direction,
-                };
-                match reference.trace(ray).hit {
+            let shows = |aside: DVec2| {
+                let place = middle(truth, k) + aside;
+                match picture.at(place.x, place.y) {
                     None => !frame.hits(k),
                     Some(_) if !frame.hits(k) => false,
-                    Some(_) if !truth.hits(k) => true,
-                    Some(hit) => {
-                        let beside = hit.t * direction.length();
-                        (beside - drawn).abs() <= 0.5 * (there - drawn).abs()
-                    }
+                    Some(place) => !truth.hits(k) || beside(place),
                 }
             };
             (way_to(shows), true)
@@ -83,13 +74,10 @@ pub fn pixel_errors(scene: &Scene, truth: &Frame, frame: &Frame) -> Result<Pixel
 
 /// How far from a pixel's middle something is shown, pixels. Flights ask it of thousands of pixels of
 /// crowds, so it takes a tenth of the rays of [`nearest`](crate::outline::nearest).
-fn way_to(shows: impl Fn(f64, f64) -> bool) -> f64 {
-    let around = |far: f64| {
-        (0..DIRECTIONS).any(|n| {
-            let (y, x) = (std::f64::consts::TAU * f64::from(n) / f64::from(DIRECTIONS)).sin_cos();
-            shows(far * x, far * y)
-        })
-    };
+fn way_to(shows: impl Fn(DVec2) -> bool) -> f64 {
+    let step = TAU / f64::from(DIRECTIONS);
+    let around =
+        |far: f64| (0..DIRECTIONS).any(|n| shows(far * DVec2::from_angle(step * f64::from(n))));
     let mut far = LEAST;
     while far < MOST && !around(far) {
         far *= 2.0;
@@ -100,18 +88,6 @@ fn way_to(shows: impl Fn(f64, f64) -> bool) -> f64 {
         *(if around(middle) { &mut far } else { &mut near }) = middle;
     }
     far
-}
-
-/// Whether what is drawn in pixel `k` is nearer to what the reference has beside it.
-fn is_near(truth: &Frame, k: usize, drawn: f64) -> bool {
-    let (w, h) = (i64::from(truth.width), i64::from(truth.height));
-    let (x, y) = (k as i64 % w, k as i64 / w);
-    let there = f64::from(truth.distance[k]);
-    (-1..=1)
-        .flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)))
-        .filter(|(x, y)| (0..w).contains(x) && (0..h).contains(y))
-        .map(|(x, y)| f64::from(truth.distance[(y * w + x) as usize]))
-        .any(|beside| (beside - drawn).abs() <= 0.5 * (there - drawn).abs())
 }
 
 #[cfg(test)]
