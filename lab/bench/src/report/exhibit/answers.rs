@@ -1,7 +1,7 @@
-//! Questions that a report answers in one sentence: fragment or compute, and whether another search
-//! than the default is faster.
+//! Questions that a report answers in one sentence: fragment or compute, whether another search or a
+//! mesh is faster than the default, and at which tolerance the default and meshes of equal silhouettes
+//! take the same time.
 
-use super::losses::{Pair, to_meshes, worst};
 use crate::measure::ratios::{Over, Ratio, between, over};
 use crate::measure::row::Row;
 use crate::plan::is_rbm_baseline;
@@ -10,7 +10,7 @@ use crate::report::columns::{Cell, Context};
 use revmap::settings::DrawStage;
 use revmap_figures::groups::grouped;
 use revmap_figures::names::{count, number, range};
-use revmap_figures::stats::Verdict;
+use revmap_figures::stats::{Interval, Verdict};
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -30,7 +30,7 @@ impl Question {
         match self {
             Self::Stages => stages(context, rows),
             Self::Rivals => rivals(context, rows).into_iter().collect(),
-            Self::Tolerances => super::crossing::answers(context, rows),
+            Self::Tolerances => crossings(context, rows),
         }
     }
 }
@@ -38,30 +38,6 @@ impl Question {
 /// The sentences at the top of a report: a reader wants them first.
 pub(crate) fn findings(context: &Context) -> Vec<String> {
     let mut all = Question::Stages.answers(context, context.rows);
-    let opponent = format!("{}, the mesh of that silhouette", Method::OPPONENT);
-    let mesh = "the coarsest mesh that errs no more in depth";
-    for (reference, name) in [
-        (Over::Opponent, opponent),
-        (Over::Mesh, mesh.to_owned()),
-        (Over::Baseline, context.baseline()),
-    ] {
-        let mut ratios = over(context.rows.iter().copied(), reference);
-        ratios.retain(|r| r.settings.method == Method::DEFAULT && r.mesh.is_none());
-        let told = ratios.iter().map(|r| {
-            let (way, stage) = (context.styles.way(&r.settings), r.settings.stage.name());
-            let time = Cell::Known(r.time).shown();
-            let verdict = r.time.verdict(context.resolved).word("faster", "slower");
-            let over = context.over_pictures(r.pairs.len());
-            format!("{way}, {stage} stage: {time}{over}, {verdict}")
-        });
-        let told = told.collect::<Vec<_>>().join("; ");
-        if !told.is_empty() {
-            all.push(format!(
-                "Speed: the default takes this part of the time of {name} (95 % interval): {told}."
-            ));
-        }
-    }
-    all.extend(exactness(context));
     let loses: Vec<_> = rivals(context, context.rows)
         .into_iter()
         .chain(to_meshes(context))
@@ -70,37 +46,6 @@ pub(crate) fn findings(context: &Context) -> Vec<String> {
         all.push(format!("Where it loses, if anywhere: {}", loses.join(" ")));
     }
     all
-}
-
-/// The worst errors of the default, of the RBM baseline and of each mesh.
-fn exactness(context: &Context) -> Option<String> {
-    let mut all: Vec<(String, [f64; 4])> = Vec::new();
-    for row in context.rows {
-        let settings = &row.settings;
-        let is_mesh = settings.method.is_mesh();
-        let way = match settings.method {
-            _ if is_rbm_baseline(settings) => context.baseline(),
-            method if is_mesh || method == Method::DEFAULT => context.styles.way(settings),
-            _ => continue,
-        };
-        let errors = &row.errors;
-        let view = errors.view.unwrap_or_default();
-        let depth = errors.depth.map_or(0.0, |depth| depth.p99);
-        let wrong = 100.0 * errors.wrong();
-        let own = [view.silhouette_max, view.depth_p99, depth, wrong];
-        match all.iter_mut().find(|known| known.0 == way) {
-            Some((_, known)) => *known = [0, 1, 2, 3].map(|k| known[k].max(own[k])),
-            None => all.push((way, own)),
-        }
-    }
-    let told = all.iter().map(|(way, worst)| {
-        let [silhouette, pixels, depth, wrong] = worst.map(|v| number(v, 2));
-        format!("{way} {silhouette} pixels, {pixels} pixels ({depth} h/512), {wrong} %")
-    });
-    let told = told.collect::<Vec<_>>().join("; ");
-    (!told.is_empty()).then(|| {
-        format!("Exactness, in the worst picture: silhouettes are within, 99 % of depths are within, and wrong pixels of the pixels hit are: {told}.")
-    })
 }
 
 /// How many times are not resolved, if any is not.
@@ -160,16 +105,39 @@ fn stages(context: &Context, rows: &[&Row]) -> Vec<String> {
     ratios.iter().map(sentence).collect()
 }
 
-fn pairs<'a>(context: &Context<'a>, rows: &[&'a Row]) -> Vec<Pair<'a>> {
+/// A row of the default search, the fastest other way, and the ratio of their times.
+type Pair<'a> = (&'a Row, &'a Row, Interval);
+
+/// The rows that have another by whose time theirs can be divided.
+fn pairs<'a>(rows: &[&'a Row], other: impl Fn(&'a Row) -> Option<&'a Row>) -> Vec<Pair<'a>> {
     let pair = |row: &&'a Row| {
-        let other = Over::Rival.of(context.rows, row)?;
+        let other = other(row)?;
         Some((*row, other, between(row, other)?))
     };
     rows.iter().filter_map(pair).collect()
 }
 
+/// The largest resolved ratio in words, and the row that its time is over.
+fn worst<'a>(context: &Context, pairs: &[Pair<'a>]) -> Option<(String, &'a Row)> {
+    let known = pairs.iter();
+    let known = known.filter(|p| p.2.verdict(context.resolved) != Verdict::Unresolved);
+    let (row, other, time) = known.max_by(|a, b| a.2.value.total_cmp(&b.2.value))?;
+    let (time, stage) = (Cell::Known(*time).shown(), row.settings.stage.name());
+    let what = match other.settings.method.is_mesh() {
+        true => "mesh of the picture",
+        false => "other search",
+    };
+    let told = format!(
+        "The default search takes at most {time} of the time of the fastest {what}: {} at {} in the {stage} stage, against `{}`",
+        row.scene,
+        row.size(),
+        other.settings.method
+    );
+    Some((told, other))
+}
+
 fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
-    let all = pairs(context, rows);
+    let all = pairs(rows, |row| Over::Rival.of(context.rows, row));
     if all.is_empty() {
         return None;
     }
@@ -178,16 +146,11 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
         verdicts.filter(|v| *v == verdict).count()
     };
     let pictures = grouped(rows, |r| r.picture()).len();
-    let Some((row, other, time)) = worst(context, all.iter()) else {
+    let Some((told, _)) = worst(context, &all) else {
         return Some("No ratio to another search is resolved.".to_owned());
     };
     Some(format!(
-        "The default search takes at most {} of the time of the fastest other search: {} at {} in the {} stage, against `{}`. It is faster in {} of {} measurements ({}), another search in {}; in {} no difference is resolved, and {} are not resolved.",
-        Cell::Known(*time).shown(),
-        row.scene,
-        row.size(),
-        row.settings.stage.name(),
-        other.settings.method,
+        "{told}. It is faster in {} of {} measurements ({}), another search in {}; in {} no difference is resolved, and {} are not resolved.",
         of(Verdict::Faster),
         all.len(),
         count(pictures, "picture"),
@@ -197,13 +160,84 @@ fn rivals(context: &Context, rows: &[&Row]) -> Option<String> {
     ))
 }
 
+/// The largest time of the default over that of the fastest mesh of the same picture, and the mesh's
+/// name and error.
+fn to_meshes(context: &Context) -> Option<String> {
+    let timed = |r: &Row| r.time().map_or(f64::INFINITY, |t| t.value);
+    let mut rows = context.rows.to_vec();
+    rows.retain(|r| r.settings.method == Method::DEFAULT);
+    let all = pairs(&rows, |row| {
+        let same = |r: &&Row| r.settings.method.is_mesh() && r.picture() == row.picture();
+        let meshes = context.rows.iter().copied().filter(same);
+        meshes.min_by(|a, b| timed(a).total_cmp(&timed(b)))
+    });
+    let Some((told, mesh)) = worst(context, &all) else {
+        let fastest = all.first()?.1.settings.method;
+        return Some(format!(
+            "No ratio to a mesh is resolved; the fastest is `{fastest}`."
+        ));
+    };
+    let within = mesh.errors.view.map_or_else(String::new, |view| {
+        let error = number(view.silhouette_max, 2);
+        format!(", whose silhouettes are within {error} pixels")
+    });
+    Some(format!("{told}{within}."))
+}
+
+/// A sentence for each stage of the default: its time over the mesh's at each tolerance, and where
+/// the two cross.
+fn crossings(context: &Context, rows: &[&Row]) -> Vec<String> {
+    let mut ratios = over(rows.iter().copied(), Over::Equal);
+    ratios.retain(|r| r.settings.method == Method::DEFAULT);
+    let stages = grouped(ratios, |r| r.settings.stage).into_iter();
+    let sentence = |(stage, all): (DrawStage, Vec<Ratio>)| {
+        let at = |r: &Ratio| Some((r.pairs.first()?.0.tolerance_px()?, r.time));
+        let mut points: Vec<_> = all.iter().filter_map(at).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let told = points.iter().map(|(pixels, time)| {
+            let open = ["", " (not resolved)"][usize::from(time.relative() > context.resolved)];
+            format!("{}{open} at {pixels} pixels", number(time.value, 3))
+        });
+        let told = told.collect::<Vec<_>>().join(", ");
+        let known = points.iter().filter(|p| p.1.relative() <= context.resolved);
+        let known: Vec<(f64, f64)> = known.map(|(x, time)| (*x, time.value)).collect();
+        let pictures = all.iter().map(|r| r.pairs.len()).max().unwrap_or(0);
+        format!(
+            "{} stage: the default takes this part of the time of the mesh of equal silhouettes{}: {told}. {}",
+            stage.name(),
+            context.over_pictures(pictures),
+            crossing(&known)
+        )
+    };
+    stages.map(sentence).collect()
+}
+
+/// Where a ratio that is known at some tolerances crosses 1.
+fn crossing(points: &[(f64, f64)]) -> String {
+    let crosses = |pair: &&[(f64, f64)]| (pair[0].1 < 1.0) != (pair[1].1 < 1.0);
+    let place = |pair: &[(f64, f64)]| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+        // Times change with a power of the tolerance.
+        let part = -y0.ln() / (y1.ln() - y0.ln());
+        number((x0.ln() + part * (x1.ln() - x0.ln())).exp(), 2)
+    };
+    let found: Vec<String> = points.windows(2).filter(crosses).map(place).collect();
+    match (points, found.as_slice()) {
+        ([], _) => "No ratio is resolved.".to_owned(),
+        ([first, ..], []) if first.1 < 1.0 => "The default is faster at each of them.".to_owned(),
+        (_, []) => "The mesh is faster at each of them.".to_owned(),
+        (_, found) => format!("They take the same time at {} pixels.", found.join(" and ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::measure::row::tests::drawn;
+    use crate::measure::row::tests::{drawn, timed as passed};
+    use crate::plan::method::MethodSettings;
     use crate::report::columns::tests::with_context;
-    use revmap::settings::Solver;
+    use revmap::settings::{Solver, Tolerance};
 
     /// A row of a search in a stage of a picture; its passes take these times.
     fn timed(method: Method, stage: DrawStage, view: usize, passes: &[f64]) -> Row {
@@ -301,7 +335,7 @@ mod tests {
             drawn(coarse, DrawStage::Fragment, &[2.5, 2.55, 2.5], 9.0),
         ];
         let told = with_context(&rows, findings).join(" ");
-        let wanted = "Where it loses, if anywhere: Against the fastest mesh of the picture it takes at most 4 (4 to 4) of the time: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
+        let wanted = "Where it loses, if anywhere: The default search takes at most 4 (4 to 4) of the time of the fastest mesh of the picture: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
         assert!(told.contains(wanted), "{told}");
         assert!(!told.contains("1 picture"), "{told}");
         // Times that are not resolved still have a fastest mesh.
@@ -338,6 +372,35 @@ mod tests {
         assert!(
             records[0][1].ends_with("not resolved") && records[1] == wanted,
             "{records:?}"
+        );
+    }
+
+    /// The default takes 2 ms at any tolerance, meshes take less the more they may err: 4 ms at 0.1
+    /// pixels, 1 ms at 1.6. They meet at 0.4, halfway of the factor.
+    #[test]
+    fn a_planted_crossing_is_found() {
+        let mut rows = Vec::new();
+        for (pixels, ms) in [(0.1, 4.0), (1.6, 1.0)] {
+            let mesh = Method::mesh_within(pixels).unwrap();
+            for (method, ms) in [(Method::DEFAULT, 2.0), (mesh, ms)] {
+                let mut row = passed(&[ms, 1.001 * ms]);
+                row.settings = MethodSettings::default().by(method);
+                if method == Method::DEFAULT {
+                    row.settings.tolerance = Tolerance::new(pixels).unwrap();
+                }
+                rows.push(row);
+            }
+        }
+        let told = with_context(&rows, |context| crossings(context, context.rows));
+        let wanted = "fragment stage: the default takes this part of the time of the mesh of equal silhouettes: 0.5 at 0.1 pixels, 2 at 1.6 pixels. They take the same time at 0.4 pixels.";
+        assert_eq!(told, [wanted]);
+        assert_eq!(
+            crossing(&[(0.1, 1.2), (0.2, 1.3)]),
+            "The mesh is faster at each of them."
+        );
+        assert_eq!(
+            crossing(&[(0.1, 0.2)]),
+            "The default is faster at each of them."
         );
     }
 }

@@ -3,9 +3,7 @@
 
 mod answers;
 mod charts;
-mod crossing;
 mod guides;
-mod losses;
 pub(crate) mod places;
 mod tables;
 
