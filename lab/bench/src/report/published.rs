@@ -11,71 +11,45 @@ use revmap_figures::table::Table;
 
 /// A published table, measured by its authors on a Core i7-3612QM with a GeForce GT 630M.
 pub struct Printed {
-    /// Its number in the article.
-    pub number: &'static str,
     /// The letter of the parameter.
-    pub letter: char,
+    letter: char,
     /// The parameter's values: `e` and `b` as fractions of the largest distance in the map.
-    pub values: [f64; 3],
+    values: [f64; 3],
     /// Frames per second at each of [`SIZES`].
-    pub rates: [[f64; 3]; 2],
+    rates: [[f64; 3]; 2],
     /// The article's claim: how speed changes as the parameter grows.
-    pub claim: &'static str,
+    claim: &'static str,
 }
 
 /// Sizes of the published pictures.
-pub const SIZES: [&str; 2] = ["800x600", "1366x706"];
-
-/// The published tables.
-pub const TABLES: [Printed; 3] = [
-    Printed::new(
-        "1",
-        'e',
-        0.8,
-        [[180.0, 170.0, 160.0], [150.0, 145.0, 130.0]],
-        FALLS,
-    ),
-    Printed::new(
-        "2",
-        'b',
-        0.8,
-        [[200.0, 210.0, 230.0], [190.0, 195.0, 200.0]],
-        RISES,
-    ),
-    Printed::new(
-        "3",
-        'c',
-        0.7,
-        [[195.0, 209.0, 216.0], [174.0, 176.0, 182.0]],
-        RISES,
-    ),
-];
+const SIZES: [&str; 2] = ["800x600", "1366x706"];
 
 const FALLS: &str = "falls";
 const RISES: &str = "rises";
 
 /// The published table of this number.
-pub fn table(number: &str) -> Option<&'static Printed> {
-    TABLES.iter().find(|t| t.number == number)
+pub fn table(number: &str) -> Option<Printed> {
+    let (letter, last, claim) = match number {
+        "1" => ('e', 0.8, FALLS),
+        "2" => ('b', 0.8, RISES),
+        "3" => ('c', 0.7, RISES),
+        _ => return None,
+    };
+    let rates = match letter {
+        'e' => [[180.0, 170.0, 160.0], [150.0, 145.0, 130.0]],
+        'b' => [[200.0, 210.0, 230.0], [190.0, 195.0, 200.0]],
+        _ => [[195.0, 209.0, 216.0], [174.0, 176.0, 182.0]],
+    };
+    let values = [0.25, 0.5, last];
+    Some(Printed {
+        letter,
+        values,
+        rates,
+        claim,
+    })
 }
 
 impl Printed {
-    const fn new(
-        number: &'static str,
-        letter: char,
-        last: f64,
-        rates: [[f64; 3]; 2],
-        claim: &'static str,
-    ) -> Self {
-        Self {
-            number,
-            letter,
-            values: [0.25, 0.5, last],
-            rates,
-            claim,
-        }
-    }
-
     /// The published line at a size: the parameter and the rate, over the first if `over_first`.
     pub fn line(&self, size: &str, over_first: bool) -> Vec<(f64, f64)> {
         let Some(place) = SIZES.iter().position(|s| *s == size) else {
