@@ -159,7 +159,7 @@ impl Table {
 
     /// Reads a file of comma-separated values.
     pub fn load(file: &Path) -> Result<Self> {
-        Self::parse(&text_of(file)?).map_err(|e| e.in_file(file))
+        Self::parse(&text_of(file, A_RUN)?).map_err(|e| e.in_file(file))
     }
 
     /// The place of a column.
@@ -171,10 +171,13 @@ impl Table {
     }
 }
 
-/// The text of a run's file.
-pub fn text_of(file: &Path) -> Result<String> {
+/// What to give in place of a run's file that cannot be read.
+pub const A_RUN: &str = "give a folder that `revmap bench` wrote";
+
+/// The text of a file; the remedy if it cannot be read.
+pub fn text_of(file: &Path, remedy: &str) -> Result<String> {
     std::fs::read_to_string(file).map_err(|e| {
-        let message = format!("cannot be read ({e}); give a folder that `revmap bench` wrote");
+        let message = format!("cannot be read ({e}); {remedy}");
         Error::new(ErrorKind::File, message).in_file(file)
     })
 }

@@ -6,7 +6,7 @@ use crate::report::columns::{CONTRACT, results as columns};
 use revmap::error::{Error, ErrorKind, Result};
 use revmap::settings::Solver;
 use revmap_figures::stats;
-use revmap_figures::table::{Table, text_of};
+use revmap_figures::table::{A_RUN, Table, text_of};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -175,7 +175,7 @@ fn samples(file: &Path, results: &Table) -> Result<BTreeMap<(usize, usize), Vec<
     };
     let gpu = results.column("gpu_ms_median")?;
     let mut samples: BTreeMap<(usize, usize), Vec<f64>> = BTreeMap::new();
-    let text = text_of(file)?;
+    let text = text_of(file, A_RUN)?;
     for sample in csv::Reader::from_reader(text.as_bytes()).deserialize() {
         let sample: Sample = sample.map_err(fault)?;
         let record = results.records.get(sample.row.wrapping_sub(1));

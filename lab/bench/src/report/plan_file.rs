@@ -6,6 +6,7 @@ pub mod embedded;
 use crate::plan::{Measure, Overrides, Plan, TimeBudget, Views};
 use crate::report::exhibit::{self, Exhibit};
 use revmap::error::{Error, ErrorKind, Result};
+use revmap_figures::table::text_of;
 use std::path::Path;
 
 /// A plan as its file has it. `docs/benchmarks.md` explains the keys.
@@ -101,11 +102,7 @@ impl PlanFile {
 
     /// Reads the plan in a file.
     pub fn load(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(|e| {
-            let remedy = "give a plan, `revmap bench --list` shows some";
-            let message = format!("cannot be read ({e}); {remedy}");
-            Error::new(ErrorKind::File, message).in_file(file)
-        })?;
+        let text = text_of(file, "give a plan, `revmap bench --list` shows some")?;
         Self::parse(&text).map_err(|e| e.in_file(file))
     }
 

@@ -13,6 +13,7 @@ use crate::measure::drawn::fnv1a_64;
 use crate::plan::method::MethodSettings;
 use revmap::error::{Error, ErrorKind, Result};
 use revmap_figures::stats::Interval;
+use revmap_figures::table::text_of;
 use revmap_files::Picture;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -226,10 +227,7 @@ impl Submission {
     /// # Errors
     /// Those of [`Submission::parse`], and a file that cannot be read; the file is named.
     pub fn load(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(|e| {
-            let message = format!("cannot be read ({e}); give a file that `revmap submit` wrote");
-            Error::new(ErrorKind::File, message).in_file(file)
-        })?;
+        let text = text_of(file, "give a file that `revmap submit` wrote")?;
         Self::parse(&text).map_err(|e| e.in_file(file))
     }
 }
