@@ -12,7 +12,7 @@ use revmap::settings::DrawStage;
 use revmap_bench::compare::repeat::Verdict;
 use revmap_bench::compare::{self, submission};
 use revmap_bench::measure::device::DeviceBench;
-use revmap_bench::measure::{Measured, Observer, measure, refused_meshes};
+use revmap_bench::measure::{Measured, Observer, measure};
 use revmap_bench::plan::Plan;
 use revmap_bench::plan::method::renderer::MethodDevice;
 use revmap_bench::report;
@@ -294,11 +294,6 @@ struct Session<'a> {
 impl Session<'_> {
     /// Measures with a progress bar; an interrupt ends early and keeps what there is.
     fn measure(&self, file: &PlanFile, plan: &Plan) -> Result<(Measured, Album)> {
-        if !self.results.quiet {
-            refused_meshes(plan)
-                .iter()
-                .for_each(|text| output::warn(text));
-        }
         let styles = SeriesStyles::new(plan.cases.iter().map(|c| &c.settings));
         let mut album = Album::new(&self.run.out, styles, file.heat_maps)?;
         let mut sheets = (file.truth_rays > 1).then(|| Sheets::new(&self.run.out));

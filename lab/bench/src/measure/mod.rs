@@ -8,7 +8,7 @@
 mod bench;
 pub mod device;
 mod drawer;
-pub(crate) mod drawn;
+pub mod drawn;
 pub(crate) mod growth;
 pub mod machine;
 pub mod ratios;
@@ -92,31 +92,6 @@ pub fn measure(
         interrupted,
         took,
     })
-}
-
-/// Meshes that will be left out because of what their scenes hold: a sentence for each method and
-/// reason, before anything is drawn.
-#[must_use]
-pub fn refused_meshes(plan: &Plan) -> Vec<String> {
-    let mut found: Vec<(String, String, usize)> = Vec::new();
-    for case in &plan.cases {
-        let is_mesh = case.settings.method.is_mesh();
-        let view = plan.views.get(case.view).filter(|_| is_mesh);
-        let Some(Err(error)) = view.map(|view| revmap_mesh::check_scene(&view.scene)) else {
-            continue;
-        };
-        let (method, why) = (case.settings.method.to_string(), error.to_string());
-        match found.iter_mut().find(|f| f.0 == method && f.1 == why) {
-            Some(known) => known.2 += 1,
-            None => found.push((method, why, 1)),
-        }
-    }
-    let sentence = |(method, why, count): (String, String, usize)| {
-        format!(
-            "{method} will be left out of {count} measurements: {why}; other values by --set, as in --set 'shadow=\"off\"'"
-        )
-    };
-    found.into_iter().map(sentence).collect()
 }
 
 struct Run<'a> {
