@@ -20,7 +20,6 @@ use revmap_figures::stats::{self, Interval, Verdict};
 use revmap_figures::table::{NO_VALUE, Table};
 use run::{PICTURE, Run};
 use scenes::Scenes;
-use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Columns that name a way of drawing, beside its method. Earlier versions lack the last; those
@@ -92,27 +91,6 @@ fn judge(pairs: &mut [Pair]) {
     }
 }
 
-/// What only one of two runs has among the values of a column, as a warning.
-fn other_methods(old: &Run, new: &Run) -> Option<String> {
-    let all = |run: &Run| -> BTreeSet<String> {
-        let records = run.results.records.iter();
-        records.map(|r| run.at(r, "solver").to_owned()).collect()
-    };
-    let (old, new) = (all(old), all(new));
-    let only = |a: &BTreeSet<String>, b: &BTreeSet<String>, name: &str| {
-        let names: Vec<&str> = a.difference(b).map(String::as_str).collect();
-        (!names.is_empty()).then(|| format!("only the {name} one has {}", names.join(", ")))
-    };
-    let found = [only(&old, &new, "old"), only(&new, &old, "new")];
-    let found: Vec<String> = found.into_iter().flatten().collect();
-    (!found.is_empty()).then(|| {
-        format!(
-            "the runs are of other methods: {}; methods measured in turn change each other's times, so measure the same ones",
-            found.join(", ")
-        )
-    })
-}
-
 /// Runs side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
@@ -124,8 +102,8 @@ pub struct Against {
     pub devices: Vec<String>,
     /// Ways of drawing by technique and stage, over the pictures that all runs have.
     pub table: Table,
-    /// A warning for each of scenes, settings, device, driver, processor, surroundings and methods that
-    /// differs from the first run.
+    /// A warning for each of scenes, settings, device, driver, processor and surroundings that differs
+    /// from the first run.
     pub warnings: Vec<String>,
 }
 
@@ -191,8 +169,11 @@ pub fn compare(folders: &[impl AsRef<Path>]) -> Result<Against> {
         let others = others.map(|c| format!("{c}; times depend on it"));
         let differ = machines.chain(others);
         let differ = differ.map(|c| format!("the runs differ in {c}"));
-        let all = scenes.warnings.into_iter().chain(differ);
-        all.chain(other_methods(old, new)).collect::<Vec<_>>()
+        scenes
+            .warnings
+            .into_iter()
+            .chain(differ)
+            .collect::<Vec<_>>()
     });
     let device = |run: &Run| format!("{}, {}", run.first("device"), run.first("driver"));
     Ok(Against {

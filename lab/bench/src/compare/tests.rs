@@ -8,7 +8,7 @@ use crate::plan::method::{Edges, Method};
 use crate::plan::view::tests::spindle;
 use crate::report::columns::tests::csv_of;
 use crate::report::folder::{raw, write_text};
-use revmap::settings::{DrawStage, Solver};
+use revmap::settings::DrawStage;
 
 /// The folder of a run of these rows.
 pub(super) fn folder_of(rows: &[Row], device: &str, driver: &str) -> tempfile::TempDir {
@@ -116,33 +116,6 @@ fn a_run_against_itself_names_nothing() {
         found += usize::from(changed(&slow).contains(&7));
     }
     assert!(silent >= 38 && found >= 38, "{silent} {found}");
-}
-
-#[test]
-fn runs_of_other_methods_are_said() {
-    let with = |steps: u32, search: Solver| {
-        let mut row = timed([10.0; 4], DrawStage::Fragment);
-        row.settings.method = Method::Search(search);
-        row.settings.max_steps = Some(steps);
-        row
-    };
-    let both = run(&[with(3, Solver::Exact), with(3, Solver::Live)]);
-    let one = run(&[with(3, Solver::Exact)]);
-    // Without what is said of runs that say nothing about their scenes.
-    let told = |old: &Path, new: &Path| -> Vec<String> {
-        let warnings = compare(&[old, new]).unwrap().warnings;
-        assert!(
-            warnings[0].starts_with("no drawn.toml in both runs"),
-            "{warnings:?}"
-        );
-        warnings[1..].to_vec()
-    };
-    let warnings = told(both.path(), one.path());
-    assert!(
-        warnings.len() == 1 && warnings[0].contains("only the old one has live"),
-        "{warnings:?}"
-    );
-    assert_eq!(told(one.path(), one.path()), [""; 0]);
 }
 
 #[test]
