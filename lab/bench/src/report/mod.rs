@@ -212,10 +212,7 @@ impl<'a> Writer<'a> {
         let mut own = chart.clone();
         own.title = place.fill(&chart.title);
         own.guide = place.fill(&chart.guide);
-        let mut caption = place.fill(&chart.caption);
-        if chart.is_timed() {
-            caption += &place.untimed();
-        }
+        let caption = place.fill(&chart.caption);
         let figures = own.figures(context, &place.rows)?;
         for (k, figure) in figures.iter().enumerate() {
             let mut name = place.fill(&chart.file);

@@ -169,12 +169,6 @@ impl Chart {
         Ok(vec![chart.figure()])
     }
 
-    /// True if rows without a time have no place in the chart.
-    pub fn is_timed(&self) -> bool {
-        let timed = self.over.is_some() || is_timed(&self.x) || is_timed(&self.y);
-        self.kind == Kind::Dots || timed
-    }
-
     /// A line for each row, or for each way of drawing over others.
     fn dots(&self, context: &Context, rows: &[&Row]) -> Vec<Figure> {
         let line = |settings: &MethodSettings, value: Interval| Line {

@@ -55,15 +55,6 @@ impl<'a> Place<'a> {
             (None, None) => String::new(),
         }
     }
-
-    /// What a caption says of rows that no chart of times can hold.
-    pub(crate) fn untimed(&self) -> String {
-        match self.rows.iter().filter(|r| r.time().is_none()).count() {
-            0 => String::new(),
-            1 => " The clocks of 1 row disagree: it is not in the chart.".to_owned(),
-            count => format!(" The clocks of {count} rows disagree: they are not in the chart."),
-        }
-    }
 }
 
 /// The groups of rows that have tables and charts of their own.
