@@ -3,49 +3,35 @@
 use crate::studio::GROUND_NAME;
 use crate::vary::Vary;
 use revmap::scene::Scene;
+use revmap_bench::report::pictures::reduced;
 use revmap_files::Picture;
 
 /// Pixels on a side of a block.
-const SIDE: usize = 8;
+const SIDE: u32 = 8;
 /// Means of a block that differ by more are seen to move, parts of 255. Rounding changes single
 /// pixels of a silhouette, at most 1.2 in the mean of a block; the noise of soft shadows changes
 /// 2.0 (llvmpipe).
-const SEEN: f32 = 4.0;
+const SEEN: u8 = 4;
 
 /// A frame as means of blocks, each of red, green and blue times alpha, and alpha.
-struct Blocks(Vec<[f32; 4]>);
-
-impl Blocks {
-    fn of(picture: &Picture) -> Self {
-        let width = picture.width as usize;
-        let across = width.div_ceil(SIDE);
-        let down = (picture.height as usize).div_ceil(SIDE);
-        let mut sums = vec![[0.0; 5]; across * down];
-        for (k, &[r, g, b, a]) in picture.rgba.iter().enumerate() {
-            let sum = &mut sums[k / width / SIDE * across + k % width / SIDE];
-            let opacity = f32::from(a) / 255.0;
-            let [r, g, b] = [r, g, b].map(|c| f32::from(c) * opacity);
-            for (total, v) in sum.iter_mut().zip([r, g, b, f32::from(a), 1.0]) {
-                *total += v;
-            }
-        }
-        Self(
-            sums.iter()
-                .map(|s| [0, 1, 2, 3].map(|c| s[c] / s[4]))
-                .collect(),
-        )
+fn blocks(picture: &Picture) -> Picture {
+    let mut own = picture.clone();
+    for [red, green, blue, alpha] in &mut own.rgba {
+        let times = |c: u8| (u16::from(c) * u16::from(*alpha) / 255) as u8;
+        (*red, *green, *blue) = (times(*red), times(*green), times(*blue));
     }
+    reduced(&own, SIDE)
+}
 
-    fn is_like(&self, other: &Self) -> bool {
-        let (all, others) = (self.0.as_flattened(), other.0.as_flattened());
-        all.iter().zip(others).all(|(a, b)| (a - b).abs() <= SEEN)
-    }
+fn alike(a: &Picture, b: &Picture) -> bool {
+    let pairs = a.rgba.as_flattened().iter().zip(b.rgba.as_flattened());
+    pairs.into_iter().all(|(a, b)| a.abs_diff(*b) <= SEEN)
 }
 
 /// Compares every frame of a film with the first.
 #[derive(Default)]
 pub struct Stillness {
-    first: Option<Blocks>,
+    first: Option<Picture>,
     moves: bool,
 }
 
@@ -55,9 +41,9 @@ impl Stillness {
         if self.moves {
             return;
         }
-        let blocks = Blocks::of(picture);
+        let blocks = blocks(picture);
         match &self.first {
-            Some(first) => self.moves = !blocks.is_like(first),
+            Some(first) => self.moves = !alike(&blocks, first),
             None => self.first = Some(blocks),
         }
     }
