@@ -5,8 +5,8 @@ use revmap_bench::plan::suite::{self, Extent};
 use revmap_bench::report::columns;
 use revmap_bench::report::table::Table;
 
-/// A folder with a run of one row.
-fn run(bench: &Bench, folder: &str, driver: &str, processor: &str) {
+/// A folder with a run of one row, and a note on its machine.
+fn run(bench: &Bench, folder: &str, driver: &str, note: &str) {
     let value = |name: &str| match name {
         "scene" => "vase".to_owned(),
         "device" => "card".to_owned(),
@@ -24,50 +24,31 @@ fn run(bench: &Bench, folder: &str, driver: &str, processor: &str) {
     );
     file("raw.csv", Table::new(raw, vec![times]).csv());
     file("drawn.toml", "[settings]\n".to_owned());
-    file(
-        "machine.txt",
-        format!("device: card\nprocessor: {processor}\n"),
-    );
+    file("machine.txt", format!("device: card\n{note}"));
 }
 
+/// Drivers, processors, variables and niceness change times.
 #[test]
-fn runs_of_two_machines_bring_warnings() {
+fn runs_of_other_machines_and_in_other_surroundings_bring_warnings() {
     let bench = Bench::new();
-    run(&bench, "old", "driver 1", "Xeon, 2 threads");
-    run(&bench, "same", "driver 1", "Xeon, 2 threads");
-    run(&bench, "other", "driver 2", "EPYC, 2 threads");
+    let xeon = "processor: Xeon, 2 threads\nniceness: 0\nvariable: none\n";
+    let epyc = "processor: EPYC, 2 threads\nniceness: 10\nvariable: GALLIVM_PERF=nopt\n";
+    run(&bench, "old", "driver 1", xeon);
+    run(&bench, "same", "driver 1", xeon);
+    run(&bench, "other", "driver 2", epyc);
     assert!(lines(&bench.done("bench --compare old same")).is_empty());
     let said = lines(&bench.done("bench --compare old other"));
-    assert_eq!(said.len(), 2, "{said:?}");
-    for (line, words) in said.iter().zip([
-        ["driver", "driver 1", "driver 2"],
-        ["processor", "Xeon, 2 threads", "EPYC, 2 threads"],
-    ]) {
-        let [name, old, new] = words;
-        let start = format!("warning: the runs differ in {name} (old {old:?}, new {new:?})");
+    let wanted = [
+        "driver (old \"driver 1\", new \"driver 2\")",
+        "processor (old \"Xeon, 2 threads\", new \"EPYC, 2 threads\")",
+        "GALLIVM_PERF (old not set, new \"nopt\")",
+        "niceness (old \"0\", new \"10\")",
+    ];
+    assert_eq!(said.len(), wanted.len(), "{said:?}");
+    for (line, wanted) in said.iter().zip(wanted) {
+        let start = format!("warning: the runs differ in {wanted}");
         assert!(line.starts_with(&start), "{line}");
     }
-}
-
-/// Variables, niceness and allowed processors change times.
-#[test]
-fn runs_in_other_surroundings_bring_warnings() {
-    let bench = Bench::new();
-    let note = |folder: &str, lines: &str| {
-        run(&bench, folder, "driver 1", "Xeon, 2 threads");
-        let note = format!("device: card\nprocessor: Xeon, 2 threads\n{lines}");
-        bench.file(&format!("{folder}/machine.txt"), note);
-    };
-    note("plain", "niceness: 0\nvariable: none\n");
-    note("other", "niceness: 10\nvariable: GALLIVM_PERF=nopt\n");
-    assert!(lines(&bench.done("bench --compare plain plain")).is_empty());
-    let said = lines(&bench.done("bench --compare plain other"));
-    assert_eq!(said.len(), 2, "{said:?}");
-    holds(
-        &said[0],
-        &["differ in GALLIVM_PERF (old not set, new \"nopt\")"],
-    );
-    holds(&said[1], &["differ in niceness (old \"0\", new \"10\")"]);
 }
 
 /// A file of the repository.
@@ -227,7 +208,7 @@ fn runs_of_different_scenes_are_not_compared() {
 #[test]
 fn a_table_fits_the_terminal() {
     let bench = Bench::new();
-    run(&bench, "old", "driver 1", "Xeon, 2 threads");
+    run(&bench, "old", "driver 1", "");
     let piped = bench.said("bench --compare old old");
     let head = "old: ms; depth; wrong  new: ms; depth; wrong  new / old\n";
     assert!(piped.contains(head), "{piped}");
