@@ -192,7 +192,7 @@ impl App {
             Err(error) => self.problem = Some(error.to_string()),
         }
         if self.keep
-            && let Some(picture) = self.painter.free_part(&self.framing)
+            && let Some(picture) = self.painter.picture()
         {
             self.keep = false;
             let path = saved::beside(&self.source, ".png");
@@ -311,7 +311,8 @@ impl eframe::App for &mut App {
         self.drawing_ms = start.elapsed().as_secs_f64() * 1e3;
         if let Some(id) = self.painter.texture() {
             let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            let picture = Shape::image(id, whole, all, Color32::WHITE);
+            let place = whole.with_min_x(self.framing.left as f32 / pixels);
+            let picture = Shape::image(id, place, all, Color32::WHITE);
             ui.painter().set(background, picture);
         }
         self.overlay(&context, free, &words);

@@ -11,6 +11,7 @@ use revmap::frame::Frame;
 use revmap::gpu::{Device, DrawPath};
 use revmap::settings::Settings;
 use revmap_bench::report::pictures::steps;
+use revmap_compare::mosaic::{self, pixel};
 use revmap_compare::{CompareOptions, Heat, compare, heat_map};
 use revmap_files::Picture;
 use revmap_offscreen::{Offscreen, Times};
@@ -40,8 +41,6 @@ pub struct Painter {
     made: Option<u64>,
     check: Option<Check>,
     picture: Option<Picture>,
-    /// Side of the picture's pixels, in pixels of the window.
-    side: u32,
     /// The scale of the picture.
     pub legend: Option<Legend>,
     /// The picture's content in numbers.
@@ -61,7 +60,6 @@ impl Painter {
             made: None,
             check: None,
             picture: None,
-            side: 1,
             legend: None,
             words: String::new(),
             draw_paths: Vec::new(),
@@ -81,11 +79,9 @@ impl Painter {
         self.made.and(self.texture.as_ref()).map(TextureHandle::id)
     }
 
-    /// The part of the picture that the panel leaves free, in pixels of the window; `None` while
-    /// the picture is outdated.
-    pub fn free_part(&self, framing: &Framing) -> Option<Picture> {
-        self.made?;
-        Some(framing.crop(self.picture.as_ref()?, self.side))
+    /// The picture in the free part of the window; `None` while it is outdated.
+    pub fn picture(&self) -> Option<&Picture> {
+        self.made.and(self.picture.as_ref())
     }
 
     /// Draws version `version` of the shown state and its framing, unless the picture has it.
@@ -106,10 +102,10 @@ impl Painter {
             Inspected::Error => COARSE,
             _ => 1,
         };
-        let (width, height) = framing.window;
+        let (width, height) = framing.free();
         let settings = shown.settings((width.div_ceil(side), height.div_ceil(side)));
         let mut framed = shown.furnished();
-        framed.scene.camera = framing.camera(&shown.scene.camera, side);
+        framed.scene.camera = framing.camera(&shown.scene.camera);
         framed.scene.background[3] = 1.0;
         let reference = match shown.inspected {
             Inspected::Error => match self.reference(&framed, version, &settings, context)? {
@@ -135,6 +131,13 @@ impl Painter {
             };
             (picture, Some(legend))
         };
+        let picture = match side as usize {
+            1 => picture,
+            side => {
+                let near = |x, y| pixel(&picture, x / side, y / side).unwrap_or_default();
+                mosaic::painted([width as usize, height as usize], near)
+            }
+        };
         let image = ColorImage::from_rgba_premultiplied(
             [picture.width as usize, picture.height as usize],
             picture.rgba.as_flattened(),
@@ -143,7 +146,7 @@ impl Painter {
             context.load_texture("picture", ColorImage::default(), TextureOptions::NEAREST)
         });
         texture.set(image, TextureOptions::NEAREST);
-        (self.picture, self.side, self.legend) = (Some(picture), side, legend);
+        (self.picture, self.legend) = (Some(picture), legend);
         self.made = Some(version);
         let all = start.elapsed().as_secs_f64() * 1e3;
         let compiled = self.device.pipelines_compiled();
