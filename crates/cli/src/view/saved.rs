@@ -2,11 +2,9 @@
 
 use super::times::Cost;
 use revmap::error::Result;
-use revmap::scene::{BumpForm, Clip, Environment, Light, Object, Scene, Shadow};
-use revmap::settings::name_of;
-use revmap_files::SceneFile;
-use revmap_files::write_bytes;
-use std::fmt::Debug;
+use revmap::scene::Scene;
+use revmap_bench::measure::drawn::assignments;
+use revmap_files::{SceneFile, write_bytes};
 use std::path::{Path, PathBuf};
 
 /// A free path beside `file`: its stem, `-`, a number from 1 on, `ending`.
@@ -58,61 +56,12 @@ pub fn write_times(path: &Path, all: &[Cost]) -> Result<()> {
     write_bytes(path, text.as_bytes())
 }
 
-/// Every value that the controls change, in the form of `--set`.
-fn assignments(scene: &Scene) -> Vec<String> {
-    let camera = &scene.camera;
-    let mut all = vec![
-        format!("camera.eye={:?}", camera.eye.to_array()),
-        format!("camera.target={:?}", camera.target.to_array()),
-        format!("camera.fov_y={:?}", camera.fov_y),
-        format!("ambient={:?}", scene.ambient),
-        format!("shadow={:?}", name_of(&Shadow::NAMES, &scene.shadow)),
-    ];
-    if let Some(Environment { up, down }) = &scene.environment {
-        all.push(format!("environment.up={up:?}"));
-        all.push(format!("environment.down={down:?}"));
-    }
-    let light = |light: &Light| {
-        let direction = light.direction.to_array();
-        let (color, radius) = (light.color, light.radius);
-        format!("{{direction = {direction:?}, color = {color:?}, radius = {radius:?}}}")
-    };
-    let lights: Vec<String> = scene.lights.iter().map(light).collect();
-    all.push(format!("light=[{}]", lights.join(", ")));
-    for (n, object) in scene.objects.iter().enumerate() {
-        of_object(object, |key, value| {
-            all.push(format!("object.{n}.{key}={value:?}"))
-        });
-    }
-    all
-}
-
-fn of_object(object: &Object, mut set: impl FnMut(&str, &dyn Debug)) {
-    let (offset, placement) = (object.offset, object.placement);
-    let (texturing, specular) = (&object.texturing, &object.specular);
-    set("extend", &offset.extend);
-    set("bevel", &offset.bevel);
-    set("chamfer", &offset.chamfer);
-    set("clip", &name_of(&Clip::NAMES, &object.clip));
-    set("bump", &texturing.bump);
-    let form = name_of(&BumpForm::NAMES, &texturing.bump_form);
-    set("bump_form", &form);
-    set("projection", &texturing.projection.name());
-    set("axis", &object.axis);
-    set("repeat", &object.repeat);
-    set("mirror", &object.mirror);
-    set("color", &object.color);
-    set("specular", &specular.strength);
-    set("shininess", &specular.shininess);
-    set("position", &placement.position.to_array());
-    set("scale", &placement.scale.to_array());
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use glam::DVec3;
+    use revmap::scene::Shadow;
 
     const TEXT: &str = "[camera]\neye = [2, 0, 1]\ntarget = [0, 0, 0.5]\n\
                         [[object]]\npolygon = [[0, 0], [0.4, 0], [0, 1]]\n";

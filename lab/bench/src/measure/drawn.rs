@@ -5,6 +5,8 @@
 
 mod scene;
 
+pub use scene::assignments;
+
 use crate::plan::Plan;
 use crate::plan::view::View;
 use revmap::error::{Error, ErrorKind, Result};

@@ -1,6 +1,6 @@
 //! The values of a scene under the keys of scene files.
 
-use super::digest;
+use super::{digest, keys};
 use glam::{DQuat, DVec3};
 use revmap::maps::{ColorMap, DisplacementMap};
 use revmap::profile::{Profile, Raster};
@@ -42,6 +42,18 @@ pub(super) fn scene(of: &Scene) -> Table {
         all.insert("environment".to_owned(), own.into());
     }
     all
+}
+
+/// Every value of a scene as `--set` takes it: `object.0.bevel=0.4`. The lights are one value.
+#[must_use]
+pub fn assignments(of: &Scene) -> Vec<String> {
+    let mut all = scene(of);
+    let objects: Vec<Table> = of.objects.iter().map(values).collect();
+    all.insert("object".to_owned(), objects.into());
+    let lights = all.remove("light").map(|lights| format!("light={lights}"));
+    let values = keys("", &all).into_iter();
+    let values = values.map(|(key, value)| format!("{key}={value}"));
+    values.chain(lights).collect()
 }
 
 fn of_camera(of: &Camera) -> Table {
