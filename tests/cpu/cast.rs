@@ -1,25 +1,44 @@
 //! Rays of the CPU's caster beside the reference in double precision.
 
 use crate::common::change::Change;
-use crate::common::rays::{Random, count};
+use crate::common::rays::{Random, count, profiles};
 use crate::common::shapes;
 use glam::{DQuat, DVec3};
 use revmap::cast::RayCaster;
 use revmap::profile::Profile;
-use revmap::scene::{Camera, Clip, Object, Placement, Scene};
+use revmap::scene::{Camera, Clip, Object, Offset, Placement, Scene};
 use revmap_reference::{Ray, Reference};
 
-/// Objects of each kind: offsets, cuts, replicas, placements, copies.
+const OFFSETS: [(f64, f64, f64); 8] = [
+    (0.0, 0.0, 1.0),
+    (0.02, 0.0, 1.0),
+    (-0.01, 0.0, 1.0),
+    (0.0, 0.1, 1.0),
+    (0.01, -0.05, 0.5),
+    (0.0, 0.2, 0.25),
+    (-0.02, 0.06, 0.7),
+    (0.08, 0.0, 1.0),
+];
+
+/// Objects of each kind: every profile under every offset in its box, then placements, cuts,
+/// replicas and copies.
 fn objects() -> Vec<Object> {
     let placed = Placement {
         position: DVec3::new(3.0, -2.0, 1.0),
         rotation: DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.9, -2.0),
         scale: DVec3::new(0.5, 0.8, 2.0),
     };
-    let mut all: Vec<Object> = (shapes::all().into_iter())
-        .map(|(name, profile)| Object::new(name, profile.into()))
-        .collect();
-    let plain = |profile: revmap::profile::Profile| Object::new("solid", profile.into());
+    let profiles = profiles();
+    let of = |(extend, bevel, chamfer)| {
+        profiles.iter().map(move |(name, profile)| {
+            Object::new(name, profile.clone().into()).with(|o| {
+                o.offset = shapes::offset(extend, bevel, chamfer);
+                o.clip = Clip::Box;
+            })
+        })
+    };
+    let mut all: Vec<Object> = OFFSETS.into_iter().flat_map(of).collect();
+    let plain = |profile: Profile| Object::new("solid", profile.into());
     let vase = plain(shapes::vase());
     let copy = |k: u32| Placement {
         position: DVec3::new(f64::from(k % 10), f64::from(k / 10), 0.0),
@@ -30,10 +49,6 @@ fn objects() -> Vec<Object> {
         vase.clone().with(|o| {
             o.offset = shapes::offset(0.04, 0.3, 0.2);
             o.placement = placed;
-        }),
-        vase.clone().with(|o| {
-            o.offset = shapes::offset(0.1, 0.0, 0.0);
-            o.clip = Clip::Box;
         }),
         vase.clone().with(|o| o.axis = [0.75, 0.4]),
         plain(shapes::glass()).with(|o| {
@@ -73,6 +88,7 @@ fn rays_along_the_axis_hit_tips() {
 /// miss it. Measured: at most 4 of 20,000 rays at one solid, the torus.
 #[test]
 fn casts_hit_what_the_reference_hits() {
+    let (mut all_hits, mut all_wrong, rays) = (0, 0, count(2000));
     for object in objects() {
         let mut scene = Scene::new(Camera::new(DVec3::ONE, DVec3::ZERO));
         scene.objects.push(object.clone());
@@ -85,7 +101,7 @@ fn casts_hit_what_the_reference_hits() {
             let mut one = || 2.0 * random.next() - 1.0;
             DVec3::new(one(), one(), one()) * half * scale
         };
-        let (mut hits, mut off, rays) = (0, 0, count(2000));
+        let (mut depths, mut off, mut wrong) = (Vec::new(), 0, 0);
         for n in 0..rays {
             // Every fourth ray starts in the box, and so perhaps in the solid.
             let origin = middle + vector(if n % 4 == 0 { 1.0 } else { 6.0 });
@@ -95,28 +111,34 @@ fn casts_hit_what_the_reference_hits() {
             if let (Some(a), Some(b)) = (found, expected.hit) {
                 let point = origin + a.t * direction;
                 assert!(point.cmpge(low - 1e-4).all() && point.cmple(high + 1e-4).all());
-                let gap = (a.t - b.t).abs() * direction.dot(b.normal).abs();
-                hits += 1;
-                off += usize::from(
-                    gap > 1e-4 || a.normal.dot(b.normal) < 0.999 || a.copy != b.instance,
-                );
+                let apart = (a.t - b.t).abs() * direction.length();
+                let cosine = direction.normalize().dot(b.normal).abs();
+                depths.push(apart * 512.0);
+                let turned = a.normal.dot(b.normal) < 0.999;
+                off += usize::from(apart * cosine > 1e-4 || turned || a.copy != b.instance);
                 let leaves = direction.dot(a.normal) > 0.0;
-                assert!(
-                    a.leaves == leaves || expected.grazes,
-                    "{}: {a:?}",
-                    object.name
-                );
+                let right = a.leaves == leaves || expected.grazes;
+                assert!(right, "{}: {a:?}", object.name);
             } else {
-                off += usize::from(found.is_some() != expected.hit.is_some() && !expected.grazes);
+                wrong += usize::from(found.is_some() != expected.hit.is_some() && !expected.grazes);
             }
         }
-        assert!(hits > rays / 5, "{}: {hits} of {rays}", object.name);
-        assert!(
-            off <= 1 + rays / 4000,
-            "{}: {off} of {hits} are off",
-            object.name
-        );
+        depths.sort_by(f64::total_cmp);
+        let (hits, p99) = (depths.len(), depths[depths.len() * 99 / 100]);
+        let (name, offset) = (&object.name, object.offset);
+        let what =
+            format!("{name}, {offset:?}: {hits} hits, {off} off, {wrong} wrong, p99 {p99:.4}");
+        println!("{what}");
+        assert!(hits > rays / 10 && p99 < 0.02, "{what}");
+        // Patches are round where outlines of drawings have corners, and where offsets make such.
+        let plain = shapes::all().iter().any(|(n, _)| n == name) && offset == Offset::default();
+        let is_exact = plain || name == "solid";
+        assert!(!is_exact || off + wrong <= 1 + rays / 4000, "{what}");
+        assert!(wrong <= 2, "{what}");
+        (all_hits, all_wrong) = (all_hits + hits, all_wrong + wrong);
     }
+    let what = format!("{all_wrong} wrong of {all_hits}");
+    assert!(all_wrong as f64 <= 5e-5 * all_hits as f64, "{what}");
 }
 
 #[test]
