@@ -407,3 +407,34 @@ pub extern "C" fn revmap_color_word(red: f32, green: f32, blue: f32, alpha: f32)
 pub extern "C" fn revmap_renderer_destroy(renderer: *mut RevmapRenderer) -> RevmapResult {
     enter(|| RevmapRenderer::destroy(renderer))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A depth test is that of either depth order.
+    #[test]
+    fn a_pass_tests_depths_as_it_says() {
+        use crate::enums::{RevmapDepthCompare as C, RevmapDepthOrder as D};
+        use vk::CompareOp as Op;
+        for (compare, order, wanted) in [
+            (C::Nearer, D::Normal, Op::LESS),
+            (C::NearerOrEqual, D::Reversed, Op::GREATER_OR_EQUAL),
+            (C::Equal, D::Normal, Op::EQUAL),
+            (C::Farther, D::Reversed, Op::LESS),
+            (C::FartherOrEqual, D::Normal, Op::GREATER_OR_EQUAL),
+            (C::NotEqual, D::Reversed, Op::NOT_EQUAL),
+            (C::Always, D::Normal, Op::ALWAYS),
+            (C::Never, D::Normal, Op::NEVER),
+        ] {
+            let mut pass = crate::structures::sized::<RevmapPass>();
+            (pass.depth_compare, pass.depth_order) = (compare as u32, order as u32);
+            for read_only in [0, 1] {
+                pass.depth_read_only = read_only;
+                // SAFETY: it has no pointers.
+                let test = unsafe { pass.formats() }.unwrap().depth_test;
+                assert_eq!((test.compare, test.write), (Some(wanted), read_only == 0));
+            }
+        }
+    }
+}

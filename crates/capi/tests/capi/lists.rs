@@ -1,5 +1,5 @@
 //! Lists of planes through the C interface, as for a G-buffer: what the Rust renderer draws, bit for
-//! bit. Motion, masks, depth tests, rays through samples.
+//! bit. Motion, masks, rays through samples.
 
 use crate::host::{
     self, COLOR, Canvas, DEPTH, Drawn, Host, borrow, dynamic, open, open_with, view_and_projection,
@@ -120,8 +120,8 @@ struct Lists<'a> {
     canvas: Canvas<'a>,
 }
 
-/// A renderer of all planes for a pass; the other values are those of `pass`.
-fn renderer(device: *mut RevmapDevice, pass: RevmapPass) -> *mut RevmapRenderer {
+/// A renderer of all planes.
+fn renderer(device: *mut RevmapDevice) -> *mut RevmapRenderer {
     let numbers = PLANES.map(|(attachment, ..)| attachment as u32);
     let formats = PLANES.map(|(.., format)| format);
     let pass = RevmapPass {
@@ -133,7 +133,7 @@ fn renderer(device: *mut RevmapDevice, pass: RevmapPass) -> *mut RevmapRenderer 
         depth_format: DEPTH,
         attachments: numbers.as_ptr(),
         attachment_count: PLANES.len() as u32,
-        ..pass
+        ..sized!(RevmapPass)
     };
     let mut renderer = null_mut();
     // SAFETY: live values.
@@ -144,13 +144,13 @@ fn renderer(device: *mut RevmapDevice, pass: RevmapPass) -> *mut RevmapRenderer 
 }
 
 /// Adds the scene of the Rust renderer.
-fn add(renderer: *mut RevmapRenderer, color: [f32; 3]) -> [RevmapObject; 2] {
+fn add(renderer: *mut RevmapRenderer) -> [RevmapObject; 2] {
     let (mut profile, mut objects) = (null_mut(), [0; 2]);
     // SAFETY: live values.
     unsafe {
         ok! { revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), 0.4, &mut profile); }
         let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
-        (info.profile, info.color) = (profile, color);
+        info.profile = profile;
         ok! { revmap_renderer_add(renderer, &info, &mut objects[0]); }
         info.placement.position = BESIDE;
         info.offset.extend = 0.02;
@@ -171,12 +171,12 @@ impl<'a> Lists<'a> {
         unsafe {
             ok! { revmap_device_enable_debug_labels(device); }
         }
-        let renderer = renderer(device, sized!(RevmapPass));
+        let renderer = renderer(device);
         Self {
             host,
             device,
             renderer,
-            objects: add(renderer, Object::COLOR),
+            objects: add(renderer),
             canvas: canvas(host),
         }
     }
@@ -188,15 +188,13 @@ impl<'a> Lists<'a> {
                 ok! { revmap_renderer_record(self.renderer, cmd, 0); }
             }
         };
-        let prepare = |cmd| self.prepare(cmd, view);
+        let prepare = |cmd| {
+            // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
+            unsafe {
+                ok! { revmap_renderer_prepare(self.renderer, cmd, 0, view); }
+            }
+        };
         self.canvas.draw(self.host, prepare, record);
-    }
-
-    fn prepare(&self, cmd: vk::CommandBuffer, view: &RevmapView) {
-        // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
-        unsafe {
-            ok! { revmap_renderer_prepare(self.renderer, cmd, 0, view); }
-        }
     }
 
     /// The number of an object in the plane of identities.
@@ -237,6 +235,23 @@ fn a_list_of_planes_is_what_rust_draws() {
         lists.canvas.planes() == wanted[0],
         "the first frame differs"
     );
+    // A view shows the objects of its mask.
+    let masks = |first, second| {
+        ok! {
+            revmap_renderer_set_mask(lists.renderer, lists.objects[0], first);
+            revmap_renderer_set_mask(lists.renderer, lists.objects[1], second);
+        }
+    };
+    masks(1, 2);
+    for (mask, wanted) in [(0, [true; 2]), (1, [true, false]), (4, [false; 2])] {
+        lists.draw(&RevmapView {
+            mask,
+            ..view_in_c(FIRST)
+        });
+        let [first, second, _] = lists.shown();
+        assert_eq!([first > 0, second > 0], wanted, "mask {mask}");
+    }
+    masks(u32::MAX, u32::MAX);
     let moved = RevmapPlacement {
         position: MOVED,
         rotation: [0.0, 0.0, 0.0, 1.0],
@@ -270,80 +285,6 @@ fn a_list_of_planes_is_what_rust_draws() {
     let pairs = lists.canvas.planes().into_iter().zip(&wanted[1]);
     for (n, (found, wanted)) in pairs.enumerate() {
         assert!(found == *wanted, "plane {n} of the second frame differs");
-    }
-}
-
-#[test]
-fn a_view_shows_the_objects_of_its_mask() {
-    let host = open();
-    let lists = Lists::new(&host);
-    let shown = |mask| {
-        lists.draw(&RevmapView {
-            mask,
-            ..view_in_c(FIRST)
-        });
-        lists.shown()
-    };
-    let both = shown(0);
-    assert_eq!(shown(4), both);
-    ok! {
-        revmap_renderer_set_mask(lists.renderer, lists.objects[0], 1);
-        revmap_renderer_set_mask(lists.renderer, lists.objects[1], 2);
-    }
-    assert_eq!((shown(0), shown(3)), (both, both));
-    let [only, none, _] = shown(1);
-    assert!(only >= both[0] && none == 0);
-    let [none, only, _] = shown(2);
-    assert!(only >= both[1] && none == 0);
-    assert_eq!(shown(4), [0, 0, both.iter().sum()]);
-    ok! { revmap_renderer_set_mask(lists.renderer, lists.objects[1], 0); }
-    assert_eq!(shown(0)[1], 0);
-}
-
-/// A second renderer of the same pass, whose objects have another colour.
-#[test]
-fn a_pass_tests_depths_as_it_says() {
-    let host = open();
-    let lists = Lists::new(&host);
-    let view = view_in_c(FIRST);
-    lists.draw(&view);
-    let before = lists.canvas.planes();
-    for (compare, covers) in [
-        (RevmapDepthCompare::Nearer, false),
-        (RevmapDepthCompare::NearerOrEqual, true),
-        (RevmapDepthCompare::Equal, true),
-        (RevmapDepthCompare::FartherOrEqual, true),
-        (RevmapDepthCompare::Never, false),
-    ] {
-        let mut pass = sized!(RevmapPass);
-        (pass.depth_compare, pass.depth_read_only) = (compare as u32, 1);
-        let second = renderer(lists.device, pass);
-        add(second, [0.0, 1.0, 0.0]);
-        let prepare = |cmd| {
-            lists.prepare(cmd, &view);
-            // SAFETY: as in `prepare`.
-            unsafe {
-                ok! { revmap_renderer_prepare(second, cmd, 0, &view); }
-            }
-        };
-        let record = |cmd, ()| {
-            // SAFETY: the slots were prepared, the pass has the renderers' formats.
-            unsafe {
-                ok! {
-                    revmap_renderer_record(lists.renderer, cmd, 0);
-                    revmap_renderer_record(second, cmd, 0);
-                }
-            }
-        };
-        lists.canvas.draw(&host, prepare, record);
-        let after = lists.canvas.planes();
-        let base = PLANES.iter().position(|p| p.1 == Plane::BaseColor).unwrap();
-        let green = |pixel: &[u8]| pixel == [0, 255, 0, 255];
-        let covered = after[base].chunks_exact(4).filter(|p| green(p)).count();
-        let [first, other, _] = lists.shown();
-        assert_eq!(covered, if covers { first + other } else { 0 });
-        assert!(after.last() == before.last(), "depths were written");
-        ok! { revmap_renderer_destroy(second); }
     }
 }
 
