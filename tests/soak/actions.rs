@@ -6,6 +6,7 @@ use crate::model::Thing;
 use crate::values::{copies, many, placement};
 use crate::views;
 use revmap::error::ErrorKind;
+use revmap::gpu::{HostImage, ObjectId, Renderer};
 use revmap::scene::{Object, Offset, Placement, Shadow};
 
 /// Names and weights.
@@ -42,6 +43,9 @@ const ACTIONS: [(&str, f64); 28] = [
 
 /// More objects than this are removed again.
 const MANY: usize = 16;
+
+/// Sets an image of an object.
+type Set = fn(&mut Renderer, ObjectId, Option<HostImage>) -> revmap::Result<()>;
 
 /// Software drivers take seconds for shadows of more copies than this.
 const SLOW: usize = 800;
@@ -94,7 +98,6 @@ impl Episode<'_> {
     fn come_and_go(&mut self, n: usize, name: &str, thing: usize) -> Result<(), Finding> {
         let count = self.players[n].model.things.len();
         self.players[n].changed = true;
-        self.players[n].prewarmed &= name == "remove all";
         let shadows = self.players[n].model.lighting.shadow != Shadow::Off;
         match name {
             "add" if count < MANY => {
@@ -183,10 +186,7 @@ impl Episode<'_> {
         let (dice, palette) = (&mut self.dice, &self.palette);
         let player = &mut self.players[n];
         player.changed = true;
-        let kept = ["set equal", "set_offset", "set_placement", "set_mask"];
-        player.prewarmed &= kept.contains(&name);
         let Thing { id, object, .. } = player.thing(thing).clone();
-        let textured = palette.textured;
         match name {
             "remove" => return self.remove(n, thing),
             "set look" | "set placement and copies" | "set equal" => {
@@ -224,20 +224,18 @@ impl Episode<'_> {
                 player.renderer.set_mask(id, mask)?;
                 player.thing(thing).mask = mask;
             }
-            "set_color_image" if textured => {
-                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[0]));
-                player.renderer.set_color_image(id, image.clone())?;
-                player.thing(thing).color = image;
-            }
-            "set_slope_image" if textured => {
-                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[1]));
-                player.renderer.set_slope_image(id, image.clone())?;
-                player.thing(thing).relief = image.map(|image| (image, false));
-            }
-            "set_height_image" if textured => {
-                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[2]));
-                player.renderer.set_height_image(id, image.clone())?;
-                player.thing(thing).relief = image.map(|image| (image, true));
+            "set_color_image" | "set_slope_image" | "set_height_image" if palette.textured => {
+                let (kind, set): (usize, Set) = match name {
+                    "set_color_image" => (0, Renderer::set_color_image),
+                    "set_slope_image" => (1, Renderer::set_slope_image),
+                    _ => (2, Renderer::set_height_image),
+                };
+                let image = dice.chance(0.6).then(|| dice.pick(&palette.images[kind]));
+                set(&mut player.renderer, id, image.clone())?;
+                match kind {
+                    0 => player.thing(thing).color = image,
+                    _ => player.thing(thing).relief = image.map(|image| (image, kind == 2)),
+                }
             }
             _ => {}
         }
@@ -300,7 +298,7 @@ impl Episode<'_> {
                     "prewarm" => compile()?,
                     _ => player.compiles = Some(std::thread::spawn(compile)),
                 }
-                player.prewarmed = true;
+                player.prewarmed = player.model.techniques();
             }
         }
         Ok(())

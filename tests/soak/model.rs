@@ -2,6 +2,7 @@
 
 use revmap::gpu::{HostImage, ObjectId, Renderer};
 use revmap::scene::{Lighting, Object};
+use std::collections::BTreeSet;
 
 /// An object, as the host has set it.
 #[derive(Clone)]
@@ -67,6 +68,20 @@ impl Model {
             }
         }
         Ok(ids)
+    }
+
+    /// What pipelines depend on, and parameters, places and numbers do not change.
+    pub fn techniques(&self) -> BTreeSet<String> {
+        let all = (self.lighting.shadow, self.lighting.environment.is_some());
+        let of = |thing: &Thing| {
+            let look = &thing.object.texturing;
+            let colors = thing.color.is_some() || look.color_map.is_some();
+            let heights = thing.relief.as_ref().map(|relief| relief.1);
+            let bumps = (heights, look.displacement_map.is_some(), look.bump_form);
+            let replicas = thing.object.repeat != [1; 3];
+            format!("{:?}", (all, replicas, colors, bumps, look.projection))
+        };
+        self.things.iter().map(of).collect()
     }
 
     /// The numbers of the objects, in order.

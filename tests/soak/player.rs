@@ -7,6 +7,7 @@ use crate::model::{Model, Thing};
 use crate::random::Random;
 use crate::views::Seen;
 use revmap::gpu::{Device, PreparedFrame, Renderer};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::thread::JoinHandle;
 
@@ -31,8 +32,8 @@ pub struct Player<'a> {
     pub compiles: Option<JoinHandle<revmap::Result<()>>>,
     /// True if something was set since the last frame that was submitted.
     pub changed: bool,
-    /// True if all pipelines were compiled, and no technique has changed since.
-    pub prewarmed: bool,
+    /// The techniques of which all pipelines are compiled.
+    pub prewarmed: BTreeSet<String>,
     /// True if the renderer is to be dropped and made again after this frame.
     pub spoilt: bool,
 }
@@ -59,7 +60,7 @@ impl<'a> Player<'a> {
             hides: false,
             compiles: None,
             changed: true,
-            prewarmed: false,
+            prewarmed: BTreeSet::new(),
             spoilt: false,
             kind,
         })
@@ -80,7 +81,8 @@ impl<'a> Player<'a> {
         }
         // `add_to` ended a frame.
         self.model.end_frame();
-        (self.changed, self.prewarmed, self.spoilt) = (true, false, false);
+        (self.changed, self.spoilt) = (true, false);
+        self.prewarmed.clear();
         Ok(())
     }
 
