@@ -1,6 +1,7 @@
 //! The host's passes: meshes and solids into the G-buffer, light, temporal anti-aliasing.
 
 use super::host::memory::{HostBuffer, HostImage, barrier};
+use super::host::set::UniformSet;
 use super::host::{
     Attachments, Fallible, Host, Mesh, MeshPipeline, MeshShaders, Options, commands, module,
 };
@@ -70,11 +71,9 @@ pub struct Passes<'a> {
     pictures: [HostImage<'a>; 2],
     read: HostBuffer<'a>,
     /// One for each order of the pictures.
-    sets: [vk::DescriptorSet; 2],
+    sets: [UniformSet<'a>; 2],
     sampler: vk::Sampler,
-    set_layout: vk::DescriptorSetLayout,
     layout: vk::PipelineLayout,
-    descriptors: vk::DescriptorPool,
     mesh: MeshPipeline<'a>,
     light: vk::Pipeline,
     resolve: vk::Pipeline,
@@ -94,101 +93,59 @@ impl<'a> Passes<'a> {
             fragment: include_bytes!("mesh.frag.spv"),
             sets: &[],
         };
+        let drawn = Attachments::new(host, options, &formats)?;
+        let (lit, pictures) = (stored()?, [stored()?, stored()?]);
+        let raw = &host.device;
+        // SAFETY: a plain creation, destroyed in Drop.
+        let sampler = unsafe { raw.create_sampler(&vk::SamplerCreateInfo::default(), None) }?;
+        let set = |turn: usize| {
+            use vk::DescriptorType as T;
+            let of = |kind, image: &HostImage, layout| {
+                let named = vk::DescriptorImageInfo::default().image_view(image.view);
+                (kind, named.sampler(sampler).image_layout(layout))
+            };
+            let read = |i| {
+                of(
+                    T::COMBINED_IMAGE_SAMPLER,
+                    i,
+                    Layout::SHADER_READ_ONLY_OPTIMAL,
+                )
+            };
+            let written = [&lit, &pictures[turn], &pictures[1 - turn]];
+            let written = written.map(|image| of(T::STORAGE_IMAGE, image, Layout::GENERAL));
+            let images: Vec<_> = drawn.images().map(read).chain(written).collect();
+            UniformSet::new(host, None, &images)
+        };
+        let sets = [set(0)?, set(1)?];
+        let (layouts, stages) = ([sets[0].layout], vk::ShaderStageFlags::COMPUTE);
+        let pushed = [vk::PushConstantRange::default()
+            .stage_flags(stages)
+            .size(size_of::<Pushed>() as u32)];
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&layouts)
+            .push_constant_ranges(&pushed);
         let mut passes = Self {
-            drawn: Attachments::new(host, options, &formats)?,
-            lit: stored()?,
-            pictures: [stored()?, stored()?],
+            drawn,
+            lit,
+            pictures,
             read: HostBuffer::new(host, bytes, vk::BufferUsageFlags::TRANSFER_DST)?,
             options,
-            sets: [vk::DescriptorSet::null(); 2],
-            sampler: vk::Sampler::null(),
-            set_layout: vk::DescriptorSetLayout::null(),
-            layout: vk::PipelineLayout::null(),
-            descriptors: vk::DescriptorPool::null(),
+            sets,
+            sampler,
+            // SAFETY: as above.
+            layout: unsafe { raw.create_pipeline_layout(&info, None) }?,
             mesh: MeshPipeline::new(host, &shaders, &options, vk::RenderPass::null(), &formats)?,
             light: null,
             resolve: null,
             frames: 0,
             host,
         };
-        // SAFETY: plain creations, destroyed in Drop.
+        // SAFETY: as above.
         unsafe {
-            passes.make_sets()?;
             passes.light = passes.compute(include_bytes!("light.comp.spv"))?;
             passes.resolve = passes.compute(include_bytes!("resolve.comp.spv"))?;
         }
         Ok(passes)
-    }
-
-    unsafe fn make_sets(&mut self) -> Fallible<()> {
-        use vk::DescriptorType as T;
-        let kind = |n: u32| match n {
-            0..=5 => T::COMBINED_IMAGE_SAMPLER,
-            _ => T::STORAGE_IMAGE,
-        };
-        let bindings: Vec<_> = (0..9)
-            .map(|n| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(n)
-                    .descriptor_type(kind(n))
-                    .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            })
-            .collect();
-        let raw = &self.host.device;
-        // SAFETY: plain creations; the images live as long as the sets.
-        unsafe {
-            self.sampler = raw.create_sampler(&vk::SamplerCreateInfo::default(), None)?;
-            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            self.set_layout = raw.create_descriptor_set_layout(&info, None)?;
-            let size = |ty, count| {
-                vk::DescriptorPoolSize::default()
-                    .ty(ty)
-                    .descriptor_count(count)
-            };
-            let sizes = [
-                size(T::COMBINED_IMAGE_SAMPLER, 12),
-                size(T::STORAGE_IMAGE, 6),
-            ];
-            let info = vk::DescriptorPoolCreateInfo::default()
-                .max_sets(2)
-                .pool_sizes(&sizes);
-            self.descriptors = raw.create_descriptor_pool(&info, None)?;
-            let layouts = [self.set_layout; 2];
-            let info = vk::DescriptorSetAllocateInfo::default()
-                .descriptor_pool(self.descriptors)
-                .set_layouts(&layouts);
-            let sets = raw.allocate_descriptor_sets(&info)?;
-            for (turn, &set) in sets.iter().enumerate() {
-                let storage = [&self.lit, &self.pictures[turn], &self.pictures[1 - turn]];
-                let images = self.drawn.images().chain(storage);
-                for (image, n) in images.zip(0u32..) {
-                    let layout = match n {
-                        0..=5 => Layout::SHADER_READ_ONLY_OPTIMAL,
-                        _ => Layout::GENERAL,
-                    };
-                    let named = [vk::DescriptorImageInfo::default()
-                        .image_view(image.view)
-                        .sampler(self.sampler)
-                        .image_layout(layout)];
-                    let write = vk::WriteDescriptorSet::default()
-                        .dst_set(set)
-                        .dst_binding(n)
-                        .descriptor_type(kind(n))
-                        .image_info(&named);
-                    raw.update_descriptor_sets(&[write], &[]);
-                }
-            }
-            self.sets = [sets[0], sets[1]];
-            let pushed = [vk::PushConstantRange::default()
-                .stage_flags(vk::ShaderStageFlags::COMPUTE)
-                .size(size_of::<Pushed>() as u32)];
-            let info = vk::PipelineLayoutCreateInfo::default()
-                .set_layouts(&layouts[..1])
-                .push_constant_ranges(&pushed);
-            self.layout = raw.create_pipeline_layout(&info, None)?;
-        }
-        Ok(())
     }
 
     unsafe fn compute(&self, bytes: &[u8]) -> Fallible<vk::Pipeline> {
@@ -261,7 +218,7 @@ impl<'a> Passes<'a> {
             barriers.push(now.barrier(Layout::UNDEFINED, Layout::GENERAL));
             barrier(self.host, cmd, &barriers);
             let point = vk::PipelineBindPoint::COMPUTE;
-            raw.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[self.sets[turn]], &[]);
+            self.sets[turn].bind(cmd, point, self.layout, 0);
             for (pipeline, pushed) in [(self.light, &lit), (self.resolve, &blended)] {
                 raw.cmd_bind_pipeline(cmd, point, pipeline);
                 self.push(cmd, pushed);
@@ -315,8 +272,6 @@ impl Drop for Passes<'_> {
                 raw.destroy_pipeline(pipeline, None);
             }
             raw.destroy_pipeline_layout(self.layout, None);
-            raw.destroy_descriptor_pool(self.descriptors, None);
-            raw.destroy_descriptor_set_layout(self.set_layout, None);
             raw.destroy_sampler(self.sampler, None);
         }
     }

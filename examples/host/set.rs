@@ -1,15 +1,16 @@
-//! A descriptor set with a uniform buffer and images, as a host has for its lights.
+//! Descriptor sets with a uniform buffer and images, as a host has for its lights and passes.
 
 use super::memory::HostBuffer;
 use super::{Fallible, Host};
 use ash::vk;
+use vk::DescriptorType as Kind;
 
-/// A set for fragments and compute: binding 0 is a uniform buffer, images with samplers follow.
+/// A set for fragments and compute: a uniform buffer if there is one, then images.
 pub struct UniformSet<'a> {
     pub layout: vk::DescriptorSetLayout,
     pub raw: vk::DescriptorSet,
     pool: vk::DescriptorPool,
-    _buffer: HostBuffer<'a>,
+    _buffer: Option<HostBuffer<'a>>,
     host: &'a Host,
 }
 
@@ -18,18 +19,29 @@ impl<'a> UniformSet<'a> {
         Self::with_images(host, values, &[])
     }
 
-    /// The images live as long as the set.
+    /// Images with samplers follow. They live as long as the set.
     pub fn with_images<V: bytemuck::Pod>(
         host: &'a Host,
         values: &[V],
         images: &[vk::DescriptorImageInfo],
     ) -> Fallible<Self> {
-        use vk::DescriptorType as T;
         let buffer = HostBuffer::of(host, values, vk::BufferUsageFlags::UNIFORM_BUFFER)?;
+        let images = images
+            .iter()
+            .map(|image| (Kind::COMBINED_IMAGE_SAMPLER, *image));
+        Self::new(host, Some(buffer), &images.collect::<Vec<_>>())
+    }
+
+    /// A set of images of any kind. They live as long as the set.
+    pub fn new(
+        host: &'a Host,
+        buffer: Option<HostBuffer<'a>>,
+        images: &[(Kind, vk::DescriptorImageInfo)],
+    ) -> Fallible<Self> {
         let device = &host.device;
         let stages = vk::ShaderStageFlags::FRAGMENT | vk::ShaderStageFlags::COMPUTE;
-        let kinds = std::iter::once(T::UNIFORM_BUFFER)
-            .chain(images.iter().map(|_| T::COMBINED_IMAGE_SAMPLER));
+        let first = buffer.iter().map(|_| Kind::UNIFORM_BUFFER);
+        let kinds = first.chain(images.iter().map(|image| image.0));
         let binding = |(n, kind)| {
             vk::DescriptorSetLayoutBinding::default()
                 .binding(n)
@@ -57,20 +69,25 @@ impl<'a> UniformSet<'a> {
                 .descriptor_pool(pool)
                 .set_layouts(&layouts);
             let raw = device.allocate_descriptor_sets(&info)?[0];
-            let whole = [vk::DescriptorBufferInfo::default()
-                .buffer(buffer.raw)
-                .range(vk::WHOLE_SIZE)];
             let write = |n, kind| {
                 vk::WriteDescriptorSet::default()
                     .dst_set(raw)
                     .dst_binding(n)
                     .descriptor_type(kind)
             };
-            let mut writes = vec![write(0, T::UNIFORM_BUFFER).buffer_info(&whole)];
-            writes.extend((1..).zip(images).map(|(n, image)| {
-                write(n, T::COMBINED_IMAGE_SAMPLER).image_info(std::slice::from_ref(image))
-            }));
-            device.update_descriptor_sets(&writes, &[]);
+            let whole = buffer.iter().map(|buffer| {
+                vk::DescriptorBufferInfo::default()
+                    .buffer(buffer.raw)
+                    .range(vk::WHOLE_SIZE)
+            });
+            let whole: Vec<_> = whole.collect();
+            let values = whole.iter().map(|whole| {
+                write(0, Kind::UNIFORM_BUFFER).buffer_info(std::slice::from_ref(whole))
+            });
+            let images = (whole.len() as u32..).zip(images);
+            let images = images
+                .map(|(n, (kind, image))| write(n, *kind).image_info(std::slice::from_ref(image)));
+            device.update_descriptor_sets(&values.chain(images).collect::<Vec<_>>(), &[]);
             Ok(Self {
                 layout,
                 raw,
