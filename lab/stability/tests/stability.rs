@@ -1,7 +1,6 @@
 //! The catalogue of cases: what the default passes, what is known, and that the judge can fail.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
@@ -179,26 +178,7 @@ fn a_million_rays_at_edges_miss_none() {
     }
 }
 
-/// A seed gives one scene; its text is one that the program reads.
-#[test]
-fn random_scenes_are_scenes() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut read = 0;
-    for seed in 0..60 {
-        let draft = random::Draft::new(seed);
-        assert_eq!(draft, random::Draft::new(seed));
-        if draft.text().contains("instances") {
-            continue;
-        }
-        let scene = Step::new(draft.text()).read(folder.path());
-        let Ok(scene) = scene else { continue };
-        assert!(scene.camera.eye.is_finite() && scene.camera.eye != DVec3::ZERO);
-        read += 1;
-    }
-    assert!(read > 30, "{read}");
-}
-
-/// The first seeds, then those of ten thousand that once failed: loops that touch (87, 103411,
+/// The first seeds, some with close views of short edges, then those of ten thousand that once failed: loops that touch (87, 103411,
 /// 103587, 104603, 105839, 106341, 108163), all but level faces (101001, 101182, 102085, 102185,
 /// 105034, 106944, 107060, 108513), rims and ledges (101862, 108119), roundings of a distance of
 /// 50,000 units (991800), and what the judge took for a fault (100107, 104954, 107022, 990673).
@@ -209,7 +189,11 @@ fn random_scenes_are_as_the_reference_has_them() {
         104_954, 105_034, 105_839, 106_341, 106_944, 107_022, 107_060, 108_119, 108_163, 108_513,
         990_673, 991_800,
     ];
-    scenes_pass([(1, 40)].into_iter().chain(failed.map(|seed| (seed, 1))));
+    scenes_pass(
+        [(1, 40), (300_000, 60)]
+            .into_iter()
+            .chain(failed.map(|seed| (seed, 1))),
+    );
 }
 
 /// Fails if one of these random scenes does: the first seed of each range, and how many there are.
