@@ -21,19 +21,3 @@ pub use shapes::offset;
 pub fn scaled(position: [f64; 3], size: f64) -> revmap::scene::Placement {
     placement(position, [0.0; 3], [size; 3])
 }
-
-/// Asserts that the bytes of an example's shading are what its GLSL gives.
-#[cfg(feature = "shaderc")] // compiles GLSL at run time
-pub fn assert_kept_shading(example: &str, lights: &str, kept: &[u8]) {
-    let path = |name: &str| format!("examples/{example}/{name}");
-    let [shade, light] =
-        ["shade.glsl", lights].map(|name| std::fs::read_to_string(path(name)).unwrap());
-    let files = [(&*path("shade.glsl"), &*shade), (lights, &*light)];
-    let stage = revmap::settings::DrawStage::Fragment;
-    let made = revmap::shading::Shading::compile(stage, &files).unwrap();
-    assert!(
-        made.to_bytes().unwrap() == kept,
-        "shaders changed; renew shade.shading by the command that {} names",
-        path("main.rs")
-    );
-}

@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 use revmap::frame::Frame;
+use revmap::maps::{ColorMap, DisplacementMap, SlopeFilter};
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Light, Object, Placement, Scene};
 use revmap_compare::{CompareOptions, Comparison, compare};
@@ -56,4 +57,21 @@ pub fn placement(position: [f64; 3], euler: [f64; 3], scale: [f64; 3]) -> Placem
         rotation: DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], euler[2]),
         scale: scale.into(),
     }
+}
+
+/// A map of colours by column and row.
+#[allow(dead_code)] // each crate of tests takes what it needs
+pub fn color_map(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Arc<ColorMap> {
+    let texels = (0..width * height).map(|n| texel(n % width, n / width));
+    Arc::new(ColorMap::from_texels(width, height, texels.collect()).unwrap())
+}
+
+/// The slopes of a square of heights, by column and row.
+#[allow(dead_code)] // each crate of tests takes what it needs
+pub fn slope_map(side: u32, height: impl Fn(u32, u32) -> f32) -> Arc<DisplacementMap> {
+    let heights: Vec<f32> = (0..side * side)
+        .map(|n| height(n % side, n / side))
+        .collect();
+    let map = DisplacementMap::from_heights(side, side, &heights, SlopeFilter::Scharr);
+    Arc::new(map.unwrap())
 }

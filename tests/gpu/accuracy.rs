@@ -54,22 +54,3 @@ fn circle_tracing_on_an_exact_map_is_accurate() {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
-
-/// A colour-only picture equals that with all planes, up to rounding in the last of 8 bits.
-#[test]
-fn colour_alone_is_the_same_picture() {
-    let scene = scene_of(shapes::vase(), eye(25.0, 1.8));
-    for stage in STAGES {
-        let settings = Settings { stage, ..precise() };
-        let all = draw(&scene, &settings);
-        let planes = Planes::Color;
-        let color = draw(&scene, &Settings { planes, ..settings });
-        for (a, b) in all.color.iter().zip(&color.color) {
-            for (a, b) in a.iter().zip(b) {
-                let srgb = |v: f32| revmap::frame::srgb_from_linear(f64::from(v));
-                let (a, b) = (srgb(a.clamp(0.0, 1.0)), srgb(*b));
-                assert!((a - b).abs() < 1.01 / 255.0, "{stage:?}: {a} and {b}");
-            }
-        }
-    }
-}

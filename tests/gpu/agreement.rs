@@ -3,7 +3,7 @@
 
 use crate::common::prelude::*;
 
-/// Ten scenes with different cameras, transforms and maps; several objects overlap, and one camera
+/// Scenes with different cameras, transforms and maps; several objects overlap, and one camera
 /// is within an object.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let mut all = vec![
@@ -36,6 +36,12 @@ fn scenes() -> Vec<(&'static str, Scene)> {
             scene_of(shapes::sphere(), DVec3::new(0.1, 0.05, 0.4)),
         ),
     ];
+    // Texels as large as the solid's parts, and none of a solid that grows into its box.
+    let coarse = scene_of(shapes::glass(), eye(25.0, 2.4)).with(|s| s.objects[0].map_rows = 24);
+    let points = [[0.0, -0.5], [0.4, -0.5], [0.4, -0.05], [0.0, -0.05]];
+    let below = scene_of(Profile::polygon(&points, 0.5).unwrap(), eye(25.0, 2.2));
+    let below = below.with(|s| s.objects[0].offset.extend = 0.15);
+    all.extend([("coarse", coarse), ("from below its box", below)]);
     let mut crowd = circle_of_shapes(shapes::all());
     crowd.background = [0.1, 0.2, 0.3, 1.0];
     for (n, object) in crowd.objects.iter_mut().enumerate() {
@@ -50,41 +56,43 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     all
 }
 
+/// Compares both stages in every channel. `counts`: look-ups, too. Those of copies differ: depths of
+/// other objects end a search in compute, and the depth test comes after it in the fragment stage.
+fn assert_agree(name: &str, scene: &Scene, settings: Settings, counts: bool) -> Frame {
+    let settings = from_boxes(settings);
+    let drawn = |settings| {
+        draw(scene, settings).with(|f| f.steps.iter_mut().for_each(|s| *s *= f32::from(counts)))
+    };
+    let (fragment, compute) = (drawn(&settings), drawn(&in_compute(settings)));
+    assert_sound(&fragment, name);
+    if let Some(difference) = fragment.first_difference(&compute) {
+        panic!("{name}, {:?}: {difference}", settings.solver);
+    }
+    fragment
+}
+
+const FORMATS: [MapFormat; 3] = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
+
 #[test]
 fn fragment_and_compute_agree_bit_for_bit() {
-    let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
-    let all: Vec<_> = scenes().into_iter().enumerate().collect();
-    // Each scene is drawn by the patches and by a second search, and every search draws at least
-    // one scene.
-    let pairs = all.iter().flat_map(|(n, scene)| {
-        // Cone maps hold only some of these solids, and a hull is drawn by two different methods:
-        // both have their own tests.
-        let others: Vec<_> = revmap_searches::ALL
-            .into_iter()
-            .filter(|s| !s.reads_own_table() && *s != Solver::Exact)
-            .collect();
-        let second = others[n % others.len()];
-        [(*n, scene, Solver::Quadric), (*n, scene, second)]
-    });
-    for (n, (name, scene), solver) in pairs {
-        let settings = from_boxes(Settings {
-            map_format: formats[n % 3],
-            solver,
-            max_steps: Some(48),
-            ..sized(400, 301)
-        });
-        let mut fragment = draw(scene, &settings);
-        let mut compute = draw(scene, &in_compute(settings));
-        let hits = hits(&fragment);
-        assert!(hits > 200, "{name}: only {hits} pixels are hit");
-        if *name == "crowd" {
-            // Depths of other objects end a search of copies in compute; the depth test comes after
-            // it in the fragment stage.
-            fragment.steps.fill(0.0);
-            compute.steps.fill(0.0);
-        }
-        if let Some(difference) = fragment.first_difference(&compute) {
-            panic!("{name}, {solver:?}: {difference}");
+    // Cone maps hold only some of these solids, and a hull is drawn by two different methods: both
+    // have their own tests.
+    let others: Vec<_> = revmap_searches::ALL
+        .into_iter()
+        .filter(|s| !s.reads_own_table() && *s != Solver::Exact)
+        .collect();
+    // Each scene is drawn by the patches, by the library's search on maps and by a third search, and
+    // every search draws at least one scene.
+    for (n, (name, scene)) in scenes().into_iter().enumerate() {
+        for solver in [Solver::Quadric, Solver::Live, others[n % others.len()]] {
+            let settings = Settings {
+                map_format: FORMATS[n % 3],
+                solver,
+                max_steps: Some(48),
+                ..sized(400, 301)
+            };
+            let hits = hits(&assert_agree(name, &scene, settings, name != "crowd"));
+            assert!(hits > 200, "{name}: only {hits} pixels are hit");
         }
     }
 }
@@ -97,7 +105,7 @@ fn shadowed_copies_of_two_looks_agree() {
     scene
         .objects
         .push(Object::new("jewel", Arc::new(shapes::jewel())));
-    scene.objects[0].texturing.color_map = Some(maps().earth);
+    scene.objects[0].texturing.color_map = Some(colors());
     for (n, object) in (0..).zip(&mut scene.objects) {
         let copy = |k: i32| {
             let at = [0.3 * f64::from(k - n), 0.25 * f64::from(n + k % 2), 0.0];
@@ -105,15 +113,8 @@ fn shadowed_copies_of_two_looks_agree() {
         };
         object.instances = (-1..2).map(copy).collect();
     }
-    let settings = from_boxes(sized(320, 240).with(|s| s.solver = Solver::Exact));
-    let mut fragment = draw(&scene, &settings);
-    let mut compute = draw(&scene, &in_compute(settings));
-    assert!(hits(&fragment) > 10_000);
-    fragment.steps.fill(0.0);
-    compute.steps.fill(0.0);
-    if let Some(difference) = fragment.first_difference(&compute) {
-        panic!("{difference}");
-    }
+    let frame = assert_agree("copies", &scene, sized(320, 240), false);
+    assert!(hits(&frame) > 10_000);
 }
 
 /// The comparison itself detects one bit.
@@ -130,25 +131,15 @@ fn one_changed_bit_is_noticed() {
     assert!(difference.starts_with("N.Y at pixel"), "{difference}");
 }
 
-struct Maps {
-    earth: Arc<ColorMap>,
-    bricks: Arc<DisplacementMap>,
+fn colors() -> Arc<ColorMap> {
+    color_map(32, 16, |x, y| [8 * x as u8, 15 * y as u8, 120, 255])
 }
 
-fn maps() -> Maps {
-    let asset = |name| format!("{}/assets/{name}", env!("CARGO_MANIFEST_DIR"));
-    let earth = revmap_files::color_map(asset("colors/natural-earth.png"));
-    let bricks = revmap_files::displacement_map(asset("heights/brick.png"), SlopeFilter::default());
-    Maps {
-        earth: Arc::new(earth.unwrap()),
-        bricks: Arc::new(bricks.unwrap()),
-    }
-}
-
-fn covered(maps: &Maps, projection: Projection, bump_form: BumpForm) -> Texturing {
+fn covered(projection: Projection, bump_form: BumpForm) -> Texturing {
+    let height = |x: u32, y: u32| ((x % 4 + y % 8) * 29 % 64) as f32 / 64.0;
     Texturing {
-        color_map: Some(maps.earth.clone()),
-        displacement_map: Some(maps.bricks.clone()),
+        color_map: Some(colors()),
+        displacement_map: Some(slope_map(32, height)),
         bump: 0.02,
         bump_form,
         projection,
@@ -161,13 +152,12 @@ const CHAMFERED: Offset = offset(-0.02, 0.7, 0.15);
 
 /// Scenes with textures, bumps, offsets, replicas and shadows.
 fn textured_scenes() -> Vec<(String, Scene)> {
-    let maps = maps();
     let mut all = Vec::new();
     let forms = [BumpForm::SurfaceGradient, BumpForm::Papers];
     for (n, (_, projection)) in Projection::NAMES.into_iter().enumerate() {
         let mut scene = scene_of(shapes::vase(), eye(20.0 + 15.0 * n as f64, 1.7));
         let object = &mut scene.objects[0];
-        object.texturing = covered(&maps, projection, forms[n % 2]);
+        object.texturing = covered(projection, forms[n % 2]);
         object.offset = CHAMFERED;
         object.placement = placement([0.05, 0.0, 0.1], [0.3, -0.2, 0.4], [1.1, 0.8, 0.9]);
         all.push((format!("{projection:?}"), scene));
@@ -179,7 +169,7 @@ fn textured_scenes() -> Vec<(String, Scene)> {
     ] {
         let mut scene = scene_of(shapes::glass(), eye(30.0, 1.9));
         scene.objects[0].offset = offset;
-        scene.objects[0].texturing = covered(&maps, Projection::Arc, BumpForm::SurfaceGradient);
+        scene.objects[0].texturing = covered(Projection::Arc, BumpForm::SurfaceGradient);
         all.push((name.into(), scene));
     }
     for mirror in [false, true] {
@@ -188,14 +178,13 @@ fn textured_scenes() -> Vec<(String, Scene)> {
         object.repeat = [3, 2, 2];
         object.mirror = [mirror; 3];
         object.axis = [0.4, 0.55];
-        object.texturing = covered(&maps, Projection::Cylindrical, BumpForm::SurfaceGradient);
+        object.texturing = covered(Projection::Cylindrical, BumpForm::SurfaceGradient);
         all.push((format!("replicas, mirrored: {mirror}"), scene));
     }
     for shadow in [Shadow::Hard, Shadow::Soft] {
         let mut scene = scene_of(shapes::torus(), DVec3::new(1.9, 1.1, 1.6));
         scene.shadow = shadow;
-        scene.objects[0].texturing =
-            covered(&maps, Projection::Spherical, BumpForm::SurfaceGradient);
+        scene.objects[0].texturing = covered(Projection::Spherical, BumpForm::SurfaceGradient);
         scene.objects[0].texturing.bump = 0.005;
         let mut table = Object::new("table", Arc::new(shapes::cone()));
         table.placement = placement([0.0, 0.0, -0.3], [0.0; 3], [2.5, 2.5, 0.6]);
@@ -211,28 +200,21 @@ fn textured_scenes() -> Vec<(String, Scene)> {
 
 #[test]
 fn textures_agree_bit_for_bit() {
-    let formats = [MapFormat::R16, MapFormat::R32, MapFormat::Rgba8];
     for (n, (name, scene)) in textured_scenes().into_iter().enumerate() {
         let inset = scene.objects[0].offset.extend < 0.0; // the papers' format cannot hold this
-        let settings = from_boxes(Settings {
+        let settings = Settings {
             map_rows: Some(256),
             solver: [Solver::Live, CIRCLE, Solver::Quadric][n % 3],
             map_format: match inset {
                 true => MapFormat::R16,
-                false => formats[(n + n / 3) % 3],
+                false => FORMATS[(n + n / 3) % 3],
             },
             ..sized(200, 151)
-        });
-        let fragment = draw(&scene, &settings);
-        assert_sound(&fragment, &name);
-        let hits = hits(&fragment);
-        assert!(hits > 1500, "{name}: only {hits} pixels are hit");
-        let normals = fragment.normal.iter().zip(&fragment.shading_normal);
-        let tilted = normals.filter(|(a, b)| a != b).count();
+        };
+        let frame = assert_agree(&name, &scene, settings, true);
+        let normals = frame.normal.iter().zip(&frame.shading_normal);
+        let (hits, tilted) = (hits(&frame), normals.filter(|(a, b)| a != b).count());
         println!("{name}: {hits} hits, {tilted} with bumps");
-        assert!(tilted > 300, "{name}: no bumps are seen");
-        if let Some(difference) = fragment.first_difference(&draw(&scene, &in_compute(settings))) {
-            panic!("{name}: {difference}");
-        }
+        assert!(hits > 1500 && tilted > 300, "{name}: {hits}, {tilted}");
     }
 }

@@ -16,18 +16,6 @@ fn height([u, v]: [f64; 2]) -> f64 {
     0.5 + 0.2 * (TAU * 2.0 * u + 0.4).sin() + 0.15 * (TAU * v).cos() * (TAU * u).cos()
 }
 
-fn slopes(side: u32) -> Arc<DisplacementMap> {
-    let heights: Vec<f32> = (0..side * side)
-        .map(|k| {
-            let u = (f64::from(k % side) + 0.5) / f64::from(side);
-            let v = 1.0 - (f64::from(k / side) + 0.5) / f64::from(side);
-            height([u, v]) as f32
-        })
-        .collect();
-    let map = DisplacementMap::from_heights(side, side, &heights, Default::default());
-    Arc::new(map.unwrap())
-}
-
 fn coordinates(projection: Projection, arc: &ArcLength, p: DVec3) -> [f64; 2] {
     let r = p.x.hypot(p.y);
     let xi = (PI + p.y.atan2(p.x)) / TAU;
@@ -90,7 +78,8 @@ fn remainder(scene: &Scene, frame: &Frame, arc: &ArcLength) -> (f64, f64, usize)
 /// Half the depth gives a quarter of the remainder.
 #[test]
 fn the_shading_normal_is_the_displaced_surfaces_to_first_order() {
-    let slopes = slopes(128);
+    let part = |n: u32| (f64::from(n) + 0.5) / 128.0;
+    let slopes = slope_map(128, |x, y| height([part(x), 1.0 - part(y)]) as f32);
     let plain = placement([0.0; 3], [0.0; 3], [1.0; 3]);
     let turned = placement([0.1, -0.05, 0.1], [0.2, -0.3, 0.5], [1.3, 0.8, 0.9]);
     for (_, projection) in Projection::NAMES {

@@ -51,33 +51,6 @@ fn searches_agree_with_the_reference() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// Texture coordinates are those of the profile's box.
-#[test]
-fn textures_stay_where_they_are() {
-    use revmap::maps::Projection;
-    for (_, projection) in Projection::NAMES {
-        let mut scene = with(shapes::vase(), [0.1, 0.05, 0.5]);
-        scene.objects[0].texturing.projection = projection;
-        let truth = reference(&scene, &settings(DrawStage::Fragment, Solver::Exact));
-        let frame = draw(&scene, &settings(DrawStage::Fragment, Solver::Exact));
-        let mut off: Vec<f64> = (truth.uv.iter().zip(&frame.uv))
-            .zip(truth.distance.iter().zip(&frame.distance))
-            .filter(|(_, (a, b))| a.is_finite() && b.is_finite())
-            .map(|((a, b), _)| {
-                let turn = |d: f32| f64::from((d - d.round()).abs());
-                turn(a[0] - b[0]).max(turn(a[1] - b[1]))
-            })
-            .collect();
-        off.sort_by(f64::total_cmp);
-        let p99 = off[off.len() * 99 / 100];
-        println!("{projection:?}: {p99:e} of {}", off.len());
-        // Lengths along the outline come from a table of texels.
-        let arc = projection == Projection::Arc;
-        let most = if arc { 5e-3 } else { 1e-4 };
-        assert!(p99 < most, "{projection:?}: {p99}");
-    }
-}
-
 /// A growing box grows by at least the offset, in steps, and not
 /// at all if the offset solid stays within.
 #[test]

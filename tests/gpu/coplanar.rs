@@ -137,29 +137,21 @@ fn ways(settings: Settings) -> [Settings; 3] {
     [cells, from_boxes(settings), settings]
 }
 
-/// Asserts that the first copy is seen, in both stages. `least`: pixels that tell copies apart.
-fn check(name: &str, scene: &Scene, solver: Solver, least: usize, failures: &mut Vec<String>) {
-    for stage in STAGES {
-        for (way, settings) in ways(drawn_by(SIZE, stage, solver)).into_iter().enumerate() {
-            let [shared, wrong] = speckles(scene, |scene| draw(scene, &settings).into());
-            let what = format!("{name}, {stage:?}, {solver}, way {way}: {wrong} of {shared}");
-            println!("{what}");
-            if wrong > 0 || shared < least {
-                failures.push(what);
-            }
-        }
-    }
-}
-
 #[test]
 fn the_first_copy_is_seen_in_both_stages() {
     let at_eye = |eye: [f64; 3]| plates().with(|scene| scene.camera.eye = eye.into());
     let far_off = DVec3::new(1234.5, -3456.7, 98.7);
+    // Objects of other pipelines and textures: the third has those of the first.
+    let map = color_map(2, 2, |x, y| [90 * (x + y) as u8, 200, 40, 255]);
+    let textured = plates().with(|s| s.objects[1].texturing.color_map = Some(map));
+    let replicas = textured.clone().with(|s| s.objects[1].repeat = [2, 1, 1]);
     let scenes = [
         ("a plate before its inlay", inlay(0), 600),
         ("an inlay before its plate", inlay(1), 600),
         ("copies of one object", copies(), 4000),
         ("plates", plates(), 3000),
+        ("textured", textured, 3000),
+        ("textured replicas", replicas, 2300),
         (
             "replicas",
             plates().with(|s| s.objects[0].repeat = [2, 2, 1]),
@@ -204,50 +196,28 @@ fn the_first_copy_is_seen_in_both_stages() {
             20_000,
         ),
     ];
+    let exact = scenes.map(|(name, scene, least)| (name, Solver::Exact, scene, least));
+    // Searches that end at a distance from the surface are left out.
+    let others = [Solver::Live, Solver::Quadric, SECANT].into_iter();
+    let others = others.flat_map(|solver| {
+        let shadows = plates().with(|s| s.shadow = Shadow::Hard);
+        [inlay(1), tilted(copies()), plates(), shadows]
+            .map(|scene| ("another search", solver, scene, 500))
+    });
     let mut failures = Vec::new();
-    for (name, scene, least) in scenes {
-        check(name, &scene, Solver::Exact, least, &mut failures);
-    }
-    assert!(failures.is_empty(), "{failures:#?}");
-}
-
-/// The same by other searches; those that end at a distance from the surface are left out.
-#[test]
-fn the_first_copy_is_seen_by_other_searches() {
-    let mut failures = Vec::new();
-    for solver in [Solver::Live, Solver::Quadric, SECANT] {
-        for (name, scene) in [
-            ("inlay", inlay(1)),
-            ("copies", tilted(copies())),
-            ("plates", plates()),
-            ("shadows", plates().with(|s| s.shadow = Shadow::Hard)),
-        ] {
-            check(name, &scene, solver, 500, &mut failures);
+    for (name, solver, scene, least) in exact.into_iter().chain(others) {
+        for stage in STAGES {
+            for (way, settings) in ways(drawn_by(SIZE, stage, solver)).into_iter().enumerate() {
+                let [shared, wrong] = speckles(&scene, |scene| draw(scene, &settings).into());
+                let what = format!("{name}, {stage:?}, {solver}, way {way}: {wrong} of {shared}");
+                println!("{what}");
+                // Pixels that tell copies apart.
+                if wrong > 0 || shared < least {
+                    failures.push(what);
+                }
+            }
         }
     }
-    assert!(failures.is_empty(), "{failures:#?}");
-}
-
-/// Objects of other pipelines and textures: the third has those of the first.
-#[test]
-fn the_first_copy_is_seen_across_pipelines() {
-    let picture = image::RgbImage::from_fn(2, 2, |x, y| image::Rgb([90 * (x + y) as u8, 200, 40]));
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("colors.png");
-    picture.save(&path).unwrap();
-    let map = Arc::new(revmap_files::color_map(&path).unwrap());
-    let mut scene = plates();
-    scene.objects[1].texturing.color_map = Some(map);
-    let mut failures = Vec::new();
-    check("textured", &scene, Solver::Exact, 3000, &mut failures);
-    scene.objects[1].repeat = [2, 1, 1];
-    check(
-        "textured replicas",
-        &scene,
-        Solver::Exact,
-        2300,
-        &mut failures,
-    );
     assert!(failures.is_empty(), "{failures:#?}");
 }
 

@@ -103,46 +103,6 @@ pub fn parallel() -> DMat4 {
     host::lens(WIDE, true, false, [0.5, 6.0])
 }
 
-/// Depth-only passes over solids cut by their box give the same depth by cells as by boxes.
-#[test]
-fn depth_alone_of_what_the_box_cuts() {
-    let (host, device) = opened();
-    for (name, profile) in shapes::all() {
-        for (extend, from) in [
-            (0.12, DVec3::new(2.0, 1.0, 2.5)),
-            (0.3, DVec3::new(-1.5, 2.5, 0.6)),
-            (0.3, DVec3::new(2.8, 0.1, 0.5)),
-        ] {
-            let mut scene = scene_of(profile.clone(), from);
-            let object = &mut scene.objects[0];
-            object.clip = Clip::Box;
-            object.offset.extend = extend;
-            object.axis = [0.45, 0.5];
-            let [view, projection] =
-                host::view_and_projection(from, DVec3::new(0.0, 0.0, 0.5), &options());
-            for (is_parallel, projection) in [(false, projection), (true, parallel())] {
-                let light = host::view([view, projection], &options()).unwrap();
-                let pass = depth_only(is_parallel);
-                let of =
-                    |least| depths(&host, &device, &scene, &light, &by_proxies_of(least), &pass);
-                let ((hulls, paths), (boxes, _)) = (of(0), of(u32::MAX));
-                assert_eq!(paths, [DrawPath::Cells], "{name}");
-                let hits = boxes.iter().filter(|d| **d < 1.0).count();
-                let pairs = || hulls.iter().zip(&boxes);
-                let alone = pairs().filter(|(a, b)| (**a < 1.0) != (**b < 1.0)).count();
-                let apart = pairs()
-                    .filter(|(a, b)| **a < 1.0 && **b < 1.0 && (**a - **b).abs() > 1e-4)
-                    .count();
-                println!("{name} {extend} {is_parallel}: {alone} + {apart} of {hits}");
-                assert!(
-                    hits > 1000 && alone + apart <= 2,
-                    "{name} with {extend} from {from}, parallel {is_parallel}: {alone} + {apart} of {hits}"
-                );
-            }
-        }
-    }
-}
-
 /// Compute into a host's buffer gives the off-screen picture in cleared pixels. Nearer values
 /// already in the buffer are kept.
 #[test]

@@ -1,9 +1,9 @@
-//! The environment: in both stages the colours are the reference's. Without an environment, and by a
-//! function of the host, nothing of it is seen. The random host (`tests/soak`) changes it.
+//! The environment: in both stages the colours are the reference's. The random host (`tests/soak`)
+//! changes it, and a function of the host shades without it (`host_shading.rs`).
 
 use crate::common::prelude::*;
 
-const SKY: Environment = Environment {
+pub const SKY: Environment = Environment {
     up: [0.5, 0.7, 1.1],
     down: [0.3, 0.2, 0.1],
 };
@@ -49,11 +49,8 @@ fn cases() -> Vec<(&'static str, Scene)> {
         (
             "textured and bumped",
             with_sky(above(), |o| {
-                let map = ColorMap::from_texels(2, 2, vec![[200, 90, 40, 255]; 4]).unwrap();
-                let heights: Vec<f32> = (0..64).map(|k| (k % 8) as f32 / 16.0).collect();
-                let slopes = DisplacementMap::from_heights(8, 8, &heights, SlopeFilter::Scharr);
-                o.texturing.color_map = Some(Arc::new(map));
-                o.texturing.displacement_map = Some(Arc::new(slopes.unwrap()));
+                o.texturing.color_map = Some(color_map(2, 2, |_, _| [200, 90, 40, 255]));
+                o.texturing.displacement_map = Some(slope_map(8, |x, _| x as f32 / 16.0));
                 o.texturing.bump = 0.02;
                 o.material = of(0.0, 1.0);
             }),
@@ -128,46 +125,4 @@ fn every_value_is_seen() {
         let [seen, right] = [&truth, &changed].map(|other| apart(other, &drawn).1);
         assert!(seen > 0.02 && right < 1e-3, "{name}: {seen} and {right}");
     }
-}
-
-/// The sky comes, changes and goes while a renderer draws.
-#[test]
-fn a_renderer_follows_the_sky() {
-    let bright = with_sky(scene_of(shapes::glass(), eye(20.0, 1.7)), |_| {});
-    let plain = bright.clone().with(|s| s.environment = None);
-    let dim = bright.clone().with(|s| {
-        let (up, down) = ([0.1; 3], [0.05; 3]);
-        s.environment = Some(Environment { up, down });
-    });
-    for stage in STAGES {
-        let settings = sized(160, 120).with(|s| s.stage = stage);
-        let mut renderer = Offscreen::new(device(), &plain, &settings).unwrap();
-        for scene in [&plain, &bright, &dim, &plain] {
-            let wanted = draw(scene, &settings);
-            assert_eq!(
-                updated(&mut renderer, scene).first_difference(&wanted),
-                None
-            );
-        }
-    }
-}
-
-#[cfg(feature = "shaderc")]
-#[test]
-fn a_function_of_the_host_shades_without_it() {
-    use crate::common::host::{UniformSet, opened};
-    use crate::host_shading::{COPY, lights, picture, scene, shading};
-    let (host, device) = opened();
-    let plain = scene();
-    let bright = plain.clone().with(|s| s.environment = Some(SKY));
-    let set = UniformSet::of(&host, &lights(&plain)).unwrap();
-    for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let shading = shading(stage, COPY);
-        let exact = SearchSettings::exact();
-        let drawn = |scene, by| picture(&host, &device, scene, &exact, stage, by).0;
-        let [theirs, with] = [&plain, &bright].map(|s| drawn(s, Some((&shading, &set))));
-        assert!(theirs == with, "{stage:?}");
-        assert!(drawn(&plain, None) != drawn(&bright, None), "{stage:?}");
-    }
-    drop(set);
 }

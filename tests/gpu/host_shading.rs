@@ -5,6 +5,7 @@
 use crate::common::host::{self, Drawn, Host, UniformSet, dynamic, opened};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
+use crate::environment::SKY;
 use revmap::shading::Shading;
 
 /// The library's own light, from the host's set.
@@ -51,13 +52,11 @@ pub fn lights(scene: &Scene) -> Vec<[f32; 4]> {
 /// Plain, textured and repeated solids, and copies.
 pub fn scene() -> Scene {
     let mut scene = three();
-    let texel = |n: u32| [(n * 37 % 256) as u8, (n * 91 % 256) as u8, 120, 255];
-    let map = ColorMap::from_texels(16, 8, (0..128).map(texel).collect()).unwrap();
-    let heights: Vec<f32> = (0..64).map(|n| (n * 29 % 64) as f32 / 64.0).collect();
-    let bumps = DisplacementMap::from_heights(8, 8, &heights, SlopeFilter::Scharr).unwrap();
+    let color = |n: u32| [(n * 37 % 256) as u8, (n * 91 % 256) as u8, 120, 255];
+    let height = |x, y| ((8 * y + x) * 29 % 64) as f32 / 64.0;
     let object = &mut scene.objects[0];
-    object.texturing.color_map = Some(Arc::new(map));
-    object.texturing.displacement_map = Some(Arc::new(bumps));
+    object.texturing.color_map = Some(color_map(16, 8, |x, y| color(16 * y + x)));
+    object.texturing.displacement_map = Some(slope_map(8, height));
     object.texturing.bump = 0.02;
     object.texturing.repeat = [3.0, 2.0];
     object.texturing.offset = [-0.25, 0.125];
@@ -167,6 +166,12 @@ fn a_copy_of_our_function_gives_our_picture() {
             paths.extend(ours.1.into_iter().map(|path| format!("{stage:?} {path:?}")));
         }
     }
+    // Without the library's environment, which changes the library's own picture.
+    let bright = alone.clone().with(|s| s.environment = Some(SKY));
+    let (stage, by) = (DrawStage::Compute, shading(DrawStage::Compute, COPY));
+    let of = |scene, by| picture(&host, &device, scene, &exact, stage, by).0;
+    assert!(of(&alone, Some((&by, &set))) == of(&bright, Some((&by, &set))));
+    assert!(of(&alone, None) != of(&bright, None));
     // The compute stage has no other path.
     assert_eq!(paths.len(), 3, "{paths:?}");
     // The check can fail: less light is another picture.

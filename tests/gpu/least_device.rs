@@ -147,6 +147,10 @@ fn the_least_device_draws_right_by_default() {
     let least = layer.poorer(&host, lacks).unwrap();
     for (name, solver, scene) in scenes() {
         let truth = reference(&scene, &sized(160, 120));
+        let settings = sized(160, 120);
+        let mut timed = Offscreen::new(&least, &scene, &settings).unwrap();
+        assert_eq!(timed.draw().unwrap().gpu_ms, None);
+        drop(timed);
         for stage in [DrawStage::Fragment, DrawStage::Compute] {
             let settings = drawn_by((160, 120), stage, solver);
             let found = picture(&least, &scene, &settings);

@@ -70,36 +70,3 @@ fn beyond_its_map_a_solid_gets_a_wider_one() {
     }
     device().check().unwrap();
 }
-
-/// Updates refuse invalid parameters, too, and those that a map cannot hold.
-#[test]
-fn a_renderer_refuses_what_a_file_would_not_say() {
-    let plain = scene_of(shapes::vase(), eye(25.0, 2.2));
-    let mut renderer = Offscreen::new(device(), &plain, &settings()).unwrap();
-    let mut refused = |key: &str, scene: &Scene| {
-        let error = renderer.update(scene).unwrap_err();
-        let found = (error.kind, error.key.as_deref());
-        assert_eq!(found, (ErrorKind::Content, Some(key)), "{error}");
-    };
-    refused("object.0.extend", &with(&plain, f64::NAN, 0.0, 1.0));
-    refused("object.0.bevel", &with(&plain, 0.0, -0.1, 1.0));
-    refused("object.0.bevel", &with(&plain, 0.0, f64::INFINITY, 1.0));
-    refused("object.0.chamfer", &with(&plain, 0.0, 0.1, 2.0));
-    let mut scene = plain.clone();
-    scene.objects[0].repeat = [1, 0, 1];
-    refused("object.0.repeat", &scene);
-    scene.objects[0].repeat = [10_000, 1, 1];
-    refused("object.0.repeat", &scene);
-    // The renderer continues to draw.
-    renderer.update(&with(&plain, 0.01, 0.1, 1.0)).unwrap();
-    renderer.draw().unwrap();
-
-    // The papers' format holds only distances outside the solid.
-    let papers = settings().with(|s| (s.map_format, s.solver) = (MapFormat::Rgba8, Solver::Live));
-    let error =
-        revmap_offscreen::draw(device(), &with(&plain, -0.01, 0.0, 1.0), &papers).unwrap_err();
-    assert_eq!(error.key.as_deref(), Some("object.0.extend"));
-    assert!(error.to_string().contains("rgba8"), "{error}");
-    drop(renderer);
-    device().check().unwrap();
-}

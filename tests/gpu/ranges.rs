@@ -2,24 +2,20 @@
 //! drawn, what does not is refused, and memory is used again.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
+use crate::calls::Layer;
 use crate::common::host::{Checked, Drawn, Picture, once, open, opened, view_of};
 use crate::common::prelude::*;
 use crate::embedding::{options, three};
 
 /// Bytes of the device's largest storage buffer.
 const STORAGE: u32 = 1 << 20;
-/// Makes it so.
-pub fn small_storage(mask: &mut Mask) {
-    mask.properties = Some(|p| p.limits.max_storage_buffer_range = STORAGE);
-}
-
 const MOST: usize = STORAGE as usize / INSTANCE_BYTES as usize;
 
 /// The layer, the host and the device of small buffers.
 fn small() -> (Layer, Checked, Device) {
     let (layer, host) = (Layer::take(), open());
-    let device = layer.poorer(&host, small_storage).unwrap();
+    let small = |p: &mut vk::PhysicalDeviceProperties| p.limits.max_storage_buffer_range = STORAGE;
+    let device = layer.poorer(&host, |m| m.properties = Some(small)).unwrap();
     (layer, host, device)
 }
 
@@ -55,10 +51,13 @@ fn a_renderer_recovers_from_too_many_copies() {
     let (_layer, host, device) = small();
     let mut drawn = renderer(&host, &device, &three());
     let (wanted, before) = draw(&mut drawn).unwrap();
+    // The message names the object.
     let refused = |result: revmap::Result<()>| {
         let error = result.unwrap_err();
         assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
-        assert!(error.to_string().contains(&MOST.to_string()), "{error}");
+        assert_eq!(error.key.as_deref(), Some("object.3.instances"), "{error}");
+        let named = [&MOST.to_string(), "ball"].map(|name| error.message.contains(name));
+        assert_eq!(named, [true; 2], "{error}");
     };
     refused(drawn.renderer.add(crowd(MOST - 2)).map(|_| ()));
     let id = drawn.renderer.add(crowd(9)).unwrap();

@@ -5,7 +5,6 @@
 use crate::calls::Layer;
 use crate::common::host::{self, borrow, once, open, open_with, opened};
 use crate::common::prelude::*;
-use crate::ranges::small_storage;
 use ash::vk::Handle as _;
 use revmap::error::ErrorKind::{Unsupported, Usage};
 
@@ -315,29 +314,6 @@ fn setters_name_the_object() {
         assert_eq!(error.kind, Usage);
         let number = first.to_bits().to_string();
         assert!(error.message.contains(&number), "{error}");
-    }
-}
-
-/// More copies than the device takes are those of an object.
-#[test]
-fn too_many_copies_name_the_object() {
-    let (layer, host) = (Layer::take(), open());
-    let poorer = layer.poorer(&host, small_storage).unwrap();
-    let mut renderer = renderer(&poorer);
-    let mut object = Object::new("vase", shapes::vase().into());
-    let id = renderer.add(object.clone()).unwrap();
-    let many = vec![Placement::default(); 100_000];
-    object.instances = many.clone().into();
-    for (refused, number) in [
-        (renderer.set_instances(id, many), 0),
-        (renderer.set(id, object.clone()), 0),
-        (renderer.add(object).map(|_| ()), 1),
-    ] {
-        let error = refused.unwrap_err();
-        let key = &*format!("object.{number}.instances");
-        assert_eq!(error.kind, ErrorKind::TooLarge, "{error}");
-        assert_eq!(error.key.as_deref(), Some(key), "{error}");
-        assert!(error.message.contains("vase"), "{error}");
     }
 }
 

@@ -6,7 +6,6 @@ use crate::calls::{Layer, above, planted_device};
 use crate::common::host::{borrow_through, open_with};
 use crate::common::passing::count;
 use crate::common::prelude::*;
-use crate::common::ways::apart;
 use crate::spirv::{Arithmetic, edited};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
@@ -129,26 +128,6 @@ fn drivers_may_contract_nothing() {
             assert_eq!(of(Arithmetic::Permitted), 0, "{stage:?}, {solver:?}");
             assert!(of(Arithmetic::Fused) > 20);
         }
-    }
-}
-
-/// Contraction does change bits, or the test above compares nothing.
-#[test]
-fn contraction_changes_bits_but_not_the_surface() {
-    let _alone = Layer::take();
-    let [(_, scene), _] = scenes();
-    for stage in STAGES {
-        let settings = settings(stage, Solver::Exact);
-        let [separate, fused] =
-            [None, Some(Arithmetic::Fused)].map(|how| drawn(&scene, &settings, how).frame);
-        let pairs = || separate.distance.iter().zip(&fused.distance);
-        let bits = pairs().filter(|(a, b)| a != b).count();
-        assert!(bits > 100, "{stage:?}: {bits} pixels differ");
-        let (_, edges, far) = apart(&separate, &fused);
-        assert!(
-            edges <= 2 && far == 0,
-            "{stage:?}: {edges} at edges, {far} far"
-        );
     }
 }
 

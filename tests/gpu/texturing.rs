@@ -101,29 +101,13 @@ fn coordinates_are_their_formulas() {
 /// A map whose value is a wave around and a wave along, continuous where it repeats.
 pub fn waves(width: u32, height: u32, around: f64) -> Arc<ColorMap> {
     let code = |x: f64| (255.0 * x).round() as u8;
-    let texels = (0..width * height)
-        .map(|k| {
-            let u = (f64::from(k % width) + 0.5) / f64::from(width);
-            let v = 1.0 - (f64::from(k / width) + 0.5) / f64::from(height);
-            [
-                code(0.5 + 0.4 * (TAU * around * u).cos()),
-                code(0.5 + 0.4 * (TAU * around * u).sin()),
-                code(0.5 + 0.4 * (PI * v).cos()),
-                255,
-            ]
-        })
-        .collect();
-    Arc::new(ColorMap::from_texels(width, height, texels).unwrap())
-}
-
-/// The slopes of a square of heights.
-fn slopes(side: u32, height: impl Fn(f64, f64) -> f64) -> Arc<DisplacementMap> {
-    let at = |k: u32| f64::from(k) / f64::from(side);
-    let heights: Vec<f32> = (0..side * side)
-        .map(|k| height(at(k % side), at(k / side)) as f32)
-        .collect();
-    let map = DisplacementMap::from_heights(side, side, &heights, Default::default());
-    Arc::new(map.unwrap())
+    color_map(width, height, |x, y| {
+        let u = (f64::from(x) + 0.5) / f64::from(width);
+        let v = 1.0 - (f64::from(y) + 0.5) / f64::from(height);
+        let [x, y] = [(TAU * around * u).cos(), (TAU * around * u).sin()];
+        let [r, g, b] = [x, y, (PI * v).cos()].map(|wave| code(0.5 + 0.4 * wave));
+        [r, g, b, 255]
+    })
 }
 
 fn srgb(linear: f32) -> f64 {
@@ -175,7 +159,8 @@ fn bumps_within_a_cavity_are_the_references() {
     let outside = [[0.0, 0.05], [0.45, 0.05], [0.45, 0.95], [0.0, 0.95]];
     let inside = [[0.0, 0.85], [0.35, 0.85], [0.35, 0.15], [0.0, 0.15]];
     let can = [outside, inside].concat();
-    let slopes = slopes(32, |_, y| 0.5 + 0.3 * (TAU * 3.0 * y).sin());
+    let wave = |y: u32| (TAU * 3.0 * f64::from(y) / 32.0).sin();
+    let slopes = slope_map(32, |_, y| (0.5 + 0.3 * wave(y)) as f32);
     let solid = Projection::NAMES.map(|named| named.1).into_iter();
     for projection in solid.filter(|&p| p != Projection::Planar) {
         let profile = Profile::polygon(&can, 0.5).unwrap();
@@ -206,8 +191,9 @@ fn bumps_within_a_cavity_are_the_references() {
 /// in every projection.
 #[test]
 fn colours_and_bumps_are_the_references() {
-    let slopes = slopes(64, |x, y| {
-        0.5 + 0.2 * (TAU * 2.0 * x).sin() + 0.2 * (TAU * 3.0 * y).cos()
+    let slopes = slope_map(64, |x, y| {
+        let [x, y] = [x, y].map(|n| TAU * f64::from(n) / 64.0);
+        (0.5 + 0.2 * (2.0 * x).sin() + 0.2 * (3.0 * y).cos()) as f32
     });
     for (_, projection) in Projection::NAMES {
         for (form, bump) in [(BumpForm::SurfaceGradient, 0.03), (BumpForm::Papers, 0.01)] {
@@ -218,7 +204,8 @@ fn colours_and_bumps_are_the_references() {
             let object = &mut scene.objects[0];
             object.placement = placement([0.02, -0.05, 0.1], [0.3, -0.2, 0.5], [1.2, 0.9, 0.8]);
             object.axis = [0.48, 0.5];
-            object.offset.extend = 0.01;
+            // Texture coordinates are those of the profile's box, which grows with a wide offset.
+            object.offset.extend = if form == BumpForm::Papers { 0.1 } else { 0.01 };
             let look = &mut object.texturing;
             look.color_map = Some(waves(64, 32, 3.0));
             look.displacement_map = Some(slopes.clone());
@@ -304,10 +291,8 @@ fn an_offset_moves_the_texture_around_and_up() {
 fn rays_sharpen_textures() {
     let (wide, high, side) = (480u32, 360u32, 8u32);
     let mut scene = scene_of(shapes::vase(), eye(15.0, 2.0));
-    let stripe = |k: usize| [255 * (k / 2 % 2) as u8, 90, 40, 255];
-    let texels: Vec<_> = (0..512 * 64).map(stripe).collect();
-    let map = ColorMap::from_texels(512, 64, texels).unwrap();
-    scene.objects[0].texturing.color_map = Some(Arc::new(map));
+    let map = color_map(512, 64, |x, _| [255 * (x / 2 % 2) as u8, 90, 40, 255]);
+    scene.objects[0].texturing.color_map = Some(map);
     let large = draw(&scene, &sized(wide, high));
     let drawn = |rays: u32| {
         let settings = sized(wide / side, high / side);

@@ -2,7 +2,7 @@
 //! many in sequence.
 #![allow(unsafe_code)]
 
-use crate::calls::{Layer, Mask};
+use crate::calls::Layer;
 use crate::common::host::{
     Canvas, Checked, Host, add, borrow, borrow_through, once, open, open_with, renderer_of, view_of,
 };
@@ -118,34 +118,6 @@ fn another_type_of_memory_stands_in_for_a_full_one() {
     assert!(fail_each_call(&layer, &host, &of, 6) > 2);
 }
 
-/// A renderer works again after a failed update, once memory is available and an update succeeds.
-#[test]
-fn a_renderer_survives_a_failed_update() {
-    let (layer, host, raw) = layered();
-    let device = borrow_through(&host, &host.instance, &raw).unwrap();
-    let settings = settings(DrawStage::Fragment);
-    let [before, after] = scenes();
-    let wanted = picture(&device, &after, &settings);
-    let mut drawn = Offscreen::new(&device, &before, &settings).unwrap();
-    drawn.draw().unwrap();
-    let mut failures = 0;
-    for n in 0.. {
-        drawn.update(&before).unwrap();
-        drawn.draw().unwrap();
-        layer.fail_at(n);
-        let failed = drawn.update(&after).and_then(|()| drawn.draw()).is_err();
-        layer.fail_at(usize::MAX);
-        if !failed {
-            break;
-        }
-        failures += 1;
-    }
-    assert!(failures > 0);
-    assert_same(&updated(&mut drawn, &after), &wanted);
-    drop((drawn, device));
-    assert_eq!(layer.alive(), 0);
-}
-
 #[test]
 fn a_lost_device_is_an_error_in_every_later_frame() {
     let (layer, host, raw) = layered();
@@ -199,23 +171,6 @@ fn a_wait_that_fails_is_made_up_for() {
     assert_eq!(layer.alive(), 0);
 }
 
-/// A loss detected by the allocator is reported as a lost device, not as lack of memory.
-#[test]
-fn a_device_that_is_lost_while_memory_is_allocated_is_lost() {
-    let (layer, host, raw) = layered();
-    let device = borrow_through(&host, &host.instance, &raw).unwrap();
-    layer.lose(Some("vkAllocateMemory"));
-    let settings = settings(DrawStage::Fragment);
-    let Err(error) = Offscreen::new(&device, &scenes()[0], &settings) else {
-        panic!("made on a lost device");
-    };
-    assert_eq!(error.kind, ErrorKind::DeviceLost, "{error}");
-    assert!(error.to_string().contains("the device was lost"), "{error}");
-    drop(device);
-    layer.lose(None);
-    assert_eq!(layer.alive(), 0);
-}
-
 pub fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
     next_frame(&mut Offscreen::new(device, scene, settings).unwrap())
 }
@@ -223,57 +178,6 @@ pub fn picture(device: &Device, scene: &Scene, settings: &Settings) -> Frame {
 #[track_caller]
 fn assert_same(a: &Frame, b: &Frame) {
     assert_eq!(a.first_difference(b), None);
-}
-
-/// A device without optional features draws the same picture.
-#[test]
-fn a_device_without_what_is_optional_draws_the_same() {
-    let (layer, host) = (Layer::take(), open());
-    let mut scene = three();
-    scene.shadow = Shadow::Hard;
-    for stage in [DrawStage::Fragment, DrawStage::Compute] {
-        let settings = settings(stage).with(|s| (s.width, s.height) = (160, 120));
-        let whole = borrow(&host);
-        let wanted = picture(&whole, &scene, &settings);
-        type Change = fn(&mut Mask);
-        let optional: [(&str, Change); 3] = [
-            ("anisotropy", |m| {
-                m.features = Some(|f| f.sampler_anisotropy = vk::FALSE);
-            }),
-            ("timestamps", |m| {
-                m.families = Some(|f| f.timestamp_valid_bits = 0)
-            }),
-            // Components between vertex and fragment shader beyond the least.
-            ("varyings", |m| {
-                m.properties = Some(|p| {
-                    p.limits.max_fragment_input_components = 64;
-                    p.limits.max_vertex_output_components = 64;
-                });
-            }),
-        ];
-        for (optional, lacks) in optional {
-            let is = |name| optional == name;
-            let poorer = layer.poorer(&host, lacks).unwrap();
-            let boxes = is("varyings") && stage == DrawStage::Fragment;
-            let mut scene = scene.clone();
-            if boxes {
-                scene.shadow = Shadow::Off; // else cells would not be drawn
-            }
-            let mut drawn = Offscreen::new(&poorer, &scene, &settings).unwrap();
-            let times = drawn.draw().unwrap();
-            assert_eq!(times.gpu_ms.is_none(), is("timestamps"));
-            if boxes {
-                // Cells need more varyings, so boxes are drawn; the visible solids are the same.
-                assert_eq!(drawn.renderer().draw_paths(), [DrawPath::Box; 3]);
-                let frame = drawn.read().unwrap();
-                let differ = |&i: &usize| frame.hits(i) != wanted.hits(i);
-                let differ = (0..frame.pixels()).filter(differ).count();
-                assert!(differ <= 2, "{differ} pixels hit in one of them");
-            } else {
-                assert_same(&drawn.read().unwrap(), &wanted);
-            }
-        }
-    }
 }
 
 /// The size of a subgroup chooses between lists of patches and the tree. Both find the same surface, and

@@ -19,7 +19,7 @@ fn vase() -> Scene {
 #[test]
 fn what_is_refused_changes_nothing() {
     type Case = (&'static str, Solver, fn(&mut Scene));
-    let cases: [Case; 4] = [
+    let cases: [Case; 6] = [
         ("up", Solver::Exact, |s| {
             s.camera.up = s.camera.target - s.camera.eye;
         }),
@@ -29,6 +29,12 @@ fn what_is_refused_changes_nothing() {
         ("NaN", Solver::Exact, |s| {
             s.objects.push(s.objects[0].clone());
             s.objects[1].offset.extend = f64::NAN;
+        }),
+        ("bevel", Solver::Exact, |s| {
+            s.objects[0].offset.bevel = f64::INFINITY
+        }),
+        ("repeat", Solver::Exact, |s| {
+            s.objects[0].repeat = [10_000, 1, 1]
         }),
         // Two more instances, all without cones.
         ("single-valued", CONE, |s| {

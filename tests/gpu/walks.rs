@@ -1,11 +1,44 @@
-//! Walks: pictures of crowds whose copies rays find in a hierarchy are those of the reference.
+//! Walks: pictures of crowds whose copies rays find in a hierarchy are those of the reference. The
+//! random host (`tests/soak`) changes crowds.
 
-use super::crowds::{army, seen, separate};
-use super::embedding::options;
-use super::embedding_outputs::{depth_only, depths};
-use crate::common::host::{color_pass, opened, view_of};
 use crate::common::prelude::*;
 use crate::common::ways::apart;
+use std::f64::consts::TAU;
+
+/// Positions that are irregular but evenly distributed.
+fn spots(count: u32, seed: u32) -> impl Iterator<Item = [f64; 4]> {
+    (0..count).map(move |k| {
+        let part = |step: f64| (f64::from(k + 1000 * seed) * step).fract();
+        [0.754_877_666, 0.569_840_291, 0.618_034, 0.414_214].map(part)
+    })
+}
+
+/// Three solids, `count` copies of each.
+fn army(count: u32) -> Scene {
+    let mut scene = Scene::new(Camera::new(
+        DVec3::new(0.0, 0.0, 1.4),
+        DVec3::new(6.0, 6.0, 0.4),
+    ));
+    scene.lights.push(Light {
+        direction: DVec3::new(0.7, 0.5, -0.4),
+        color: [0.8, 0.7, 0.6],
+        ..Light::default()
+    });
+    let profiles = [shapes::sphere(), shapes::vase(), shapes::cone()];
+    for (seed, profile) in (0u32..).zip(profiles) {
+        let mut object = Object::new("test", Arc::new(profile));
+        object.color = [0.3 + 0.3 * seed as f32, 0.7, 0.9 - 0.3 * seed as f32];
+        let place = |[x, y, turn, size]: [f64; 4]| Placement {
+            position: DVec3::new(12.0 * x - 1.0, 12.0 * y - 1.0, 0.0),
+            rotation: DQuat::from_rotation_z(TAU * turn)
+                * DQuat::from_rotation_x(0.4 * (size - 0.5)),
+            scale: DVec3::new(0.7, 0.8, 0.6 + 0.6 * size),
+        };
+        object.instances = spots(count, seed).map(place).collect();
+        scene.objects.push(object);
+    }
+    scene
+}
 
 fn settings(stage: DrawStage, tolerance: Tolerance) -> Settings {
     Settings {
@@ -33,6 +66,91 @@ fn differing(a: &Frame, b: &Frame) -> (usize, usize) {
     let colors = a.color.iter().zip(&b.color);
     let shaded = colors.filter(|(a, b)| (0..3).any(|k| (a[k] - b[k]).abs() > 0.01));
     (hits, edge + far + shaded.count())
+}
+
+/// Views from within, from above, from straight above and from afar, where most copies are smaller
+/// than a pixel.
+const VIEWS: [(&str, [f64; 3], [f64; 3]); 4] = [
+    ("within", [0.0, 0.0, 0.9], [6.0, 6.0, 0.4]),
+    ("above", [-5.0, -4.0, 7.0], [5.0, 5.0, 0.0]),
+    ("straight down", [5.0, 5.0, 9.0], [5.0, 5.01, 0.0]),
+    ("afar", [-70.0, -50.0, 30.0], [5.0, 5.0, 0.0]),
+];
+
+/// A scene from each of these views.
+fn seen(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> {
+    VIEWS.into_iter().map(|(name, eye, target)| {
+        let mut scene = scene.clone();
+        (scene.camera.eye, scene.camera.target) = (eye.into(), target.into());
+        (name, scene)
+    })
+}
+
+/// The same copies as separate objects, which the host places.
+fn separate(scene: &Scene) -> Scene {
+    let alone = |object: &Object| {
+        let object = object.clone().with(|o| o.instances = Copies::default());
+        move |placement: &Placement| object.clone().with(|o| o.placement = *placement)
+    };
+    let objects = scene.objects.iter();
+    let separate = objects.flat_map(|o| o.placements().iter().map(alone(o)));
+    scene.clone().with(|s| s.objects = separate.collect())
+}
+
+/// Settings of a search without lists of patches: in compute others list them in any picture.
+fn by_tree(stage: DrawStage) -> Settings {
+    settings(stage, Tolerance::EXACT).with(|s| s.solver = Solver::Quadric)
+}
+
+/// The same without look-ups, which include those of hidden copies.
+fn picture(scene: &Scene, settings: &Settings) -> Frame {
+    draw(scene, settings).with(|frame| frame.steps.fill(0.0))
+}
+
+/// A solid behind the eye takes no part in the range of depths, so hits keep their order.
+#[test]
+fn a_solid_behind_the_eye_changes_no_pixel() {
+    let (_, scene) = seen(&army(700)).next().unwrap();
+    let (eye, target) = (scene.camera.eye, scene.camera.target);
+    let mut behind = scene.clone();
+    let mut object = Object::new("behind", Arc::new(shapes::vase()));
+    object.placement.position = eye + 10.0 * (eye - target);
+    behind.objects.push(object);
+    for stage in STAGES {
+        let [with, without] = [&behind, &scene].map(|scene| picture(scene, &by_tree(stage)));
+        assert_eq!(with.first_difference(&without), None, "{stage:?}");
+    }
+}
+
+/// Of few copies fragments draw boxes, and compute lists patches. The host places 60 copies, and the
+/// device 120: these are near to single objects, which the host places.
+#[test]
+fn few_copies_are_as_many_single_objects() {
+    for (view, scene) in seen(&army(20)) {
+        let frames = STAGES.map(|stage| picture(&scene, &by_tree(stage)));
+        let listed = by_tree(DrawStage::Compute).with(|s| s.solver = Solver::Exact);
+        let listed = picture(&scene, &listed.with(|s| s.proxy_min_pixels = 0));
+        for (what, one) in [("stages", &frames[0]), ("lists", &listed)] {
+            let (hits, differ) = differing(one, &frames[1]);
+            assert!(
+                hits > 50 && differ <= 1,
+                "{view}, {what}: {differ} of {hits}"
+            );
+        }
+    }
+    for stage in STAGES {
+        for (count, most) in [(20, 0), (40, 1)] {
+            let crowd = army(count);
+            let both = [&crowd, &separate(&crowd)].map(|s| picture(s, &by_tree(stage)));
+            let same = both[0].first_difference(&both[1]).is_none();
+            let (_, differ) = differing(&both[0], &both[1]);
+            assert!(
+                differ <= most && (same || most > 0),
+                "{stage:?}, {count}: {differ}"
+            );
+        }
+    }
+    device().check().unwrap();
 }
 
 /// Walks to a crowd in both stages, and to its copies as separate objects, which the host places and
@@ -168,47 +286,6 @@ fn walks_and_proxies_shadow_each_other() {
     device().check().unwrap();
 }
 
-/// A prepass of depths has those of the main pass to the last bit: both walk.
-#[test]
-fn a_prepass_has_the_depths_of_the_main_pass() {
-    let (host, device) = opened();
-    let (_, scene) = seen(&army(200)).nth(1).unwrap();
-    let view = view_of(&scene, &options());
-    let search = SearchSettings::default();
-    let [(before, paths), (main, _)] = [depth_only(false), color_pass()]
-        .map(|pass| depths(&host, &device, &scene, &view, &search, &pass));
-    assert_eq!(paths, [DrawPath::Walk; 3]);
-    assert!(before == main && before.iter().filter(|d| **d < 1.0).count() > 3000);
-}
-
-/// The same renderer draws views and copies that change as a new one does.
-#[test]
-fn changes_are_seen() {
-    let (_, first) = seen(&army(400)).next().unwrap();
-    for stage in STAGES {
-        let of = settings(stage, Tolerance::DEFAULT);
-        let mut offscreen = Offscreen::new(device(), &first, &of).unwrap();
-        let mut scene = first.clone();
-        for step in 0..5 {
-            match step {
-                0 | 1 => scene.camera.eye += DVec3::new(-1.0, -0.5, 0.7),
-                2 => {
-                    let copies = scene.objects[1].instances.iter().copied();
-                    scene.objects[1].instances = copies.skip(150).collect();
-                }
-                3 => {
-                    scene.objects.remove(0);
-                }
-                _ => scene.objects[0].offset.extend = 0.02,
-            }
-            let same = updated(&mut offscreen, &scene);
-            let new = drawn(&scene, &of, DrawPath::Walk);
-            assert_eq!(same.first_difference(&new), None, "{stage:?}, step {step}");
-        }
-    }
-    device().check().unwrap();
-}
-
 /// Each look has a walk of its own, over the rows of the picture that may show it.
 #[test]
 fn many_looks_are_walked() {
@@ -216,9 +293,8 @@ fn many_looks_are_walked() {
     scene.shadow = Shadow::Hard;
     let first = separate(&scene).objects[0].clone();
     let of_look = |n: u8| {
-        let map = ColorMap::from_texels(1, 1, vec![[n, 0, 0, 255]]).unwrap();
         first.clone().with(|object| {
-            object.texturing.color_map = Some(Arc::new(map));
+            object.texturing.color_map = Some(color_map(1, 1, |_, _| [n, 0, 0, 255]));
             object.placement.position = DVec3::new(f64::from(n % 6), f64::from(n / 6), 0.0);
         })
     };

@@ -1,12 +1,35 @@
-//! The host of `examples/shadowed`: its sun's shadow map over meshes and solids.
+//! The hosts of the examples: G-buffer and temporal anti-aliasing, light on meshes and solids, and the
+//! shadow map of a sun, which is held to rays on the CPU.
 
 use crate::common::prelude::*;
 use revmap::cast::RayCaster;
 use shadowed::map::TEXEL;
 use shadowed::{OPTIONS, scene};
 
+#[path = "../../examples/deferred/main.rs"]
+mod deferred;
+#[path = "../../examples/forward/main.rs"]
+mod forward;
 #[path = "../../examples/shadowed/main.rs"]
 mod shadowed;
+
+/// With motion vectors the picture is much nearer to the mean of 64 frames; validation is silent.
+#[test]
+fn motion_vectors_prevent_ghosts() {
+    let folder = tempfile::tempdir().unwrap();
+    let [with, without] = deferred::run(folder.path().to_str().unwrap(), true).unwrap();
+    println!("FLIP {with:.4} with motion vectors, {without:.4} without");
+    assert!(with < 0.02 && with < 0.6 * without, "{with}, {without}");
+}
+
+/// A revolved ball and a mesh of a ball look alike under the host's light; validation is silent.
+#[test]
+fn solids_are_lit_like_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [mesh, none] = forward::run(folder.path().to_str().unwrap(), true).unwrap();
+    println!("pixels that differ: {mesh} with a mesh, {none} without a ball");
+    assert!(mesh < 50 && none > 10_000, "{mesh}, {none}");
+}
 
 /// Distance from the edge of a shadow, in texels: the filter reaches 2, the host's move along the
 /// normal 2.83.
@@ -171,9 +194,23 @@ fn solids_and_meshes_shadow_each_other() {
     assert!(shows(counts[3], 4000), "{counts:?}");
 }
 
-/// The bytes of the example are what its GLSL gives.
+/// The bytes of the examples are what their GLSL gives.
 #[test]
 #[cfg(feature = "shaderc")] // compiles GLSL at run time
 fn kept_bytes_are_what_the_glsl_gives() {
-    crate::common::assert_kept_shading("shadowed", "sun.glsl", shadowed::SHADING);
+    for (example, lights, kept) in [
+        ("forward", "light.glsl", forward::SHADING),
+        ("shadowed", "sun.glsl", shadowed::SHADING),
+    ] {
+        let path = |name: &str| format!("examples/{example}/{name}");
+        let [shade, light] =
+            ["shade.glsl", lights].map(|name| std::fs::read_to_string(path(name)).unwrap());
+        let files = [(&*path("shade.glsl"), &*shade), (lights, &*light)];
+        let made = revmap::shading::Shading::compile(DrawStage::Fragment, &files).unwrap();
+        assert!(
+            made.to_bytes().unwrap() == kept,
+            "shaders changed; renew shade.shading by the command that {} names",
+            path("main.rs")
+        );
+    }
 }
