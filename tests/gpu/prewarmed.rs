@@ -1,10 +1,10 @@
 //! Pipelines compiled beforehand: no frame compiles and no object is hidden, whatever changes but a
-//! technique. The random host (`tests/soak`) holds this of any changes. General and special forms draw
-//! the same bits.
+//! technique. General and special forms draw the same bits.
 #![allow(unsafe_code)]
 
 use crate::common::host::{Drawn, Host, borrow, never, open, opened, view_of};
 use crate::common::prelude::*;
+use crate::common::random::Random;
 use crate::embedding::{hundred, options, three};
 use crate::unsubmitted::{by, differ};
 
@@ -224,4 +224,65 @@ fn special_forms_are_taken_when_they_are_compiled() {
     assert!(drawn.renderer.special_forms().is_empty());
     drawn.renderer.prewarm().unwrap().compile().unwrap();
     assert_eq!(prepared(&mut drawn).hidden, 0);
+}
+
+/// A random change of the objects, lights or view, but of no technique.
+fn change(warm: &mut Warm, solid: &Object, random: &mut Random) {
+    let (ids, renderer) = (&mut warm.drawn.ids, &mut warm.drawn.renderer);
+    let n = random.below(ids.len());
+    let id = ids[n];
+    let place = |n: usize| placement([-0.9 * n as f64, 0.3, 0.0], [0.0; 3], [1.0; 3]);
+    let done = match random.below(8) {
+        0 if ids.len() < 5 => renderer.add(solid.clone()).map(|new| ids.push(new)),
+        1 if ids.len() > 1 => renderer.remove(ids.remove(n)),
+        2 => renderer.set_mask(id, random.pick(&[0, 1, 3, u32::MAX])),
+        3 => {
+            let (extend, bevel) = random.pick(&[(0.0, 0.0), (0.3, 0.0), (-0.02, 0.1), (0.05, 0.2)]);
+            renderer.set_offset(id, offset(extend, bevel, 1.0))
+        }
+        4 => {
+            let count = random.pick(&[0, 2, 9, 70]);
+            renderer.set_instances(id, (0..count).map(place).collect::<Vec<_>>())
+        }
+        5 => {
+            let lights = vec![Light::pair()[0]; random.below(5)];
+            renderer.set_lighting(&Lighting::default().with(|l| l.lights = lights))
+        }
+        6 => {
+            let clip = random.pick(&[Clip::None, Clip::Box]);
+            let object = renderer.object(id).unwrap().clone();
+            renderer.set(id, Object { clip, ..object })
+        }
+        _ => {
+            let mut scene = three();
+            scene.camera.eye *= random.pick(&[1.0, 0.02, 0.4, 6.0, 300.0]);
+            let mask = random.pick(&[1, 2, u32::MAX]);
+            warm.drawn.view = view_of(&scene, &options()).with_mask(mask);
+            Ok(())
+        }
+    };
+    done.unwrap();
+}
+
+/// `REVMAP_FRAMES=50000` prepares as many frames of each stage.
+#[test]
+fn random_changes_compile_nothing_and_hide_nothing() {
+    let frames = std::env::var("REVMAP_FRAMES").map_or(300, |n| n.parse().unwrap());
+    let (host, device) = opened();
+    let mut random = Random(7);
+    for stage in STAGES {
+        let solid = vase().objects.remove(0);
+        let mut warm = Warm::new(&host, &device, (stage, &exact()), &vase());
+        let mut shown = 0;
+        for frame in 0..frames {
+            for _ in 0..=random.below(3) {
+                change(&mut warm, &solid, &mut random);
+            }
+            shown += warm.frame(&format!("frame {frame}")).objects;
+        }
+        assert!(
+            shown as usize > frames,
+            "{shown} objects in {frames} frames"
+        );
+    }
 }
