@@ -3,10 +3,7 @@
 //!
 //! A quarter of `REVMAP_SOAK_SECONDS` is the time, `REVMAP_SOAK_SEED` repeats a run.
 
-use crate::host::{
-    COLOR, Canvas, DEPTH, Host, Options, Texture, assert_silent, commands, open,
-    view_and_projection,
-};
+use crate::host::{COLOR, Canvas, DEPTH, Host, Options, Texture, assert_silent, commands, open};
 use crate::names::*;
 use crate::recording::lend_with_queue;
 use std::any::TypeId;
@@ -23,27 +20,6 @@ use numbers::Random;
 /// The size of every target.
 const SIZE: Options = Options::new(64, 48);
 const WHOLE: [f64; 4] = [0.0, 0.0, 64.0, 48.0];
-const VIEWPORTS: [[f64; 4]; 7] = [
-    [0.0, 48.0, 64.0, -48.0],
-    [-50.0, -20.0, 128.0, 96.0],
-    [60.0, 40.0, 64.0, 48.0],
-    [500.0, 500.0, 64.0, 48.0],
-    [0.0; 4],
-    [1e9, 0.0, 1e9, 1e9],
-    [0.0, 0.0, f64::NAN, 48.0],
-];
-const ODD: [f64; 10] = [
-    0.0,
-    -0.0,
-    f64::NAN,
-    f64::INFINITY,
-    f64::NEG_INFINITY,
-    1e300,
-    -1e300,
-    5e-324,
-    1e20,
-    -1.0,
-];
 
 /// The last calls with their results, and the number of those that succeeded.
 static CALLS: Mutex<(VecDeque<String>, u32)> = Mutex::new((VecDeque::new(), 0));
@@ -104,99 +80,8 @@ macro_rules! kept {
     };
 }
 
-impl Random {
-    /// A number of an enumeration of so many, or a little beyond.
-    fn one_of(&mut self, count: usize) -> u32 {
-        match self.chance(0.04) {
-            true => self.pick(&[count as u32, u32::MAX]),
-            false => self.below(count) as u32,
-        }
-    }
-
-    /// A number, mostly of a usual size.
-    fn number(&mut self) -> f64 {
-        match self.chance(0.03) {
-            true => self.pick(&ODD),
-            false => self.between(-1.0, 1.0),
-        }
-    }
-
-    fn numbers<const N: usize>(&mut self) -> [f64; N] {
-        [(); N].map(|()| self.number())
-    }
-
-    /// Gives some words of plain numbers other values: a double, a float or an integer. The bytes
-    /// of `kept` stay.
-    fn spoil<T: Copy>(&mut self, value: &mut T, kept: &[[usize; 2]]) {
-        for _ in 0..self.pick(&[0, 0, 0, 1, 2, 4]) {
-            let at = 4 * self.below(size_of::<T>() / 4);
-            let bytes = match self.below(4) {
-                0 | 1 => self.number().to_ne_bytes().to_vec(),
-                2 => (self.number() as f32).to_ne_bytes().to_vec(),
-                _ => self.pick(&[0u32, 1, 2, 3, 9]).to_ne_bytes().to_vec(),
-            };
-            // Doubles start at multiples of eight bytes.
-            let at = at / bytes.len() * bytes.len();
-            let end = at + bytes.len();
-            let is_kept = kept.iter().any(|k| at < k[1] && k[0] < end);
-            if end <= size_of::<T>() && !is_kept {
-                let to = (&raw mut *value).cast::<u8>();
-                // SAFETY: within the value, of which any bits are numbers.
-                unsafe {
-                    to.add(at)
-                        .copy_from_nonoverlapping(bytes.as_ptr(), bytes.len())
-                };
-            }
-        }
-    }
-
-    /// A spoilt structure that begins with its size, mostly the right one. The second gives room to
-    /// larger sizes.
-    fn spoilt<T: Copy>(&mut self, mut value: T, kept: &[[usize; 2]]) -> [T; 2] {
-        let own = size_of::<T>();
-        let size = match self.chance(0.02) {
-            true => self.pick(&[0, 4, own - 8, own + 8, own + 4, usize::MAX]),
-            false => own,
-        };
-        self.spoil(&mut value, kept);
-        // SAFETY: the structure begins with its size.
-        unsafe { (&raw mut value).cast::<u32>().write(size as u32) };
-        [value; 2]
-    }
-
-    fn placement(&mut self) -> RevmapPlacement {
-        let mut placement = RevmapPlacement {
-            position: self.numbers(),
-            rotation: [0.0, 0.0, 0.0, 1.0],
-            scale: [1.0; 3],
-        };
-        if self.chance(0.3) {
-            let angle = self.between(-3.0, 3.0);
-            placement.rotation = [0.0, angle.sin(), 0.0, angle.cos()];
-        }
-        if self.chance(0.05) {
-            self.spoil(&mut placement, &[]);
-        }
-        placement
-    }
-
-    fn view(&mut self) -> [RevmapView; 2] {
-        let eye = DVec3::new(2.0, 2.0 * self.number(), 1.0 + self.number());
-        let matrices = view_and_projection(eye, DVec3::new(0.0, 0.0, 0.5), &SIZE);
-        let [view, projection] = matrices.map(|matrix| matrix.to_cols_array());
-        let made = RevmapView {
-            view,
-            projection,
-            viewport: match self.chance(0.4) {
-                true => self.pick(&VIEWPORTS),
-                false => WHOLE,
-            },
-            mask: self.pick(&[0, 0, 1, 2, u32::MAX]),
-            ..sized!(RevmapView)
-        };
-        self.spoilt(made, &kept!(RevmapView: last..jitter))
-    }
-}
+mod supplies;
+mod values;
 
 /// What a renderer draws into.
 #[derive(Clone, Copy, PartialEq)]
@@ -249,75 +134,6 @@ impl Driver<'_> {
     /// The live handles of a type.
     fn live<T: 'static>(&mut self, _: &*mut T) -> &mut Vec<usize> {
         self.handles.entry(TypeId::of::<T>()).or_default()
-    }
-
-    /// A number that is no live handle, or hardly ever.
-    fn none(&mut self) -> usize {
-        match self.dice.below(3) {
-            0 => 0,
-            1 if !self.dead.is_empty() => self.dice.pick(&self.dead),
-            _ => self.dice.below(1 << 20),
-        }
-    }
-
-    /// A live handle, or one that is none.
-    fn some<T: 'static>(&mut self) -> *mut T {
-        let live = self.live(&null_mut::<T>()).clone();
-        without_provenance_mut(match live.is_empty() || self.dice.chance(0.06) {
-            true => self.none(),
-            false => self.dice.pick(&live),
-        })
-    }
-
-    /// Destroys a handle if there are more than `least`, and tries to destroy one that is gone.
-    fn destroy<T: 'static>(
-        &mut self,
-        least: usize,
-        destroy: extern "C" fn(*mut T) -> RevmapResult,
-    ) -> bool {
-        if let 1.. = self.dead.len() {
-            let dead = self.dice.pick(&self.dead);
-            assert!(!noted("destroy", destroy(without_provenance_mut(dead))));
-        }
-        let count = self.live(&null_mut::<T>()).len();
-        if count > least {
-            let number = self.dice.below(count);
-            let handle = self.live(&null_mut::<T>()).swap_remove(number);
-            assert!(noted("destroy", destroy(without_provenance_mut(handle))));
-            self.dead.push(handle);
-        }
-        count > least
-    }
-
-    /// Destroys one of each kind, or if all go, every one.
-    fn clear(&mut self, all: bool) {
-        let least = |number: usize| if all { 0 } else { number };
-        while self.destroy(least(3), revmap_profile_destroy) && all {}
-        while self.destroy(least(1), revmap_color_map_destroy) && all {}
-        while self.destroy(least(1), revmap_height_map_destroy) && all {}
-        while self.destroy(least(1), revmap_ray_caster_destroy) && all {}
-        while self.destroy(least(0), revmap_offscreen_destroy) && all {}
-        while self.destroy(least(4), revmap_prewarm_destroy) && all {}
-        while self.destroy(least(2), revmap_host_image_destroy) && all {}
-    }
-
-    fn object(&mut self, copies: &[RevmapPlacement]) -> [RevmapObjectInfo; 2] {
-        let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
-        info.profile = self.some();
-        if self.dice.chance(0.3) {
-            (info.color_map, info.height_map) = (self.some(), self.some());
-        }
-        let dice = &mut self.dice;
-        info.map_rows = dice.pick(&[16, 32, 32, 64, 0, 1, 99_999]);
-        info.placement = dice.placement();
-        if dice.chance(0.2) {
-            info.repeat = [(); 3].map(|()| dice.one_of(3).wrapping_add(1));
-            info.mirror = [(); 3].map(|()| dice.one_of(2));
-        }
-        (info.projection, info.bump_form) = (dice.one_of(4), dice.one_of(2));
-        (info.instances, info.instance_count) = (copies.as_ptr(), copies.len());
-        let kept = kept!(RevmapObjectInfo: profile..color, instances..has_material);
-        dice.spoilt(info, &kept)
     }
 
     fn make_renderer(&mut self) {
@@ -543,101 +359,6 @@ impl Driver<'_> {
                 }
                 made! { self, revmap_renderer_prewarm(renderer) }
             }
-        }
-    }
-
-    /// Calls apart from renderers: profiles, textures, rays, the device, pictures without a host.
-    fn supply(&mut self) {
-        let (device, profile) = (self.some::<RevmapDevice>(), self.some::<RevmapProfile>());
-        let dice = &mut self.dice;
-        match dice.below(10) {
-            0 | 1 => {
-                let count = 3 + dice.below(6);
-                let points = (0..count).map(|_| dice.numbers().map(f64::abs));
-                let points: Vec<[f64; 2]> = points.collect();
-                made! { self, revmap_profile_from_points(points.as_ptr(), count, 0.5) }
-                calls! { revmap_profile_radius(profile, &mut 0.0); }
-            }
-            2 => {
-                let (side, texels) = (dice.one_of(9).min(8), [[200, 40, 9, 255]; 64]);
-                made! { self, revmap_color_map_from_texels(side, 8, texels.as_ptr()) }
-            }
-            3 => {
-                let heights = dice.numbers::<64>().map(|n| n as f32);
-                let (at, filter) = (heights.as_ptr(), dice.one_of(2));
-                made! { self, revmap_height_map_from_heights(8, 8, at, filter) }
-            }
-            4 => self.picture(device),
-            5 => {
-                let mut info = dice.spoilt(sized!(RevmapDeviceInfo), &[]);
-                let mut used = dice.spoilt(sized!(RevmapMemoryUse), &[]);
-                calls! {
-                    revmap_device_info(device, &mut info[0]);
-                    revmap_device_memory_use(device, &mut used[0]);
-                    revmap_device_check(device);
-                }
-            }
-            6 => {
-                let bytes: Vec<u8> = (0..dice.below(200)).map(|n| n as u8).collect();
-                let (at, count) = (bytes.as_ptr().cast(), bytes.len());
-                calls! {
-                    revmap_device_add_pipeline_cache(device, at, count);
-                    revmap_shading_from_bytes(at, count, &mut null_mut());
-                    revmap_profile_from_bytes(at, count, 0, &mut null_mut());
-                }
-            }
-            7 => {
-                let count = dice.below(20);
-                let ray = |_| RevmapRay {
-                    origin: dice.numbers().map(|n| 3.0 * n),
-                    direction: dice.numbers(),
-                };
-                let rays: Vec<_> = (0..count).map(ray).collect();
-                let mut hits = vec![crate::zeros::<RevmapRayHit>(); count];
-                let caster = self.some();
-                calls! {
-                    revmap_ray_caster_cast(caster, rays.as_ptr(), count, hits.as_mut_ptr());
-                    revmap_ray_caster_bounds(caster, &mut crate::zeros());
-                }
-            }
-            8 => {
-                revmap_color_word(dice.number() as f32, 0.0, 1.0, dice.number() as f32);
-                let (image, prewarm, compiles) = (self.some(), self.some(), self.dice.chance(0.2));
-                calls! {
-                    revmap_host_image_is_held(image, &mut 0);
-                    revmap_prewarm_count(prewarm, &mut 0);
-                }
-                let _ = compiles && call! { revmap_prewarm_compile(prewarm) };
-            }
-            _ => self.clear(false),
-        }
-    }
-
-    fn picture(&mut self, device: *mut RevmapDevice) {
-        let objects = [self.object(&[])[0], self.object(&[])[0]];
-        let dice = &mut self.dice;
-        let mut scene = defaults!(revmap_scene_defaults, RevmapScene);
-        (scene.objects, scene.object_count) = (objects.as_ptr(), dice.below(3));
-        scene.lighting.shadow = dice.one_of(3);
-        let pointers = [offset_of!(RevmapScene, lighting), size_of::<RevmapScene>()];
-        let scene = dice.spoilt(scene, &[pointers]);
-        let mut picture = defaults!(revmap_picture_defaults, RevmapPicture);
-        (picture.width, picture.height) = (dice.one_of(40), dice.one_of(30).wrapping_add(1));
-        (picture.stage, picture.planes) = (dice.one_of(2), dice.one_of(2));
-        let steps = offset_of!(RevmapPicture, search) + offset_of!(RevmapSearch, max_steps);
-        let picture = dice.spoilt(picture, &[[steps, steps + 4]]);
-        if self.live(&null_mut::<RevmapOffscreen>()).len() < 2 {
-            made! { self, revmap_offscreen_create(device, picture.as_ptr(), scene.as_ptr()) }
-        }
-        let offscreen = self.some();
-        let mut times = [sized!(RevmapTimes); 2];
-        let (plane, mut bytes) = (self.dice.one_of(8), vec![0u8; 16 * self.dice.below(1200)]);
-        let (at, count) = (bytes.as_mut_ptr().cast(), bytes.len());
-        calls! {
-            revmap_offscreen_update(offscreen, scene.as_ptr());
-            revmap_offscreen_draw(offscreen, &mut times[0]);
-            revmap_offscreen_read(offscreen, plane, at, count);
-            revmap_offscreen_write_png(offscreen, c"/missing/a.png".as_ptr());
         }
     }
 
