@@ -219,8 +219,7 @@ impl Animate {
     ) -> Result<Drawn> {
         let mut settings = self.drawing.settings(Planes::Color);
         let shown = self.surroundings.studio || target.is_some_and(|t| t.format.is_some());
-        let shown = shown && self.drawing.solver.solver().is_some();
-        let samples = self.samples.or_adaptive(shown);
+        let samples = self.samples.or_adaptive(shown, self.drawing.solver);
         // Silhouettes are smoothed only if pictures are written.
         if samples.antialias(false) && target.is_some() {
             settings.edges = Edges::Silhouettes;

@@ -83,8 +83,7 @@ impl Render {
         let reference = self.drawing.stage == Tracing::Reference;
         let floats = self.output.iter().any(|f| output::has_ending(f, "exr"));
         let shown = self.surroundings.studio && !reference && !floats;
-        let shown = shown && self.drawing.solver.solver().is_some();
-        self.samples = self.samples.or_adaptive(shown);
+        self.samples = self.samples.or_adaptive(shown, self.drawing.solver);
         self.samples.check(reference, self.show_rays.is_some())?;
         let begin = Instant::now();
         let reading = format!("reading {}", self.input.scene.display());

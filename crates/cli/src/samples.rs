@@ -8,7 +8,7 @@ use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::scene::Scene;
 use revmap::settings::Settings;
-use revmap_bench::plan::method::MethodSettings;
+use revmap_bench::plan::method::{Method, MethodSettings};
 use revmap_offscreen::adaptive::Adaptive;
 use revmap_offscreen::samples::averaged;
 
@@ -46,9 +46,11 @@ const RAYS: [(&str, Rays); 5] = [
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 impl Samples {
-    /// These, with adaptive rays if the option is not given and the picture is `shown`.
-    pub fn or_adaptive(self, shown: bool) -> Self {
-        let rays = self.rays.or(shown.then_some(Rays::Adaptive));
+    /// These, with adaptive rays if the option is not given, the picture is `shown`, and a search
+    /// draws it.
+    pub fn or_adaptive(self, shown: bool, method: Method) -> Self {
+        let adaptive = shown && method.solver().is_some();
+        let rays = self.rays.or(adaptive.then_some(Rays::Adaptive));
         Self { rays, ..self }
     }
 

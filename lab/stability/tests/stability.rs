@@ -178,10 +178,11 @@ fn a_million_rays_at_edges_miss_none() {
     }
 }
 
-/// The first seeds, some with close views of short edges, then those of ten thousand that once failed: loops that touch (87, 103411,
-/// 103587, 104603, 105839, 106341, 108163), all but level faces (101001, 101182, 102085, 102185,
-/// 105034, 106944, 107060, 108513), rims and ledges (101862, 108119), roundings of a distance of
-/// 50,000 units (991800), and what the judge took for a fault (100107, 104954, 107022, 990673).
+/// The first seeds, some with close views of short edges, then those of ten thousand that once
+/// failed: loops that touch (87, 103411, 103587, 104603, 105839, 106341, 108163), all but level
+/// faces (101001, 101182, 102085, 102185, 105034, 106944, 107060, 108513), rims and ledges (101862,
+/// 108119), roundings of a distance of 50,000 units (991800), and what the judge took for a fault
+/// (100107, 104954, 107022, 990673).
 #[test]
 fn random_scenes_are_as_the_reference_has_them() {
     let failed = [
