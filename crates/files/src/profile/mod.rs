@@ -11,6 +11,7 @@
 //! | the points of a polygon, and the box that cuts it | `scene::polygon` |
 //! | a whole scene | [`scene::warnings`](crate::warnings) |
 
+mod advice;
 mod drawing;
 mod noise;
 mod options;
@@ -26,6 +27,7 @@ pub(crate) use seeming::gaps::hints as gap_hints;
 use crate::Picture;
 use crate::pixels::is_picture;
 use crate::{content_fault, file_fault, read_bytes};
+use advice::{Way, followed};
 use revmap::error::Result;
 use revmap::profile::Profile;
 use std::path::Path;
@@ -64,12 +66,42 @@ pub fn profile(path: impl AsRef<Path>, options: impl Into<ProfileOptions>) -> Re
 /// # Errors
 /// The errors of [`profile`], without a file name.
 pub fn profile_from_bytes(bytes: &[u8], options: impl Into<ProfileOptions>) -> Result<Profile> {
-    let options = options.into();
+    read(bytes, &options.into()).map(|(profile, _)| profile)
+}
+
+/// The profile, and the axis that was taken.
+fn read(bytes: &[u8], options: &ProfileOptions) -> Result<(Profile, ProfileAxis)> {
     options.check()?;
-    if revmap_drawing::is_markup(bytes) {
-        drawing::profile(bytes, options.for_drawing()?, options.min_stroke)
-    } else {
-        picture::profile(bytes, &options)
+    let is_drawing = revmap_drawing::is_markup(bytes);
+    if is_drawing {
+        options.for_drawing()?;
+    }
+    let by_way = |way: Way, read: ProfileRead| match is_drawing {
+        true => drawing::profile(bytes, way, options.min_stroke),
+        false => {
+            let axis = way.axis;
+            picture::profile(
+                bytes,
+                &ProfileOptions {
+                    axis,
+                    read,
+                    ..*options
+                },
+            )
+        }
+    };
+    match options.read {
+        ProfileRead::Threshold => {
+            let (axis, pale) = (options.axis, false);
+            Ok((by_way(Way { axis, pale }, options.read)?, axis))
+        }
+        ProfileRead::Auto => {
+            let read = |way| match way == Way::default() {
+                true => by_way(way, ProfileRead::Auto),
+                false => by_way(way, ProfileRead::Threshold),
+            };
+            followed(&read, Way::default()).map(|(profile, way)| (profile, way.axis))
+        }
     }
 }
 

@@ -60,7 +60,9 @@ pub enum ProfileRead {
     #[default]
     Threshold,
     /// Ground, thing, axis and tilt of a photograph are found. A picture without colour of which
-    /// 99 % are near two greys is a drawing, and read by a grey level of one half.
+    /// 99 % are near two greys is a drawing, and read by a grey level of one half. In drawings the
+    /// middle is the axis, unless half a profile or a solid beside the middle has another, and pale
+    /// paint is solid if nothing is dark. [`Profile::notes`](revmap::profile::Profile::notes) say so.
     Auto,
 }
 
@@ -76,7 +78,7 @@ pub struct ProfileOptions {
     /// The part of the picture that is the half-plane.
     pub axis: ProfileAxis,
     /// The way in which the solid is found. [`ProfileRead::Auto`] takes no axis, threshold or
-    /// inversion. For pictures only.
+    /// inversion.
     pub read: ProfileRead,
     /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
     /// own (sRGB) values. For pictures only.
@@ -157,16 +159,15 @@ impl ProfileOptions {
         Ok(())
     }
 
-    /// Refuses options that apply only to pictures. [`Smooth::Auto`] and [`ProfileRead::Auto`] are
-    /// accepted, since a drawing has no noise and is no photograph.
-    pub(super) fn for_drawing(&self) -> Result<ProfileAxis> {
+    /// Refuses options that apply only to pictures. [`Smooth::Auto`] is accepted, since a drawing has
+    /// no noise.
+    pub(super) fn for_drawing(&self) -> Result<()> {
         let keys = ["profile_threshold", "profile_invert", "profile_smooth"];
         let keys = &keys[..3 - usize::from(self.smooth == Smooth::Auto)];
         self.refuse(
             keys,
             "counts for pictures alone; leave it out for a drawing",
-        )?;
-        Ok(self.axis)
+        )
     }
 
     /// Refuses options that apply only to drawings.

@@ -17,7 +17,7 @@ pub use extent::Extent;
 pub use spelling::decimal_comma;
 pub use warnings::{blank, warnings};
 
-use crate::pixels::{foreign, is_picture};
+use crate::pixels::foreign;
 use crate::profile::is_profile;
 use crate::{Picture, ProfileOptions, ending, file_fault, read_bytes};
 use glam::DVec3;
@@ -102,15 +102,12 @@ impl SceneFile {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let mut reader = Reader::new(folder);
         // A name that is no text cannot be written in TOML; the bytes are found by this one.
-        let is_picture = is_picture(&bytes);
         reader.keep(folder.join(&*name), file, bytes);
-        let mut object = table([
+        let object = table([
             ("profile", name.into_owned().into()),
+            ("profile_read", "auto".into()),
             ("profile_smooth", "auto".into()),
         ]);
-        if is_picture {
-            object.insert("profile_read".to_owned(), "auto".into());
-        }
         let camera = camera(DVec3::X, DVec3::ZERO);
         let root = table([("camera", camera.into()), ("object", vec![object].into())]);
         Self {
@@ -187,7 +184,7 @@ impl SceneFile {
         })
     }
 
-    /// The file's tables with `sets`. A picture in place of a scene is read by its own way, unless a
+    /// The file's tables with `sets`. A profile in place of a scene is read by its own way, unless a
     /// key of another is set.
     fn applied(&self, sets: &[String]) -> Result<Table> {
         let mut root = overrides::applied(&self.root, sets)?;
@@ -237,7 +234,7 @@ impl SceneFile {
     }
 }
 
-fn table(entries: [(&str, Value); 2]) -> Table {
+fn table<const N: usize>(entries: [(&str, Value); N]) -> Table {
     Table::from_iter(entries.map(|(key, value)| (key.to_owned(), value)))
 }
 

@@ -49,11 +49,17 @@ fn a_bare_profile_is_read_with_what_is_set() {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         revmap_files::SceneFile::open(&file)?.scene(&sets)
     };
-    let empty = scene(&[]).unwrap_err().to_string();
+    let center = scene(&["object.0.profile_axis=center"]);
+    let empty = center.unwrap_err().to_string();
     assert!(empty.contains("set profile_axis"), "{empty}");
     assert!(!empty.contains("profile_threshold"), "{empty}");
     let left = "object.0.profile_axis=left";
     let near = scene(&[left]).unwrap();
+    let found = scene(&[]).unwrap();
+    assert_eq!(
+        found.objects[0].profile.outline,
+        near.objects[0].profile.outline
+    );
     let far = scene(&[left, "object.0.extend=0.5"]).unwrap();
     assert!(far.camera.eye.length() > 1.3 * near.camera.eye.length());
     let own = scene(&[left, "camera.eye.0=9", "object.0.extend=0.5"]).unwrap();

@@ -4,7 +4,7 @@ use crate::{holds, png};
 use image::{GrayImage, Luma, Rgba, RgbaImage};
 use revmap::profile::Profile;
 use revmap_files::ProfileAxis::{self, Center, Left};
-use revmap_files::{ProfileOptions, profile_from_bytes};
+use revmap_files::{ProfileOptions, ProfileRead, profile_from_bytes};
 
 const CASES: &str = include_str!("seeming.txt");
 const VASE: &str = "M50 8h8c0 14-6 18-6 26c0 12 20 16 20 34c0 14-8 22-14 24h-16c-6-2-14-10-14-24c0-18 20-22 20-34c0-8-6-12-6-26z";
@@ -102,6 +102,57 @@ fn case_holds(case: &str) {
             "kept" => assert!(!said(&bytes, axis).contains("erase it")),
             _ if words.is_empty() => silent(&bytes, axis),
             _ => warned(&bytes, axis, words),
+        }
+    }
+}
+
+/// A file in place of a scene is read as the advice says that it gives otherwise.
+#[test]
+fn advice_is_followed() {
+    let auto = ProfileOptions {
+        read: ProfileRead::Auto,
+        ..ProfileOptions::default()
+    };
+    let [half, aside] = [(HALF, -50.0), (BOTTLE, 12.0)]
+        .map(|(d, x)| move |paint: &str| path(d, &format!("transform='translate({x})' {paint}")));
+    let pale = "fill='#b0b0ff'";
+    let lined = "fill='#b0b0ff' stroke='#000'";
+    let cases = [
+        (path(VASE, ""), path(VASE, ""), Center, vec![]),
+        (half(""), half(""), Left, vec!["half a profile", "\"left\""]),
+        (
+            aside(""),
+            aside(""),
+            ProfileAxis::At(0.62),
+            vec!["beside the axis", "= 0.62"],
+        ),
+        (
+            path(VASE, pale),
+            path(VASE, ""),
+            Center,
+            vec!["#b0b0ff, lighter", "but white"],
+        ),
+        (
+            path(VASE, lined),
+            path(VASE, "stroke='#000'"),
+            Center,
+            vec!["#b0b0ff"],
+        ),
+        (half(pale), half(""), Left, vec!["#b0b0ff", "\"left\""]),
+    ];
+    for (given, same, axis, words) in cases {
+        let mut files = vec![(given.clone(), same.clone())];
+        if given == same {
+            files.push((pictured(&given, 300), pictured(&same, 300)));
+        }
+        for (given, same) in files {
+            let found = profile_from_bytes(&given, auto).unwrap();
+            assert_eq!(found.outline, read(&same, axis).outline, "{words:?}");
+            assert_eq!(found.warnings, [""; 0], "{words:?}");
+            assert_eq!(found.notes.is_empty(), words.is_empty());
+            words
+                .iter()
+                .for_each(|words| holds(&found.notes.join("\n"), words));
         }
     }
 }

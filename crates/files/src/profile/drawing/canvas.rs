@@ -3,6 +3,7 @@
 use super::paint::{Paint, Rgba, is_dark, over_white};
 use super::tile::{Tile, overlap};
 use crate::content_fault;
+use crate::profile::advice::PAINT_DARK;
 use crate::profile::seeming::gaps;
 use glam::DVec2;
 use kurbo::{Affine, BezPath, Cap, Ellipse, PathEl, Shape, Size, StrokeOpts, Vec2};
@@ -104,7 +105,9 @@ impl Canvas {
         let all = tinted.dark(nodes).ok()?.area();
         let [r, g, b, _] = over_white(color).map(|v| (255.0 * v).round() as u8);
         (all > 2.0 * dark).then(|| {
-            format!("the darkest {kind} is #{r:02x}{g:02x}{b:02x}, lighter than one half; paint it dark if it is solid")
+            format!(
+                "the darkest {kind} is #{r:02x}{g:02x}{b:02x}, lighter than one half{PAINT_DARK}"
+            )
         })
     }
 

@@ -14,6 +14,7 @@ mod thin_strokes;
 mod tile;
 
 use super::ProfileAxis;
+use super::advice::{EMPTY, Way};
 use super::seeming::{DRAWING, Silhouette, loop_length};
 use crate::content_fault;
 use crate::faults::{empty_fault, full_fault, half_empty_fault};
@@ -31,7 +32,8 @@ const SMALL: f64 = 2e-3;
 
 /// A profile from the text of an SVG drawing (or its gzip-compressed form). Strokes thinner than
 /// `min_stroke`, in heights, are left out.
-pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Result<Profile> {
+pub(super) fn profile(bytes: &[u8], way: Way, min_stroke: f64) -> Result<Profile> {
+    let axis = way.axis;
     let drawing = revmap_drawing::read(bytes).map_err(|e| content_fault(e.to_string()))?;
     let (width, height) = drawing.size;
     let (fraction, wide) = (axis.fraction(), width / height);
@@ -41,8 +43,8 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
         low: DVec2::new(-fraction * wide, 0.0),
         high: DVec2::new(radius, 1.0),
         grid: Grid::for_extent(radius.max(1.0)),
-        two_tone: !drawing.has_translucency(),
-        tinted: false,
+        two_tone: way.pale || !drawing.has_translucency(),
+        tinted: way.pale,
         min_stroke,
         page,
         cuts: Cell::new(false),
@@ -81,7 +83,10 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
         seen.loops.retain(|l| canvas.shows(l));
         cuts = canvas.cut_edges(&seen);
     }
-    let pale = || canvas.pale(&drawing.content, seen.area());
+    let pale = || match way.pale {
+        true => None,
+        false => canvas.pale(&drawing.content, seen.area()),
+    };
     let form = Silhouette::of_outline(&seen, page_at, &place);
     let solid = rest.as_ref().map(|rest| rest.outline(canvas.grid));
     let silhouette = |outline| Silhouette::of_outline(outline, page_at, &place);
@@ -101,7 +106,7 @@ pub(super) fn profile(bytes: &[u8], axis: ProfileAxis, min_stroke: f64) -> Resul
     if outline.area() <= 0.0 {
         let aside = solid.as_ref().unwrap_or(&form).elsewhere(axis);
         let aside = aside.map(|aside| half_empty_fault(&aside));
-        let pale = || pale().map(|pale| content_fault(format!("the drawing is empty: {pale}")));
+        let pale = || pale().map(|pale| content_fault(format!("{EMPTY}{pale}")));
         let lines = rest.as_ref().filter(|rest| rest.is_empty()).map(|_| {
             content_fault("the lines of the drawing are too thin to be solid; fill the shape")
         });

@@ -2,9 +2,9 @@
 
 use super::fair::fair;
 use crate::Picture;
+use crate::content_fault;
 use crate::pixels::{Pixels, decode};
-use crate::profile::{KINDS, ProfileOptions, ProfileRead, Smooth};
-use crate::{content_fault, profile_from_bytes};
+use crate::profile::{KINDS, ProfileOptions, ProfileRead, Smooth, read};
 use glam::DVec2;
 use revmap::error::Result;
 use revmap::profile::{FillRule, Outline, Profile};
@@ -115,9 +115,10 @@ pub(crate) fn outline_over(bytes: &[u8], options: &ProfileOptions) -> Result<Pic
     let loops = match found {
         Some(loops) => loops,
         None => {
-            let outline = profile_from_bytes(bytes, *options)?.outline;
+            let (profile, axis) = read(bytes, options)?;
+            let outline = profile.outline;
             let (height, width) = (f64::from(pixels.height), f64::from(pixels.width));
-            let axis = options.axis.fraction() * width;
+            let axis = axis.fraction() * width;
             let side = |way: f64| {
                 let place =
                     move |p: &glam::DVec2| [axis + way * p.x * height, (1.0 - p.y) * height];
@@ -140,6 +141,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::png_bytes;
+    use crate::profile_from_bytes;
     use image::{Rgb, RgbImage};
 
     fn auto() -> ProfileOptions {

@@ -9,6 +9,7 @@ pub(crate) mod gaps;
 pub(crate) mod marks;
 
 use super::ProfileAxis;
+use super::advice::SET_AXIS;
 use ends::{ALIKE, Edge, Ends, Row};
 use glam::DVec2;
 use revmap::profile::{FillRule, Outline, Segment, loop_area};
@@ -315,12 +316,11 @@ impl<'a> Silhouette<'a> {
     /// The key that moves the axis; `None` beside the page.
     fn set_axis(&self, at: f64) -> Option<String> {
         let fraction = (1e4 * at / self.width).round() / 1e4;
-        match at.abs() <= 1.0 {
-            true => Some("set profile_axis = \"left\"".to_owned()),
-            false => (0.0..1.0)
-                .contains(&fraction)
-                .then(|| format!("set profile_axis = {fraction}")),
-        }
+        let value = match at.abs() <= 1.0 {
+            true => Some("\"left\"".to_owned()),
+            false => (0.0..1.0).contains(&fraction).then(|| fraction.to_string()),
+        };
+        value.map(|value| format!("{SET_AXIS}{value}"))
     }
 }
 
