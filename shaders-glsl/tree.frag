@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Traces a fragment of a box.
+// Traces a fragment of a box, for `quadric`, `live`, searches of other crates, and what cells do not draw.
 #include "stage/tree_varyings.glsl"
 #include "core/trace.glsl"
 #include "stage/outputs.glsl"

@@ -1,9 +1,9 @@
 //! Rays against solids on the CPU, in double precision: for picking and physics.
 //!
 //! A [`RayCaster`] holds the patches of an object's surface under its offset, in rows of equal
-//! height. It finds the hit that is drawn: the same patches, boxes, replicas and copies, without
-//! bumps. [`QuadricPatch`] has the equations; patches follow the outline within
-//! [`FitOptions::tolerance`].
+//! height. It finds the hit that a drawing of tolerance 0 shows: the patches of the exact level,
+//! boxes, replicas and copies, without bumps. [`QuadricPatch`] has the equations; patches follow
+//! the outline within [`FitOptions::tolerance`].
 //!
 //! ```
 //! use glam::DVec3;

@@ -40,7 +40,7 @@ pub struct Look {
 pub struct PipelineChoice(Variant, Kind);
 
 impl PipelineChoice {
-    /// The name of the draw or dispatch: `cells`, `boxes`, `tiles of one copy`, ...
+    /// The name of the draw or dispatch: `cells`, `boxes`, `tiles of 8 patches`, ...
     #[must_use]
     pub fn path(&self) -> String {
         let Self(variant, kind) = self;

@@ -232,8 +232,9 @@ impl Conditions {
         u64::from(self.most_storage) / 4
     }
 
-    /// The kinds of pipelines that may draw a technique, whatever the view, the parameters and the
-    /// other objects are.
+    /// The kinds of pipelines that may draw a technique, whatever the view, the offsets and the other
+    /// objects are. They depend on the technique, the device, and the members `compute`, `opens`,
+    /// `parallel`, `takes_patches` and `casts`.
     pub fn kinds(&self, technique: &Technique) -> Vec<Kind> {
         let patches = technique.search == SearchCode::Quadric && self.takes_patches;
         let patches = patches && technique.is_single() && !self.casts;

@@ -3,8 +3,9 @@
 //!
 //! In compute each layer has a rectangle of tiles. Lists of what the tiles may show come first, an
 //! invocation a tile; then the pixels of tiles that show something. Few large solids have lists of
-//! patches too, for tiles of one copy. A lone solid needs no lists: on GPUs each work group culls
-//! its patches, and elsewhere all tiles of the rectangle walk.
+//! patches too, for tiles of one copy. A lone solid needs no lists of copies: GPUs cull its
+//! patches in each work group, and CPUs make lists of patches for a large one. Otherwise all tiles
+//! of the rectangle walk.
 
 use super::open_pixels::OpenPixels;
 use super::path::{LIST_LENGTHS, MOST_PROXIES, is_flat};

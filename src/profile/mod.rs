@@ -89,8 +89,9 @@ impl Profile {
         polygon::profile(points, radius)
     }
 
-    /// A profile with a known outline. The loops are used unchanged, except that points within 1e-4
-    /// of the largest radius from the axis are moved onto it; [`Outline`] lists their requirements.
+    /// A profile with a known outline. The loops are used unchanged, except that points near the
+    /// axis are moved onto it: nearer than 1e-4 of the largest radius, or than 1e-4 object units if
+    /// that radius is above 1. [`Outline`] lists the requirements of loops.
     #[must_use]
     pub fn new(mut outline: Outline, radius: f64) -> Self {
         let points = || outline.loops.iter().flatten();

@@ -15,7 +15,7 @@ use std::str::FromStr;
 /// The stage in which rays are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DrawStage {
-    /// Shape boxes are rasterised; the fragment shader traces.
+    /// Boxes, cells of surfaces or tiles of the picture are rasterised; the fragment shader traces.
     Fragment,
     /// A compute shader traces the screen's tiles that may show a solid.
     Compute,
@@ -43,8 +43,9 @@ pub enum Solver {
     /// parameters change.
     Quadric,
     /// The patches of [`Quadric`](Self::Quadric), found by the fastest method of each stage: proxies
-    /// for the rasteriser in the fragment stage, a list for each tile in compute. Objects without
-    /// either are searched as by [`Quadric`](Self::Quadric). Scripts may use the name `hull`.
+    /// for the rasteriser in the fragment stage, few patches for each tile in compute, and walks
+    /// through a hierarchy of copies in both. Objects without these are searched as by
+    /// [`Quadric`](Self::Quadric). Scripts may use the name `hull`.
     Exact,
     /// A search of another crate.
     Other(&'static Search),

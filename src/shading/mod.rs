@@ -103,7 +103,7 @@ impl Shading {
 
     /// All modules as bytes for [`Shading::from_bytes`] of the same version of the library, for
     /// programs that are built without a compiler. Compiles the modules that no pipeline has needed
-    /// yet, five seconds in all.
+    /// yet.
     ///
     /// # Errors
     /// [`ErrorKind::Content`] if a module does not compile: code under a macro of the library.

@@ -103,7 +103,7 @@ mod tests {
         assert_eq!(all, (0..patches.len()).collect::<Vec<_>>());
         let most = options.patches_per_cell as usize;
         assert!(cells.iter().all(|c| (1..=most).contains(&c.len())));
-        // The wall has two tests; the small patches have cells of many.
+        // The wall has a cell of its own; the small patches have cells of many.
         for (cell, range) in cells.iter().flat_map(|c| c.clone().map(move |k| (k, c))) {
             let length = patches[cell].start.distance(patches[cell].end);
             assert!(length < 0.5 || range.len() == 1, "{range:?}");

@@ -33,7 +33,7 @@ pub struct ProxyHullOptions {
 }
 
 impl Default for ProxyHullOptions {
-    /// The best values of the charts in `docs/searches.md`: few triangles, at the cost of fragments
+    /// The fastest values on llvmpipe (`docs/searches.md`): few triangles, at the cost of fragments
     /// without a hit.
     fn default() -> Self {
         Self {

@@ -1,5 +1,6 @@
 // Traces one ray against one solid or its replicas: clip, search, close. Searches by the tree, by the map and of other
-// crates trace here, in both stages. Cells and listed tiles solve patches by take_nearer() of search/quadric.glsl.
+// crates trace here, in both stages. Cells, listed tiles and culled tiles solve patches by take_nearer() of
+// search/quadric.glsl.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "core/hit.glsl"

@@ -57,7 +57,7 @@ fn parts(vector: DVec3, digits: impl Fn(f32) -> f32) -> [[f32; 3]; 3] {
     })
 }
 
-/// The block of one copy that the device places (`core/placed.glsl`), which depends on no view.
+/// The block of one copy that the device places (`place.comp`), which depends on no view.
 pub(super) fn placed_block(placement: &Placement, number: u32) -> InstanceBlock {
     let [position, origin, [depth, clip_x, clip_y]] = parts(placement.position, |part| part);
     InstanceBlock {

@@ -66,7 +66,7 @@ pub(crate) const SETS: [&[Binding]; 3] = [
     ],
     &[
         one(Kind::STORAGE_BUFFER, PIXEL),   // words of pixels
-        one(Kind::STORAGE_BUFFER, COMPUTE), // tiles
+        one(Kind::STORAGE_BUFFER, COMPUTE), // open pixels
         PLANE,
         PLANE,
         PLANE,
