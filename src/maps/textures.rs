@@ -176,16 +176,6 @@ impl DisplacementMap {
         self.levels.iter().map(|level| level.map(pack)).collect()
     }
 
-    /// Bytes of the full size, and of all levels, as [`DisplacementMap::encode`] gives them.
-    #[must_use]
-    pub fn encoded_bytes(&self) -> [usize; 2] {
-        let bytes = |l: &Level<[f32; 2]>| l.texels.len() * 4;
-        [
-            self.levels.first().map_or(0, bytes),
-            self.levels.iter().map(bytes).sum(),
-        ]
-    }
-
     /// A map of known slopes, row by row from the top.
     ///
     /// # Errors
@@ -235,7 +225,10 @@ mod tests {
     #[test]
     fn a_chain_down_to_one_texel_whose_mean_is_flat() {
         let map = waves(512, 512, SlopeFilter::Scharr);
-        assert_eq!(map.encoded_bytes(), [1 << 20, 1_398_100]);
+        let bytes = |l: &Level<[u16; 2]>| size_of_val(&l.texels[..]);
+        let levels = map.encode().unwrap();
+        assert_eq!(bytes(&levels[0]), 1 << 20);
+        assert_eq!(levels.iter().map(bytes).sum::<usize>(), 1_398_100);
         let map = waves(96, 40, SlopeFilter::Scharr);
         assert_eq!(map.levels.len(), 7);
         // Differences that wrap round cancel.
