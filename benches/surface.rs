@@ -1,5 +1,5 @@
 //! What it costs to make contour, patches and tables anew, and to cast rays: `cargo bench --bench
-//! patches`.
+//! surface`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/common/shapes.rs"]

@@ -43,7 +43,7 @@ pub struct Lists {
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', value_parser = named(&MapFormat::NAMES))]
     pub map_format: Vec<MapFormat>,
     /// Allowed errors of silhouettes and depths in pixels, of searches on patches; 0 is exact
-    /// [default: 0]
+    /// [default: 0 where a plan names none]
     #[arg(long, value_name = "PIXELS,...", value_delimiter = ',', value_parser = tolerance)]
     pub tolerance: Vec<Tolerance>,
     /// Degrees above the horizon from which each scene is looked at [default: a scene's own camera]

@@ -85,7 +85,7 @@ Cone cone_to(Disc disc, vec3 origin, vec3 point)
 }
 
 // Returns true if a cone may hit a node's box.
-bool may_meet(Cone cone, vec3 middle, vec3 half_size)
+bool cone_may_meet(Cone cone, vec3 middle, vec3 half_size)
 {
     vec3 way = middle - cone.from;
     vec3 reach = half_size + cone.widens * (length(way) + length(half_size)) + cone.slack;
@@ -127,7 +127,7 @@ uint next_caster(vec3 origin, vec3 point, Disc disc, uint map, uint met, inout u
         WalkNode node = node_at(root + k);
         uvec3 low = node.bounds & 0xffffu;
         uvec3 high = node.bounds >> 16;
-        bool meets = may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
+        bool meets = cone_may_meet(cone, vec3(low + high) * half_unit, vec3(high - low) * half_unit);
         bool ends = k >= leaves;
         met = meets && ends ? node.index : INNER_NODE;
 #if READS_MAP
@@ -146,7 +146,7 @@ uint unstopped(vec3 origin, vec3 point, Disc disc, uint begin, uint left)
 {
     // The root is in the block of the frame, which software drivers read much faster than the nodes.
     CasterRoot all = frame_block.casters;
-    bool meets = may_meet(cone_to(disc, origin, point), all.middle, all.half_size);
+    bool meets = cone_may_meet(cone_to(disc, origin, point), all.middle, all.half_size);
     uint only = meets ? all.only_copy : INNER_NODE;
     // The index of a map must be the same in all invocations, so each map has a walk of its own.
 #if READS_MAP

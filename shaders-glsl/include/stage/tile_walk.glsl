@@ -67,7 +67,7 @@ TileRays tile_rays_of(uvec2 corner)
 }
 
 // Returns a depth before which no ray enters a node's box, or NEVER if none does.
-float entry_of(WalkNode node, TileRays rays)
+float tile_entry_of(WalkNode node, TileRays rays)
 {
     vec3 a = vec3(node.bounds & 0xffffu) - grid_low;
     vec3 b = vec3(node.bounds >> 16) - grid_high;
@@ -90,8 +90,8 @@ TileWalk walk_of_tile(uint root, uvec2 corner)
         bool ends = tile.node >= leaves;
         uint pair = root + (ends ? tile.node : 2u * tile.node);
         WalkNode first = node_at(pair);
-        float to_first = entry_of(first, rays);
-        float to_second = entry_of(node_at(pair + 1u), rays);
+        float to_first = tile_entry_of(first, rays);
+        float to_second = tile_entry_of(node_at(pair + 1u), rays);
         bool swaps = to_second < to_first;
         bool both = max(to_first, to_second) < NEVER;
         bool down = !ends && min(to_first, to_second) < NEVER;
@@ -108,7 +108,7 @@ TileWalk walk_of_tile(uint root, uvec2 corner)
     uint node = tile.node;
     uint trail = tile.trail;
     while (node != 0u) {
-        tile.rest = min(tile.rest, entry_of(node_at(root + node), rays));
+        tile.rest = min(tile.rest, tile_entry_of(node_at(root + node), rays));
         node = next_node(node, trail);
     }
     tile.node = tile.rest < NEVER ? tile.node : 0u;

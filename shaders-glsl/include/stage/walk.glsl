@@ -58,7 +58,7 @@ Instance only_copy;
 #endif
 
 // Traces a copy. Of equal depths, the first copy wins.
-void take_nearer(uint number, Instance i, vec2 at, inout Nearest nearest)
+void take_nearer_copy(uint number, Instance i, vec2 at, inout Nearest nearest)
 {
     load_shape(i);
     PixelRays rays = pixel_rays(i);
@@ -120,7 +120,7 @@ void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
     if (ONE_OBJECT == 2u) {
         // The only copy, which compute alone walks to, is the same for all invocations.
         if (entry_of(node_at(root + 1u), inverse, NEVER) < NEVER) {
-            take_nearer(pushed.instance, only_copy, at, nearest);
+            take_nearer_copy(pushed.instance, only_copy, at, nearest);
         }
         return;
     }
@@ -131,7 +131,7 @@ void walk(uint root, vec2 at, TileWalk tile, inout Nearest nearest)
     uint met = next_copy(root, leaves, inverse, nearest.most, tile);
     if (met != INNER_NODE) {
         for (uint turn = 0u; turn < MOST_TURNS; ++turn) {
-            take_nearer(met, instance_at(met), at, nearest);
+            take_nearer_copy(met, instance_at(met), at, nearest);
             met = next_copy(root, leaves, inverse, nearest.most, tile);
             if (met == INNER_NODE) {
                 break;

@@ -61,12 +61,7 @@ impl Renderer {
     /// Same as [`Renderer::prepare`], for values that were added and set.
     pub fn prewarm(&mut self) -> Result<Prewarm> {
         self.content.refresh()?;
-        let mut wanted = self.content.prewarmed_forms();
-        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles | Kind::WalkPixels);
-        if wanted.iter().any(walks) {
-            wanted.push(PLACE);
-        }
-        Ok(self.prewarm_of(wanted))
+        Ok(self.prewarm_of(self.content.prewarmed_forms()))
     }
 
     /// Returns the pipelines that would draw the frames of all slots faster: special forms for one
@@ -94,8 +89,9 @@ impl Renderer {
     }
 
     /// Records draws of no pixel, or dispatches of no group, with every pipeline of
-    /// [`Renderer::prewarm`]. Some drivers, including all software drivers, compile shaders at the
-    /// first draw. Such drivers compile when these commands run.
+    /// [`Renderer::prewarm`]; in a pass without the small one that places copies, which is compute.
+    /// Some drivers, including all software drivers, compile shaders at the first draw. Such drivers
+    /// compile when these commands run.
     ///
     /// # Errors
     /// Same as [`Prewarm::compile`], for pipelines that are not compiled, and as
@@ -127,7 +123,8 @@ impl Renderer {
             // SAFETY: `cmd` is recording, and the scissor is dynamic.
             unsafe { raw.cmd_set_scissor(cmd, 0, &[vk::Rect2D::default()]) };
         }
-        for (variant, kind) in self.content.prewarmed_forms() {
+        let forms = self.content.prewarmed_forms().into_iter();
+        for (variant, kind) in forms.filter(|form| compute || *form != PLACE) {
             let pipeline = pipelines.get(variant, kind, &self.owner)?;
             self.bind_sets(cmd, point, slot, pipeline, textures, &[0; 2])?;
             if compute {
@@ -149,7 +146,7 @@ impl Renderer {
 impl Content {
     /// The general form of every pipeline that an object's technique may need, with the form for few
     /// lights, and the general forms of the technique that replaces it if its contour does
-    /// not close. No view, mask or parameter has an influence, and no number of objects or copies.
+    /// not close; and what places copies for walks. No view, mask or parameter has an influence, and no number of objects or copies.
     fn prewarmed_forms(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(&self.snapshot), self.settings.solver);
         let mut known = HashSet::new();
@@ -173,6 +170,10 @@ impl Content {
                     all.extend(forms.map(|variant| (variant, kind)));
                 }
             }
+        }
+        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles | Kind::WalkPixels);
+        if all.iter().any(walks) {
+            all.push(PLACE);
         }
         all
     }

@@ -3,15 +3,13 @@
 use super::Extent;
 use glam::DVec3;
 use revmap::frame::Frame;
-use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene, Shadow};
+use revmap::scene::{Camera, CameraFrame, Object, Offset, Placement, Scene};
 use revmap::surface::ContourSource;
 
 /// A field of view below this many degrees looks like one in radians.
 const NARROW: f64 = 2.0;
 /// A light brighter than this looks like a colour from 0 to 255.
 const BRIGHT: f32 = 16.0;
-/// More solids than this cast shadows slowly: 10,000 on 80 x 60 pixels took a minute and a half.
-const CROWD: usize = 1000;
 /// Parts of a solid's height by which it hovers by mistake.
 const HOVERS: std::ops::RangeInclusive<f64> = 0.002..=0.05;
 /// Copies of a scene, as many of each object, that are looked at for that: each is compared with all
@@ -67,12 +65,6 @@ pub fn warnings(scene: &Scene, width: u32, height: u32) -> Vec<String> {
             "polygon"
         };
         found.extend(of_profile.map(|w| format!("object.{i}.{key}: {w}")));
-    }
-    let copies: usize = scene.objects.iter().map(|o| o.placements().len()).sum();
-    if scene.shadow != Shadow::Off && copies > CROWD {
-        found.push(format!(
-            "shadow: {copies} solids cast shadows, and every pixel asks each of them for each light, which takes long; give fewer, or switch shadows off"
-        ));
     }
     found.extend(hovering(scene));
     found.extend(unseen(scene, width, height));
@@ -271,10 +263,6 @@ mod tests {
         warns("light.0.color", |s| s.lights[0].color = [255.0; 3]);
         warns("object.0.extend: the inset of 0.9 leaves nothing", |s| {
             s.objects[0].offset.extend = -0.9
-        });
-        warns("shadow: 1001 solids", |s| {
-            let copies = vec![s.objects[0].placement; CROWD + 1];
-            (s.objects[0].instances, s.shadow) = (copies.into(), Shadow::Soft);
         });
         // The other object is there, and the first is not asked for twice.
         let two = |s: &mut Scene, extend: f64| {
