@@ -27,6 +27,7 @@ mod choice;
 mod cutout;
 mod drawing;
 mod edge;
+mod foot;
 mod form;
 mod frame;
 mod ground;

@@ -3,6 +3,7 @@
 use crate::choice::{Candidate, candidates};
 use crate::cutout::Cutout;
 use crate::edge::{Half, Halves, Sampler, halves};
+use crate::foot::cut_shadow;
 use crate::ground::{Backdrop, Ground, backdrops, shade};
 use crate::mask::{Mask, largest, mask};
 use crate::work::{Work, distance};
@@ -154,10 +155,13 @@ pub fn read(photo: &Photo) -> Result<Reading, Fault> {
         margin,
         angle: best.rows.angle,
     };
-    let halves = halves(&sampler, best);
+    let mut halves = halves(&sampler, best);
     let rows = halves.radii.len() as f64;
     let stands = halves.top + halves.step * rows < work.height as f64 - 1.5;
     let seen = above::seen_from(&halves.radii, halves.step).filter(|_| stands);
+    if let Some(backdrop) = backdrop.filter(|_| seen.is_none()) {
+        cut_shadow(&mut halves, &sampler, backdrop);
+    }
     let elevation = seen.as_ref().map(|view| view.elevation);
     let ([from, to], widths) = match &seen {
         Some(view) => (view.ends, &view.radii),

@@ -114,7 +114,15 @@ mod tests {
         for values in [&many[..], &[1.0], &[1e-3, 1e3], &[20.0, 21.0, 22.0]] {
             assert_eq!(figure(values).faults(), [""; 0], "{values:?}");
         }
-        let dots = figure(&[0.2, 0.5, 1.4]).shapes();
+        let drawn = figure(&[0.2, 0.5, 1.4]);
+        // Every line has its name, those of the second block, too.
+        assert_eq!(
+            crate::chart::svg::svg(&drawn)
+                .matches("of several words")
+                .count(),
+            6
+        );
+        let dots = drawn.shapes();
         assert!(dots[0][0] < dots[1][0] && dots[1][0] < dots[2][0]);
         assert!((dots[0][0] - dots[3][0]).abs() < 1e-9);
     }

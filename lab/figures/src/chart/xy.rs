@@ -262,21 +262,25 @@ fn axes(sheet: &mut Sheet, plot: &Plot, x_label: &str, y_label: &str) {
             sheet.tick(left + place * (right - left), (top, bottom), text, &mut end);
         }
     }
-    let mut end = f64::INFINITY;
+    // Ticks may go up or down.
+    let mut last: Option<f64> = None;
     for (value, text) in &plot.y.ticks {
         let Some(place) = plot.y.place(*value) else {
             continue;
         };
         let y = bottom - place * (bottom - top);
         sheet.line([(left, y), (right, y)], GRID, 1.0, Dash::SOLID);
-        if y + TEXT * 0.6 < end {
+        if last.is_none_or(|last| (y - last).abs() > TEXT * 1.2) {
             sheet.word((left - 7.0, y + TEXT * 0.35), text, Anchor::End, INK);
-            end = y - TEXT * 0.6;
+            last = Some(y);
         }
     }
     let frame = [(left, top), (left, bottom), (right, bottom)];
     sheet.line(frame, INK, 1.0, Dash::SOLID);
     sheet.axis((left, right), bottom, x_label);
+    if y_label.is_empty() {
+        return;
+    }
     sheet.0.push(Mark::Word(Word {
         at: (EDGE + TEXT * 0.8, (top + bottom) / 2.0),
         text: y_label.to_owned(),
