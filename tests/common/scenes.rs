@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub fn errors(truth: &Frame, frame: &Frame, rows: u32) -> Comparison {
     let options = CompareOptions {
         texel: 1.0 / f64::from(rows),
-        pixels_per_degree: None,
+        flip: false,
     };
     compare(truth, frame, &options).unwrap()
 }

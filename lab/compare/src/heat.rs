@@ -89,8 +89,7 @@ pub fn heat_map(
         Heat::Normal => Box::new(|k| Scale::NORMAL.color(normal_error(reference, frame, k))),
         Heat::Silhouette => Box::new(rims(reference, frame)),
         Heat::Flip => {
-            let resolution = options.pixels_per_degree.unwrap_or(PIXELS_PER_DEGREE);
-            let map = flip::flip_map(reference, frame, resolution);
+            let map = flip::flip_map(reference, frame, PIXELS_PER_DEGREE);
             Box::new(move |k| ramp(f64::from(map[k])))
         }
     };

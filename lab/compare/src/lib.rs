@@ -10,7 +10,7 @@ mod silhouette;
 
 pub use flip::{flip_map, mean_flip};
 pub use heat::{EMPTY, GHOST, Heat, MISSED, Scale, heat_map, heat_sheet, ramp};
-pub use outline::ViewErrors;
+pub use outline::{ViewErrors, around};
 pub use pixels::{PixelErrors, pixel_errors};
 pub use silhouette::silhouette_hausdorff;
 
@@ -29,16 +29,16 @@ pub struct CompareOptions {
     /// World length of one texel of the shape map, the unit of depth errors: `1 / rows` times the
     /// smallest factor of the object's scale. Default: 1/512.
     pub texel: f64,
-    /// Pixels of the display per degree of the viewer's sight, for FLIP. Default:
-    /// [`PIXELS_PER_DEGREE`], 67.02. `None`: no FLIP, which takes longer than all the rest.
-    pub pixels_per_degree: Option<f64>,
+    /// True if FLIP at [`PIXELS_PER_DEGREE`] is wanted, which takes longer than all the rest.
+    /// Default: true.
+    pub flip: bool,
 }
 
 impl Default for CompareOptions {
     fn default() -> Self {
         Self {
             texel: 1.0 / 512.0,
-            pixels_per_degree: Some(PIXELS_PER_DEGREE),
+            flip: true,
         }
     }
 }
@@ -163,7 +163,7 @@ impl std::fmt::Display for Comparison {
 /// ```
 ///
 /// # Errors
-/// [`ErrorKind::Content`] when the frames differ in size; [`ErrorKind::Usage`] when an option is
+/// [`ErrorKind::Content`] when the frames differ in size; [`ErrorKind::Usage`] when the texel is
 /// not a positive number.
 pub fn compare(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<Comparison> {
     check(reference, frame, options)?;
@@ -182,13 +182,13 @@ impl<'a> Reference<'a> {
     /// Makes ready to compare with `frame`.
     ///
     /// # Errors
-    /// [`ErrorKind::Usage`] when an option is not a positive number.
+    /// [`ErrorKind::Usage`] when the texel is not a positive number.
     pub fn new(frame: &'a Frame, options: &CompareOptions) -> Result<Self> {
         check(frame, frame, options)?;
         Ok(Self {
             frame,
             options: *options,
-            eye: (options.pixels_per_degree).map(|resolution| flip::Eye::on(frame, resolution)),
+            eye: (options.flip).then(|| flip::Eye::on(frame, PIXELS_PER_DEGREE)),
             picture: None,
         })
     }
@@ -233,7 +233,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// What every comparison needs: one size, and options that make sense.
+/// What every comparison needs: one size, and a texel that has one.
 pub(crate) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) -> Result<()> {
     let wrong = |kind, message: String| Err(Error::new(kind, message));
     if (reference.width, reference.height) != (frame.width, frame.height) {
@@ -243,12 +243,10 @@ pub(crate) fn check(reference: &Frame, frame: &Frame, options: &CompareOptions) 
         );
         return wrong(ErrorKind::Content, message);
     }
-    let resolution = options.pixels_per_degree.unwrap_or(1.0);
-    for (name, value) in [("texel", options.texel), ("pixels per degree", resolution)] {
-        if !(value.is_finite() && value > 0.0) {
-            let message = format!("{name} is {value}; give a positive number");
-            return wrong(ErrorKind::Usage, message);
-        }
+    let texel = options.texel;
+    if !(texel.is_finite() && texel > 0.0) {
+        let message = format!("texel is {texel}; give a positive number");
+        return wrong(ErrorKind::Usage, message);
     }
     Ok(())
 }

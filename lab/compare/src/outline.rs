@@ -202,8 +202,8 @@ pub(crate) fn middle(frame: &Frame, k: usize) -> DVec2 {
     DVec2::new((k % w(frame)) as f64 + 0.5, (k / w(frame)) as f64 + 0.5)
 }
 
-/// The pixels at most so many columns and rows away.
-pub(crate) fn around(frame: &Frame, k: usize, far: usize) -> impl Iterator<Item = usize> + use<> {
+/// The pixels of a frame at most so many columns and rows away from pixel `k`, in order.
+pub fn around(frame: &Frame, k: usize, far: usize) -> impl Iterator<Item = usize> + use<> {
     let (width, height) = (w(frame), frame.height as usize);
     let (x, y) = (k % width, k / width);
     let rows = y.saturating_sub(far)..(y + far + 1).min(height);

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::{CHANNELS, Frame};
 use revmap::scene::{CameraFrame, Scene, Shadow};
-use revmap_compare::{CompareOptions, Heat, compare, heat_map};
+use revmap_compare::{CompareOptions, Heat, around, compare, heat_map};
 use revmap_files::Picture;
 use revmap_reference::{Colors, Ray, Reference};
 
@@ -202,7 +202,7 @@ impl<'a> Truth<'a> {
     fn options(&self) -> CompareOptions {
         CompareOptions {
             texel: self.texel,
-            pixels_per_degree: None,
+            flip: false,
         }
     }
 
@@ -288,7 +288,7 @@ impl<'a> Truth<'a> {
     fn is_apart(&self, frame: &Frame, k: usize) -> bool {
         let truth = &self.frame;
         let alike = |n| truth.hits(n) == truth.hits(k);
-        frame.hits(k) != truth.hits(k) && about(truth, k).all(alike)
+        frame.hits(k) != truth.hits(k) && around(truth, k, 1).all(alike)
     }
 
     fn is_wrong(&self, frame: &Frame, k: usize) -> bool {
@@ -353,16 +353,8 @@ type ColorRange = [[f32; 2]; 3];
 /// The colours of the 3 x 3 pixels about pixel `k`.
 fn colors_about(frame: &Frame, k: usize) -> ColorRange {
     let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
-    about(frame, k).for_each(|n| widen(&mut range, frame.color[n]));
+    around(frame, k, 1).for_each(|n| widen(&mut range, frame.color[n]));
     range
-}
-
-/// Pixel `k` and those beside it.
-fn about(frame: &Frame, k: usize) -> impl Iterator<Item = usize> {
-    let (w, h) = (frame.width as usize, frame.height as usize);
-    let (x, y) = (k % w, k / w);
-    let rows = y.saturating_sub(1)..=(y + 1).min(h - 1);
-    rows.flat_map(move |j| (x.saturating_sub(1)..=(x + 1).min(w - 1)).map(move |i| j * w + i))
 }
 
 fn widen(range: &mut ColorRange, color: [f32; 4]) {
