@@ -61,10 +61,7 @@ impl TruePicture {
     /// to the first hit.
     pub(crate) fn at(&self, x: f64, y: f64) -> Option<f64> {
         let direction = self.camera.direction(x, y);
-        let ray = Ray {
-            origin: self.camera.eye,
-            direction,
-        };
+        let ray = Ray::new(self.camera.eye, direction);
         let hit = self.reference.trace(ray).hit;
         hit.map(|hit| hit.t * direction.length())
     }

@@ -60,10 +60,7 @@ fn pixel(
     colors: &Colors,
     direction: DVec3,
 ) -> Option<[f32; 17]> {
-    let ray = Ray {
-        origin: scene.camera.eye,
-        direction,
-    };
+    let ray = Ray::new(scene.camera.eye, direction);
     let trace = reference.trace(ray);
     let steps = trace.evaluations as f32;
     let Some(hit) = trace.hit else {

@@ -61,6 +61,16 @@ pub struct Ray {
     pub direction: DVec3,
 }
 
+impl Ray {
+    /// A ray from a start in a direction.
+    pub fn new(origin: impl Into<DVec3>, direction: impl Into<DVec3>) -> Self {
+        Self {
+            origin: origin.into(),
+            direction: direction.into(),
+        }
+    }
+}
+
 /// Returns true for a valid ray: finite numbers, and a direction whose squared length is a normal
 /// double. Any other ray hits nothing.
 fn is_ray(origin: DVec3, direction: DVec3) -> bool {
@@ -141,10 +151,7 @@ impl Reference {
     /// The solids that contain a point of the world, and the others.
     #[must_use]
     pub fn split_at(&self, point: DVec3) -> [Self; 2] {
-        let here = Ray {
-            origin: point,
-            direction: DVec3::Z,
-        };
+        let here = Ray::new(point, DVec3::Z);
         let contains = |part: &&Part| part.solid.lowest(part.local(here), 0.0, 1e-9, None) < 0.0;
         let (around, others) = self.parts.list.iter().cloned().partition(|p| contains(&p));
         [around, others].map(|parts| Self {

@@ -136,10 +136,7 @@ const FIRST_RAYS: u32 = 64;
 /// True if nothing is between a point and a light. The surface itself hides what is below its
 /// horizon; `normal` points to the lit side.
 fn reaches(reference: &Reference, from: DVec3, normal: DVec3, towards: DVec3) -> bool {
-    let ray = Ray {
-        origin: from,
-        direction: towards,
-    };
+    let ray = Ray::new(from, towards);
     normal.dot(towards) > 0.0 && reference.trace(ray).hit.is_none()
 }
 
@@ -213,10 +210,7 @@ mod tests {
             cell: DVec3::ONE,
         };
         let reference = Reference::new(&scene).unwrap();
-        let ray = Ray {
-            origin: DVec3::ZERO,
-            direction: direction.into(),
-        };
+        let ray = Ray::new(DVec3::ZERO, direction);
         let colors = Colors::new(&scene).unwrap();
         colors.shade(&reference, &hit, ray, 0.0).unwrap()
     }

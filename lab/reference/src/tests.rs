@@ -33,10 +33,7 @@ pub(super) fn scene(objects: Vec<Object>) -> Scene {
 }
 
 fn shoot(object: &Object, origin: [f64; 3], direction: [f64; 3]) -> Trace {
-    let ray = Ray {
-        origin: origin.into(),
-        direction: direction.into(),
-    };
+    let ray = Ray::new(origin, direction);
     let reference = Reference::new(&scene(vec![object.clone()])).unwrap();
     reference.trace(ray)
 }
@@ -95,10 +92,7 @@ fn rays_that_are_none_hit_nothing() {
     ] {
         assert_eq!(shoot(&c, origin, direction), Trace::default());
         let reference = Reference::new(&scene(vec![c.clone()])).unwrap();
-        let ray = Ray {
-            origin: origin.into(),
-            direction: direction.into(),
-        };
+        let ray = Ray::new(origin, direction);
         for part in [[0.0, f64::INFINITY], [0.5, 0.5], [nan, nan]] {
             let least = reference.clearance_within(ray, part, 1e-6);
             assert_eq!(least, f64::INFINITY, "{ray:?}");

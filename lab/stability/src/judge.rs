@@ -163,10 +163,7 @@ impl<'a> Truth<'a> {
         let reference = Reference::new(scene)?;
         let camera = CameraFrame::new(&scene.camera, frame.width, frame.height)?;
         let eye = scene.camera.eye;
-        let here = Ray {
-            origin: eye,
-            direction: camera.forward,
-        };
+        let here = Ray::new(eye, camera.forward);
         let half_diagonal = camera.middle[0].hypot(camera.middle[1]) * camera.right.length();
         let (mut extent, mut distance, mut texel) = (0.0f64, 0.0f64, f64::INFINITY);
         let mut rate = 1.0f64;
@@ -278,10 +275,7 @@ impl<'a> Truth<'a> {
     fn ray(&self, k: usize) -> Ray {
         let width = self.frame.width as usize;
         let pixel = self.camera.pixel((k % width) as u32, (k / width) as u32);
-        Ray {
-            origin: self.eye,
-            direction: pixel.normalize(),
-        }
+        Ray::new(self.eye, pixel.normalize())
     }
 
     /// True if the frame alone hits or misses at pixel `k`, where the 3 x 3 pixels about it are alike.

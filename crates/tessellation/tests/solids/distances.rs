@@ -56,10 +56,7 @@ fn hausdorff(object: &Object, tolerance: f64) -> [f64; 2] {
         let along = [normal, radial, DVec3::Z, slanted[0], slanted[1]];
         let along = along.into_iter().flat_map(|way| [way, -way]);
         let reach = |way: DVec3| {
-            let ray = Ray {
-                origin: p - way * 3.0 * tolerance,
-                direction: way,
-            };
+            let ray = Ray::new(p - way * 3.0 * tolerance, way);
             reference
                 .trace(ray)
                 .hit

@@ -19,10 +19,7 @@ fn rays(n: u32) -> impl Iterator<Item = Ray> {
         let (s, c) = (g * 2.0 * PI).sin_cos();
         let z = 2.0 * h - 1.0;
         let from = aim + DVec3::new(s, c, z) * (0.05 + 3.0 * m * m);
-        Ray {
-            origin: from,
-            direction: (aim - from) * (0.5 + part(0.2137)),
-        }
+        Ray::new(from, (aim - from) * (0.5 + part(0.2137)))
     })
 }
 
@@ -238,10 +235,7 @@ fn cameras_within_see_boundaries_everywhere() {
 fn clearance_is_how_deep_or_how_far() {
     let ball = || object(samples::ball(0.3, 400), 0.5);
     let at = |o: Object, y: f64, z: f64| {
-        let ray = Ray {
-            origin: DVec3::new(2.0, y, z),
-            direction: DVec3::new(-3.0, 0.0, 0.0),
-        };
+        let ray = Ray::new(DVec3::new(2.0, y, z), DVec3::new(-3.0, 0.0, 0.0));
         let reference = Reference::new(&scene(vec![o])).unwrap();
         reference.clearance_within(ray, [0.0, f64::INFINITY], 1e-4)
     };
