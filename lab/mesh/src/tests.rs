@@ -3,17 +3,14 @@ use super::layer::pipelines::{generated as g, shader};
 use super::tessellation::Mesh;
 use super::{Fineness, MeshLayer, MeshPipelines};
 use glam::{DVec3, Vec3};
-use revmap::frame::Frame;
 use revmap::gpu::Device;
 use revmap::profile::Profile;
-use revmap::scene::{
-    Camera, Environment, Light, Material, Object, Offset, Placement, Scene, Shadow,
-};
+use revmap::scene::{Camera, Object, Offset, Placement, Scene};
 use revmap::search::unpacked;
 use revmap::settings::Settings;
 use revmap::surface::{Contour, ContourSource};
 use revmap_compare::{CompareOptions, compare};
-use revmap_offscreen::{Offscreen, OffscreenOptions};
+use revmap_offscreen::Offscreen;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -226,114 +223,6 @@ fn meshes_and_searches_hide_each_other() {
         "{alone}"
     );
     drop((meshes, offscreen));
-    device.check().unwrap();
-}
-
-/// Settings of a picture of 320 x 240.
-fn small() -> Settings {
-    Settings {
-        width: 320,
-        height: 240,
-        ..Settings::exact()
-    }
-}
-
-/// Draws a scene by meshes that follow the view, and checks the device's messages.
-fn by_meshes(
-    device: &Device,
-    pipelines: &Arc<MeshPipelines>,
-    scene: &Scene,
-    own: &Settings,
-) -> Frame {
-    let options = OffscreenOptions {
-        guests_only: true,
-        ..OffscreenOptions::default()
-    };
-    let mut offscreen = Offscreen::with(device, scene, own, options).unwrap();
-    let fineness = Fineness::Pixels(0.25);
-    let mut meshes = MeshLayer::new(pipelines, &offscreen, fineness, own, 1).unwrap();
-    meshes.update(scene, || Ok(*offscreen.view())).unwrap();
-    offscreen.draw_with(Some(&meshes)).unwrap();
-    let frame = offscreen.read().unwrap();
-    drop((meshes, offscreen));
-    device.check().unwrap();
-    frame
-}
-
-/// The part of the pixels whose colours differ by more than this part of the light.
-fn wrong(truth: &Frame, frame: &Frame, most: f32) -> f64 {
-    let pixels = truth.color.iter().zip(&frame.color);
-    let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > most);
-    pixels.filter(far).count() as f64 / truth.color.len() as f64
-}
-
-/// A torus over a plate, lit from the side: shadow maps put shadows where the reference has them, but
-/// for some pixels at their edges.
-#[test]
-fn shadow_maps_agree_with_rays() {
-    let device = Device::open_validated(None).unwrap();
-    let plate = [[0.0, 0.02], [0.9, 0.02], [0.9, 0.1], [0.0, 0.1]];
-    let solid = |points: &[[f64; 2]], radius: f64| {
-        Object::new("solid", Arc::new(Profile::polygon(points, radius).unwrap()))
-    };
-    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
-    scene.objects = vec![solid(&plate, 1.0), solid(&ring(256), 0.5)];
-    scene.lights = vec![Light {
-        direction: DVec3::new(0.5, 1.0, -0.8),
-        radius: 4.0,
-        ..Light::default()
-    }];
-    let own = small();
-    let pipelines = MeshPipelines::new(&device).unwrap();
-    let drawn = |scene: &Scene| by_meshes(&device, &pipelines, scene, &own);
-    let unshaded = drawn(&scene);
-    for (shadow, most) in [(Shadow::Hard, 0.01), (Shadow::Soft, 0.02)] {
-        scene.shadow = shadow;
-        let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
-        let wrong = |frame: &Frame| wrong(&truth, frame, 0.1);
-        let [with, without] = [wrong(&drawn(&scene)), wrong(&unshaded)];
-        assert!(with < most, "{shadow:?}: {with}");
-        assert!(without > 0.04, "{shadow:?}: {without}");
-    }
-}
-
-/// A metal and a glazed solid reflect the sky as in the reference.
-#[test]
-fn meshes_reflect_the_environment() {
-    let device = Device::open_validated(None).unwrap();
-    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
-    let [mut metal, mut glazed] = [64, 256].map(|steps| {
-        Object::new(
-            "ring",
-            Arc::new(Profile::polygon(&ring(steps), 0.5).unwrap()),
-        )
-    });
-    metal.specular.strength = 0.8;
-    metal.material = Some(Material {
-        roughness: 0.2,
-        metalness: 1.0,
-    });
-    glazed.specular.strength = 2.0;
-    glazed.placement.position.x = -1.2;
-    scene.objects = vec![metal, glazed];
-    scene.environment = Some(Environment {
-        up: [0.4, 0.6, 0.9],
-        down: [0.3, 0.1, 0.0],
-    });
-    let own = small();
-    let pipelines = MeshPipelines::new(&device).unwrap();
-    let truth = revmap_reference::draw(&scene, &own, &|_, _| {}).unwrap();
-    let wrong = |scene: &Scene| wrong(&truth, &by_meshes(&device, &pipelines, scene, &own), 0.03);
-    let with = wrong(&scene);
-    scene.objects[0].material = None;
-    let dull = wrong(&scene);
-    scene.environment = None;
-    // Reflections are strongest at the silhouette, which keeps a quarter of a pixel.
-    let without = wrong(&scene);
-    assert!(
-        with < 0.03 && dull > 0.06 && without > 0.09,
-        "{with} {dull} {without}"
-    );
     device.check().unwrap();
 }
 

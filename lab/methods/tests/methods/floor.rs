@@ -1,22 +1,18 @@
 //! The floor: no search can return less. All under the validation layers.
 
+use crate::mesh::{draw, renderer};
 use crate::scenes::{eye, scene_of};
 use crate::shapes;
 use glam::DVec3;
 use revmap::error::ErrorKind;
 use revmap::frame::Frame;
-use revmap::gpu::Device;
 use revmap::scene::{Placement, Scene, Shadow};
 use revmap::settings::{DrawStage, Planes, Solver};
-use revmap_methods::renderer::MethodDevice;
 use revmap_methods::{Method, MethodSettings};
 
 fn drawn(scene: &Scene, method: Method, stage: DrawStage, planes: Planes) -> Frame {
-    let device = Device::open_validated(None).unwrap();
     let settings = MethodSettings::default().by(method).in_stage(stage);
-    let settings = settings.sized(240, 180).storing(planes);
-    let device = MethodDevice::new(device).unwrap();
-    device.draw(scene, &settings).unwrap()
+    draw(scene, &settings.sized(240, 180).storing(planes))
 }
 
 /// Each pixel that the search hits is hit, no farther away, without a look-up.
@@ -77,11 +73,10 @@ fn the_floor_of_copies() {
 
 #[test]
 fn what_has_no_floor_is_refused() {
-    let device = MethodDevice::new(Device::open_validated(None).unwrap()).unwrap();
     let mut scene = scene_of(shapes::vase(), eye(25.0, 2.6));
     scene.shadow = Shadow::Hard;
     let settings = MethodSettings::default().by(Method::Floor);
-    let error = device.draw(&scene, &settings).err().unwrap();
+    let error = renderer(&scene, &settings).err().unwrap();
     assert_eq!(error.kind, ErrorKind::Usage);
     assert!(error.to_string().contains("shadows"), "{error}");
 }

@@ -26,7 +26,7 @@ fn device() -> &'static (Device, MethodDevice) {
     })
 }
 
-fn renderer(scene: &Scene, settings: &MethodSettings) -> revmap::Result<MethodRenderer> {
+pub fn renderer(scene: &Scene, settings: &MethodSettings) -> revmap::Result<MethodRenderer> {
     device().1.renderer(scene, settings)
 }
 
@@ -267,7 +267,7 @@ fn what_a_mesh_cannot_draw_is_refused() {
 }
 
 /// A mesh that keeps silhouettes within so many pixels.
-fn within(pixels: f64) -> MethodSettings {
+pub fn within(pixels: f64) -> MethodSettings {
     settings(3, 2).by(Method::mesh_within(pixels).unwrap())
 }
 

@@ -1,13 +1,15 @@
 //! The planes and colours of the mesh baseline are those of the reference and of the renderer.
 
-use crate::mesh::{BEVELED, ROWS, draw, reference, searched, settings};
+use crate::mesh::{BEVELED, ROWS, draw, reference, searched, settings, within};
 use crate::scenes::{errors, eye, placement, scene_of};
 use crate::shapes;
+use glam::DVec3;
 use revmap::frame::Frame;
 use revmap::maps::Projection;
 use revmap::profile::Profile;
-use revmap::scene::{Light, Specular};
+use revmap::scene::{Camera, Environment, Light, Material, Object, Scene, Shadow, Specular};
 use revmap::settings::Planes;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Names of planes that are wrong in more pixels than edges have.
@@ -132,6 +134,79 @@ fn colors_apart(a: &Frame, b: &Frame) -> Vec<f32> {
         .collect();
     apart.sort_by(f32::total_cmp);
     apart
+}
+
+/// [`shapes::torus`] of other steps. Reflections show the edges of few.
+fn torus(steps: u32) -> Object {
+    let angles = (0..steps).map(|k| TAU * f64::from(k) / f64::from(steps));
+    let points: Vec<_> = angles
+        .map(|angle| [0.28 + 0.12 * angle.cos(), 0.5 + 0.12 * angle.sin()])
+        .collect();
+    Object::new("torus", Arc::new(Profile::polygon(&points, 0.5).unwrap()))
+}
+
+/// The part of the pixels whose colours differ by more than this part of the light.
+fn wrong(truth: &Frame, frame: &Frame, most: f32) -> f64 {
+    let pixels = truth.color.iter().zip(&frame.color);
+    let far = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > most);
+    pixels.filter(far).count() as f64 / truth.color.len() as f64
+}
+
+/// A torus over a plate, lit from the side: shadow maps put shadows where the reference has them,
+/// but for some pixels at their edges.
+#[test]
+fn shadow_maps_agree_with_rays() {
+    let plate = [[0.0, 0.02], [0.9, 0.02], [0.9, 0.1], [0.0, 0.1]];
+    let plate = Profile::polygon(&plate, 1.0).unwrap();
+    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
+    scene.objects = vec![Object::new("plate", Arc::new(plate)), torus(256)];
+    scene.lights = vec![Light {
+        direction: DVec3::new(0.5, 1.0, -0.8),
+        radius: 4.0,
+        ..Light::default()
+    }];
+    let settings = within(0.25).sized(320, 240);
+    let unshaded = draw(&scene, &settings);
+    for (shadow, most) in [(Shadow::Hard, 0.01), (Shadow::Soft, 0.02)] {
+        scene.shadow = shadow;
+        let truth = reference(&scene, &settings);
+        let wrong = |frame: &Frame| wrong(&truth, frame, 0.1);
+        let [with, without] = [wrong(&draw(&scene, &settings)), wrong(&unshaded)];
+        assert!(with < most, "{shadow:?}: {with}");
+        assert!(without > 0.04, "{shadow:?}: {without}");
+    }
+}
+
+/// A metal and a glazed solid reflect the sky as in the reference.
+#[test]
+fn meshes_reflect_the_environment() {
+    let mut scene = Scene::new(Camera::new(DVec3::new(2.2, 0.4, 1.8), DVec3::ZERO));
+    let [mut metal, mut glazed] = [64, 256].map(torus);
+    metal.specular.strength = 0.8;
+    metal.material = Some(Material {
+        roughness: 0.2,
+        metalness: 1.0,
+    });
+    glazed.specular.strength = 2.0;
+    glazed.placement.position.x = -1.2;
+    scene.objects = vec![metal, glazed];
+    scene.environment = Some(Environment {
+        up: [0.4, 0.6, 0.9],
+        down: [0.3, 0.1, 0.0],
+    });
+    let settings = within(0.25).sized(320, 240);
+    let truth = reference(&scene, &settings);
+    let wrong = |scene: &Scene| wrong(&truth, &draw(scene, &settings), 0.03);
+    let with = wrong(&scene);
+    scene.objects[0].material = None;
+    let dull = wrong(&scene);
+    scene.environment = None;
+    // Reflections are strongest at the silhouette, which keeps a quarter of a pixel.
+    let without = wrong(&scene);
+    assert!(
+        with < 0.03 && dull > 0.06 && without > 0.09,
+        "{with} {dull} {without}"
+    );
 }
 
 /// The checks above can fail.
