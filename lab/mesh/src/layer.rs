@@ -12,7 +12,7 @@ use super::placed::{Placed, SceneMeshes};
 use super::tessellation::Mesh;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use pipelines::PipelineKey;
+use pipelines::{PipelineKey, STAGES};
 use revmap::error::Result;
 use revmap::gpu::{Buffer, Device, View, vulkan_error as vulkan};
 use revmap::scene::{CameraFrame, Lighting, Scene, Shadow};
@@ -280,7 +280,6 @@ impl Guest for MeshLayer {
         let raw = self.pipelines.device().raw();
         let layout = self.pipelines.layout;
         let point = vk::PipelineBindPoint::GRAPHICS;
-        let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
         let shadows = self.shadows.as_ref().map(|shadows| shadows.set);
         let sets: Vec<_> = [self.set].into_iter().chain(shadows).collect();
         for object in &self.objects {
@@ -293,7 +292,7 @@ impl Guest for MeshLayer {
                 raw.cmd_bind_pipeline(cmd, point, object.pipeline);
                 raw.cmd_bind_descriptor_sets(cmd, point, layout, 0, &sets, &[]);
                 let block = bytemuck::bytes_of(&object.block);
-                raw.cmd_push_constants(cmd, layout, stages, 0, block);
+                raw.cmd_push_constants(cmd, layout, STAGES, 0, block);
                 raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
                 raw.cmd_bind_index_buffer(cmd, mesh.indices.raw, 0, mesh.kind);
                 for part in [object.start..mesh.count, 0..object.start] {

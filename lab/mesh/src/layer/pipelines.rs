@@ -1,6 +1,6 @@
 //! Pipelines of the mesh baseline: one per variant, made when first wanted and kept.
 
-use super::super::blocks::{CasterBlock, ObjectBlock};
+use super::super::blocks::ObjectBlock;
 use super::super::tessellation::Vertex;
 use super::PassKind;
 use ash::vk;
@@ -25,6 +25,10 @@ pub(in super::super) fn shader(n: usize) -> Option<Vec<u32>> {
     unpacked(generated::MODULES.get(n)?)
 }
 
+/// The stages that read what is pushed.
+pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
 /// Number of shaders.
 const MODULES: usize = 6;
 /// The vertex shader of shadow maps among them.
@@ -48,10 +52,9 @@ pub(in super::super) struct PipelineKey {
 pub struct MeshPipelines {
     pub(super) set_layout: vk::DescriptorSetLayout,
     pub(super) layout: vk::PipelineLayout,
-    /// The pass, pipeline and layouts of shadow maps.
+    /// The pass, pipeline and sets of shadow maps.
     pub(super) shadow_pass: vk::RenderPass,
     pub(super) caster: vk::Pipeline,
-    pub(super) caster_layout: vk::PipelineLayout,
     pub(super) shadow_layout: vk::DescriptorSetLayout,
     /// One that compares, and one that reads depths.
     pub(super) samplers: [vk::Sampler; 2],
@@ -69,26 +72,21 @@ impl MeshPipelines {
             layout: vk::PipelineLayout::null(),
             shadow_pass: vk::RenderPass::null(),
             caster: vk::Pipeline::null(),
-            caster_layout: vk::PipelineLayout::null(),
             shadow_layout: vk::DescriptorSetLayout::null(),
             samplers: [vk::Sampler::null(); 2],
             modules: [vk::ShaderModule::null(); MODULES],
             made: Mutex::default(),
             device: device.clone(),
         };
-        let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
         let [uniform, storage, sampled] = [
             vk::DescriptorType::UNIFORM_BUFFER,
             vk::DescriptorType::STORAGE_BUFFER,
             vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         ];
-        all.set_layout = set_layout(device, stages, &[uniform, storage])?;
+        all.set_layout = set_layout(device, STAGES, &[uniform, storage])?;
         let fragment = vk::ShaderStageFlags::FRAGMENT;
         all.shadow_layout = set_layout(device, fragment, &[uniform, sampled, sampled])?;
-        let sets = [all.set_layout, all.shadow_layout];
-        all.layout = layout(device, &sets, stages, size_of::<ObjectBlock>())?;
-        let vertex = vk::ShaderStageFlags::VERTEX;
-        all.caster_layout = layout(device, &sets[..1], vertex, size_of::<CasterBlock>())?;
+        all.layout = layout(device, &[all.set_layout, all.shadow_layout])?;
         for (n, module) in all.modules.iter_mut().enumerate() {
             let broken = || Error::new(ErrorKind::Other, "the mesh shaders are broken");
             let words = shader(n).ok_or_else(broken)?;
@@ -129,8 +127,7 @@ impl MeshPipelines {
             .depth_bias_slope_factor(1.0)
             .line_width(1.0);
         let one = vk::SampleCountFlags::TYPE_1;
-        let of = (self.caster_layout, self.shadow_pass, one);
-        self.caster = self.compile(of, &stages, &raster, (0, false))?;
+        self.caster = self.compile((self.shadow_pass, one), &stages, &raster, (0, false))?;
         Ok(())
     }
 
@@ -196,13 +193,13 @@ impl MeshPipelines {
             })
             .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
             .line_width(1.0);
-        let of = (self.layout, pass, key.pass.samples);
+        let of = (pass, key.pass.samples);
         self.compile(of, &stages, &raster, (attachments, true))
     }
 
     fn compile(
         &self,
-        (layout, pass, samples): (vk::PipelineLayout, vk::RenderPass, vk::SampleCountFlags),
+        (pass, samples): (vk::RenderPass, vk::SampleCountFlags),
         stages: &[vk::PipelineShaderStageCreateInfo<'_>],
         raster: &vk::PipelineRasterizationStateCreateInfo<'_>,
         (attachments, normals): (usize, bool),
@@ -251,7 +248,7 @@ impl MeshPipelines {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(layout)
+            .layout(self.layout)
             .render_pass(pass);
         let none = vk::PipelineCache::null();
         // SAFETY: what `info` points to lives until the call returns, and so does the pass.
@@ -277,9 +274,7 @@ impl Drop for MeshPipelines {
                 raw.destroy_shader_module(module, None);
             }
             raw.destroy_render_pass(self.shadow_pass, None);
-            for layout in [self.layout, self.caster_layout] {
-                raw.destroy_pipeline_layout(layout, None);
-            }
+            raw.destroy_pipeline_layout(self.layout, None);
             for layout in [self.set_layout, self.shadow_layout] {
                 raw.destroy_descriptor_set_layout(layout, None);
             }
@@ -307,15 +302,11 @@ fn set_layout(
         .map_err(|code| vulkan("vkCreateDescriptorSetLayout", code))
 }
 
-fn layout(
-    device: &Device,
-    sets: &[vk::DescriptorSetLayout],
-    stages: vk::ShaderStageFlags,
-    pushed: usize,
-) -> Result<vk::PipelineLayout> {
+/// The layout of all pipelines: those of shadow maps push a smaller block, and read one set.
+fn layout(device: &Device, sets: &[vk::DescriptorSetLayout]) -> Result<vk::PipelineLayout> {
     let pushed = [vk::PushConstantRange::default()
-        .stage_flags(stages)
-        .size(pushed as u32)];
+        .stage_flags(STAGES)
+        .size(const { size_of::<ObjectBlock>() as u32 })];
     let info = vk::PipelineLayoutCreateInfo::default()
         .set_layouts(sets)
         .push_constant_ranges(&pushed);

@@ -3,7 +3,7 @@
 use super::super::blocks::{CasterBlock, InstanceBlock, MapBlock};
 use super::super::cascades::{CASCADES, Cascade, SHADOW_LIGHTS, SIDE};
 use super::super::placed::PlacedMap;
-use super::pipelines::MeshPipelines;
+use super::pipelines::{MeshPipelines, STAGES};
 use super::{DeviceMesh, write, written};
 use ash::vk;
 use glam::{DMat4, DVec3};
@@ -163,7 +163,7 @@ impl ShadowMaps {
         let (pipelines, kind) = (&self.pipelines, &self.atlas.kind);
         let raw = pipelines.device().raw();
         let point = vk::PipelineBindPoint::GRAPHICS;
-        let (layout, vertex) = (pipelines.caster_layout, vk::ShaderStageFlags::VERTEX);
+        let layout = pipelines.layout;
         let clear = [vk::ClearValue {
             depth_stencil: vk::ClearDepthStencilValue {
                 depth: 1.0,
@@ -193,7 +193,7 @@ impl ShadowMaps {
                 };
                 raw.cmd_set_viewport(cmd, 0, &[viewport]);
                 raw.cmd_set_scissor(cmd, 0, &[at]);
-                raw.cmd_push_constants(cmd, layout, vertex, 0, bytemuck::bytes_of(&one.block));
+                raw.cmd_push_constants(cmd, layout, STAGES, 0, bytemuck::bytes_of(&one.block));
                 raw.cmd_bind_vertex_buffers(cmd, 0, &[mesh.vertices.raw], &[0]);
                 raw.cmd_bind_index_buffer(cmd, mesh.indices.raw, 0, mesh.kind);
                 let (first, copies) = (one.instances.start, one.instances.len() as u32);
