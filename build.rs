@@ -20,13 +20,8 @@ const CATALOGUE: &str = "src/shader/catalogue.rs";
 const KEPT: &str = "shaders-spirv";
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={SOURCES}");
-    if let Err(error) = generate() {
-        for line in error.to_string().lines() {
-            println!("cargo::error={line}");
-        }
-    }
+    modules::run(generate);
 }
 
 fn generate() -> Fallible<()> {

@@ -1,17 +1,12 @@
 //! The SPIR-V of the mesh baseline. Without shaderc it is taken from `shaders/spirv/`, which
 //! `REVMAP_KEEP_SPIRV=1 cargo build` renews.
 
-use shaderc_link::modules::{Fallible, Module, Modules, files_in};
+use shaderc_link::modules::{self, Fallible, Module, Modules, files_in};
 use std::path::PathBuf;
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=shaders");
-    if let Err(error) = generate() {
-        for line in error.to_string().lines() {
-            println!("cargo::error={line}");
-        }
-    }
+    modules::run(generate);
 }
 
 fn generate() -> Fallible<()> {

@@ -1,21 +1,16 @@
 //! With the feature `shaderc` the SPIR-V of the floor: the renderer's GLSL with what
 //! `shaders/floor/` has in place. It is not kept.
 
-use shaderc_link::modules::Fallible;
+use shaderc_link::modules::{self, Fallible};
 #[cfg(feature = "shaderc")]
 use shaderc_link::modules::{Module, Modules};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=shaders");
     println!("cargo::rerun-if-changed=../../shaders-glsl");
-    if let Err(error) = generate() {
-        for line in error.to_string().lines() {
-            println!("cargo::error={line}");
-        }
-    }
+    modules::run(generate);
 }
 
 fn generate() -> Fallible<()> {

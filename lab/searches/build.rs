@@ -32,13 +32,8 @@ const ENTRIES: [&str; 2] = ["tree.frag", "walk.comp"];
 const INCLUDES: [&str; 3] = ["core", "search", "stage"];
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={OWN}");
-    if let Err(error) = generate() {
-        for line in error.to_string().lines() {
-            println!("cargo::error={line}");
-        }
-    }
+    modules::run(generate);
 }
 
 fn generate() -> Fallible<()> {

@@ -13,6 +13,16 @@ pub type Fallible<T> = Result<T, Box<dyn Error>>;
 /// The ending of packed modules.
 pub const ENDING: &str = "spv.z";
 
+/// Does the work of a build script; each line of an error is one of cargo's.
+pub fn run(work: impl FnOnce() -> Fallible<()>) {
+    println!("cargo::rerun-if-changed=build.rs");
+    if let Err(error) = work() {
+        for line in error.to_string().lines() {
+            println!("cargo::error={line}");
+        }
+    }
+}
+
 /// One module.
 pub struct Module {
     /// Its name, and that of its kept file.
