@@ -20,7 +20,7 @@ use revmap::settings::Solver;
 use shaderc_link::modules::Fnv;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A search of a folder.
 #[derive(Clone, Debug)]
@@ -42,6 +42,10 @@ pub struct Folder {
 /// Every search that was loaded, and its folder.
 static LOADED: Mutex<Vec<(&'static Search, &'static Folder)>> = Mutex::new(Vec::new());
 
+fn loaded() -> MutexGuard<'static, Vec<(&'static Search, &'static Folder)>> {
+    LOADED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// True if a solver's name is the path of a folder: it has a separator, or such a folder is there.
 #[must_use]
 pub fn is_named(name: &str) -> bool {
@@ -54,11 +58,9 @@ pub fn is_named(name: &str) -> bool {
 /// [`ErrorKind::File`] for a file that cannot be read, [`ErrorKind::Content`] for a fault of
 /// `search.toml`, [`ErrorKind::Usage`] for values of parameters.
 pub fn load(name: &str) -> Result<Solver> {
-    let known = LOADED.lock().ok().and_then(|all| {
-        let found = all.iter().rev().find(|(_, folder)| folder.spec == name);
-        found.map(|(search, _)| Solver::Other(search))
-    });
-    known.map_or_else(|| reload(name), Ok)
+    let known = |(search, folder): &(_, &Folder)| (folder.spec == name).then_some(*search);
+    let known = loaded().iter().rev().find_map(known);
+    known.map_or_else(|| reload(name), |search| Ok(Solver::Other(search)))
 }
 
 /// The search of a folder as its files are now.
@@ -75,9 +77,7 @@ pub fn reload(name: &str) -> Result<Solver> {
         return Err(Error::new(ErrorKind::Content, message).in_file(file));
     }
     let search: &'static Search = Box::leak(Box::new(folder.search()));
-    if let Ok(mut all) = LOADED.lock() {
-        all.push((search, folder));
-    }
+    loaded().push((search, folder));
     Ok(Solver::Other(search))
 }
 
@@ -87,9 +87,8 @@ pub fn of(solver: Solver) -> Option<&'static Folder> {
     let Solver::Other(search) = solver else {
         return None;
     };
-    let all = LOADED.lock().ok()?;
-    let found = all.iter().find(|(known, _)| *known == search);
-    found.map(|(.., folder)| *folder)
+    let own = |(known, folder): &(&Search, _)| (*known == search).then_some(*folder);
+    loaded().iter().find_map(own)
 }
 
 /// The name of a folder's search; `None` for a search that no folder holds.
@@ -100,15 +99,13 @@ pub fn name_of(solver: Solver) -> Option<String> {
 /// The search that was loaded last.
 #[must_use]
 pub fn latest() -> Option<Solver> {
-    let all = LOADED.lock().ok()?;
-    all.last().map(|(search, _)| Solver::Other(search))
+    loaded().last().map(|(search, _)| Solver::Other(search))
 }
 
 /// The folders of all searches that were loaded.
 #[must_use]
 pub fn all() -> Vec<&'static Folder> {
-    let all = LOADED.lock();
-    all.map_or_else(|_| Vec::new(), |all| all.iter().map(|(.., f)| *f).collect())
+    loaded().iter().map(|(_, folder)| *folder).collect()
 }
 
 /// The description of a search of this crate.
