@@ -30,9 +30,7 @@ fn verdicts(found: &Against) -> Vec<Verdict> {
 fn timed(times: [f64; 4], stage: DrawStage) -> Row {
     let pass = |t: f64| [(0.99 * t, t), (t, 1.01 * t), (0.98 * t, t)];
     let passes = times.map(|t| pass(t).map(|(gpu, frame)| (Some(gpu), frame)));
-    let mut row = row(&passes.each_ref().map(|p| p.as_slice()));
-    row.settings.stage = stage;
-    row
+    row(&passes.each_ref().map(|p| p.as_slice())).set(|s| s.stage = stage)
 }
 
 #[test]
@@ -65,11 +63,8 @@ fn planted_changes_are_found() {
 #[test]
 fn a_slower_machine_is_told_from_a_slower_search() {
     let papers = |times| papers(timed(times, DrawStage::Fragment));
-    let search = |times, steps| {
-        let mut row = timed(times, DrawStage::Fragment);
-        row.settings.max_steps = Some(steps);
-        row
-    };
+    let search =
+        |times, steps| timed(times, DrawStage::Fragment).set(|s| s.max_steps = Some(steps));
     let old = run(&[
         papers([10.0, 10.2, 9.9, 10.1]),
         search([5.0, 5.1, 4.9, 5.0], 30),
@@ -97,9 +92,7 @@ fn a_run_against_itself_names_nothing() {
         let row = |steps: u32| {
             let own = 10.0 * (0.02 * normal()).exp() * if steps == 7 { changed } else { 1.0 };
             let times = [0; 4].map(|_| own * (0.02 * normal()).exp());
-            let mut row = timed(times, DrawStage::Fragment);
-            row.settings.max_steps = Some(steps + 1);
-            row
+            timed(times, DrawStage::Fragment).set(|s| s.max_steps = Some(steps + 1))
         };
         (0..40).map(row).collect()
     };
@@ -146,11 +139,11 @@ fn what_cannot_be_compared_is_refused() {
 #[test]
 fn tolerances_and_edges_are_told_apart() {
     let with = |tolerance, edges, ms| {
-        let mut row = timed([ms; 4], DrawStage::Fragment);
-        row.settings.method = Method::DEFAULT;
-        row.settings.tolerance = revmap::settings::Tolerance::new(tolerance).unwrap();
-        row.settings.edges = edges;
-        row
+        timed([ms; 4], DrawStage::Fragment).set(|s| {
+            s.method = Method::DEFAULT;
+            s.tolerance = revmap::settings::Tolerance::new(tolerance).unwrap();
+            s.edges = edges;
+        })
     };
     let (one, four) = (Edges::OneRay, Edges::Rays(4));
     let run = run(&[

@@ -88,11 +88,7 @@ mod tests {
     fn every_name_that_occurs_is_explained_once() {
         let fixed = [16, 32].map(|n| Method::mesh(n, 2 * n).unwrap());
         let within = [0.1, 2.0].map(|pixels| Method::mesh_within(pixels).unwrap());
-        let row = |method| {
-            let mut row = timed(&[1.0]);
-            row.settings.method = method;
-            row
-        };
+        let row = |method| timed(&[1.0]).set(|s| s.method = method);
         let methods = Method::ALL.into_iter().chain(fixed).chain(within);
         let mut rows: Vec<Row> = methods.map(row).collect();
         rows.push(papers(rows[0].clone()));

@@ -141,11 +141,9 @@ mod tests {
 
     #[test]
     fn a_line_holds_its_three_values() {
-        let of = |(value, ms, size)| {
-            let mut row = timed(&[ms, ms]);
-            (row.settings.width, row.settings.height) = size;
-            row.value = Some(value);
-            row
+        let of = |(value, ms, size)| Row {
+            value: Some(value),
+            ..timed(&[ms, ms]).set(|s| (s.width, s.height) = size)
         };
         let (size, other) = ((800, 600), (1000, 600));
         let rows: Vec<Row> = [(0.25, 10.0, size), (0.5, 8.0, size), (0.8, 5.0, size)]

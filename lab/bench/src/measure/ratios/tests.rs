@@ -47,8 +47,7 @@ fn what_cannot_be_trusted_counts_for_nothing() {
     assert_eq!(ratios.len(), 1, "only the RBM baseline itself");
     // A baseline that lies leaves nothing to compare with; one serves both stages.
     assert!(over(&[timed(&[20.0]), papers(lies)], Over::Baseline).is_empty());
-    let mut compute = timed(&[20.0]);
-    compute.settings.stage = DrawStage::Compute;
+    let compute = timed(&[20.0]).set(|s| s.stage = DrawStage::Compute);
     assert_eq!(over(&[compute, fine], Over::Baseline).len(), 2);
 }
 
@@ -56,10 +55,8 @@ fn what_cannot_be_trusted_counts_for_nothing() {
 #[test]
 fn the_floor_is_taken_off() {
     let timed = |ms: f64| timed(&[ms, ms]);
-    let mut floor = timed(5.0);
-    floor.settings.method = Method::Floor;
-    let mut compute = timed(6.0);
-    compute.settings.stage = DrawStage::Compute;
+    let floor = timed(5.0).set(|s| s.method = Method::Floor);
+    let compute = timed(6.0).set(|s| s.stage = DrawStage::Compute);
     let rows = [timed(8.0), floor, papers(timed(20.0)), compute];
     let above = |k: usize| above_floor(&rows, &rows[k]).map(|ms| ms.round());
     assert_eq!([0, 1, 2, 3].map(above), [Some(3.0), None, Some(15.0), None]);
@@ -104,11 +101,7 @@ fn the_default_search_is_held_against_meshes() {
 /// fragment stage, whichever baseline is drawn first. Without it they are put over the 16.
 #[test]
 fn both_stages_are_put_over_one_baseline() {
-    let timed = |ms: f64, stage| {
-        let mut row = timed(&[ms, ms]);
-        row.settings.stage = stage;
-        row
-    };
+    let timed = |ms: f64, stage| timed(&[ms, ms]).set(|s| s.stage = stage);
     use DrawStage::{Compute, Fragment};
     let rows = [
         papers(timed(16.0, Compute)),

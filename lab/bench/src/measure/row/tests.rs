@@ -50,6 +50,14 @@ pub(crate) fn drawn(method: Method, stage: DrawStage, passes: &[f64], p99: f64) 
     row
 }
 
+impl Row {
+    /// The same with other settings.
+    pub(crate) fn set(mut self, change: impl FnOnce(&mut MethodSettings)) -> Self {
+        change(&mut self.settings);
+        self
+    }
+}
+
 /// The same as the RBM baseline draws it.
 pub(crate) fn papers(mut row: Row) -> Row {
     row.settings = rbm_baseline(&spindle(), &row.settings);

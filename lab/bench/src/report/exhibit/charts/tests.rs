@@ -43,10 +43,7 @@ fn each_stage_has_a_front_of_its_own() {
 #[test]
 fn charts_of_growth_mark_what_is_not_resolved() {
     let timed = |side: u32, passes: [f64; 3]| {
-        let mut row = timed(&passes);
-        row.settings.method = Solver::Exact.into();
-        (row.settings.width, row.settings.height) = (side, side);
-        row
+        timed(&passes).set(|s| *s = s.by(Solver::Exact).sized(side, side))
     };
     let mut rows = vec![
         timed(100, [1.0, 1.0, 1.0]),
