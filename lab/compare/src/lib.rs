@@ -195,9 +195,6 @@ impl<'a> Reference<'a> {
 
     /// The same, with errors in pixels of the view of `scene`, which the frame shows by one ray per
     /// pixel.
-    ///
-    /// # Errors
-    /// Those of a camera that sees nothing, and of the reference.
     pub fn of_scene(mut self, scene: &Scene) -> Result<Self> {
         let (width, height) = (self.frame.width, self.frame.height);
         self.picture = Some(TruePicture::new(scene, width, height)?);
@@ -205,9 +202,6 @@ impl<'a> Reference<'a> {
     }
 
     /// Compares a drawn frame, as [`compare`] does.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Content`] when the frames differ in size.
     pub fn compare(&self, frame: &Frame) -> Result<Comparison> {
         let (reference, texel) = (self.frame, self.options.texel);
         check(reference, frame, &self.options)?;

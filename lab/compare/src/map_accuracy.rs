@@ -69,9 +69,6 @@ impl Disc {
 
     /// Errors of a map of this disc. A binary map is measured outside only: the papers store no
     /// distances inside.
-    ///
-    /// # Errors
-    /// [`ErrorKind::OutOfHostMemory`](revmap::error::ErrorKind::OutOfHostMemory).
     pub fn measure(&self, map: &ShapeMap) -> Result<MapErrors> {
         let side = f64::from(map.rows);
         let mut distance = Vec::new();

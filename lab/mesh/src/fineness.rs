@@ -57,7 +57,6 @@ impl Fineness {
         }
     }
 
-    /// The mesh of a level.
     pub(super) fn mesh(self, contour: &Contour, level: i32) -> Mesh {
         match self {
             Self::Quads { segments, rings } => Mesh::new(contour, segments, rings),

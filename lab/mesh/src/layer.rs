@@ -61,9 +61,6 @@ struct DrawnObject {
 impl MeshLayer {
     /// No meshes yet, for the pass of `offscreen`, which draws by `settings` and has so many
     /// samples.
-    ///
-    /// # Errors
-    /// Of Vulkan.
     pub fn new(
         pipelines: &Arc<MeshPipelines>,
         offscreen: &Offscreen,
@@ -314,7 +311,6 @@ impl Drop for MeshLayer {
     }
 }
 
-/// A mesh on the device.
 struct DeviceMesh {
     mesh: Arc<Mesh>,
     vertices: Buffer,

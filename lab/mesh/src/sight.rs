@@ -62,7 +62,6 @@ impl Sight {
         }
     }
 
-    /// The ball around a copy.
     pub fn ball(&self, object: &Object, &[widest, low, high]: &[f64; 3], copy: &Placement) -> Ball {
         let (turn, scale) = (copy.rotation.normalize(), copy.scale);
         let axis = DVec2::from(object.axis_offset());

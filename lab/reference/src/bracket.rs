@@ -14,10 +14,8 @@ pub(super) const GRAZE: f64 = 1e-7;
 /// Steps after which a ray along a surface takes larger steps and is marked as grazing.
 const PATIENCE: u32 = 100_000;
 
-/// The result of a search.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
-    /// The first zero.
     pub zero: Option<f64>,
     /// True if a change of the last digits could make another zero the first one.
     pub grazes: bool,

@@ -16,10 +16,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// `progress` is called, from any thread, with the number of finished rows and the number of all
 /// rows.
-///
-/// # Errors
-/// The errors of [`Frame::new`], [`CameraFrame::new`], [`Reference::new`] and
-/// [`ArcLength::new`](revmap::maps::ArcLength::new).
 pub fn draw(
     scene: &Scene,
     settings: &Settings,

@@ -12,7 +12,6 @@ use revmap::profile::Outline;
 /// and is not part of the surface.
 pub(super) const ON_AXIS: f64 = 1e-9;
 
-/// A segment of the surface.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     a: DVec2,
@@ -145,7 +144,6 @@ impl Field {
         outwards * away.normalize()
     }
 
-    /// The segment nearest to `q`.
     pub fn nearest(&self, q: DVec2, hint: u32) -> Nearest {
         let mut best = (self.segments[hint as usize].square_to(q), hint);
         let point = q.extend(0.0);
@@ -168,7 +166,6 @@ impl Field {
 }
 
 impl Segment {
-    /// Square of the distance to `q`.
     fn square_to(&self, q: DVec2) -> f64 {
         let from_a = q - self.a;
         let place = from_a.dot(self.along);

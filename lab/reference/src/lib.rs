@@ -149,7 +149,6 @@ impl Reference {
     }
 
     /// The solids that contain a point of the world, and the others.
-    #[must_use]
     pub fn split_at(&self, point: DVec3) -> [Self; 2] {
         let here = Ray::new(point, DVec3::Z);
         let contains = |part: &&Part| part.solid.lowest(part.local(here), 0.0, 1e-9, None) < 0.0;
@@ -161,7 +160,6 @@ impl Reference {
 
     /// The first hit along a ray. An invalid ray (no direction, a number that is not finite) hits
     /// nothing.
-    #[must_use]
     pub fn trace(&self, ray: Ray) -> Trace {
         let mut all = Trace::default();
         let mut nearest = f64::INFINITY;
@@ -204,7 +202,6 @@ impl Reference {
     /// right at a silhouette as long as the clearance is small. With equal values of `t` it is the
     /// distance of a drawn hit from the surface. With a part up to a drawn hit, it shows a solid
     /// that the drawing has passed. An invalid ray has the clearance `+inf`.
-    #[must_use]
     pub fn clearance_within(&self, ray: Ray, part: [f64; 2], tolerance: f64) -> f64 {
         self.each_lowest(ray, part, tolerance, None)
             .fold(f64::INFINITY, f64::min)
@@ -213,7 +210,6 @@ impl Reference {
     /// Returns true if a part of a ray, between two values of `t`, is deeper in a solid than
     /// `depth`, object units, to within `tolerance`. This is much faster than
     /// [`Reference::clearance_within`], which computes the depth.
-    #[must_use]
     pub fn goes_deeper(&self, ray: Ray, part: [f64; 2], depth: f64, tolerance: f64) -> bool {
         self.each_lowest(ray, part, tolerance, Some(-depth))
             .any(|lowest| lowest < -depth)

@@ -28,9 +28,6 @@ pub struct Colors<'a> {
 
 impl<'a> Colors<'a> {
     /// Prepares a scene.
-    ///
-    /// # Errors
-    /// The errors of [`ArcLength::new`](revmap::maps::ArcLength::new).
     pub fn new(scene: &'a Scene) -> Result<Self> {
         let lengths = Lengths::new(scene)?;
         Ok(Self { scene, lengths })
@@ -38,7 +35,6 @@ impl<'a> Colors<'a> {
 
     /// The linear colour of the first hit along a ray; `None` without a hit. Rays towards the
     /// lights begin at least `lift` off the surface, world units.
-    #[must_use]
     pub fn along(&self, reference: &Reference, ray: Ray, lift: f64) -> Option<[f32; 4]> {
         let hit = reference.trace(ray).hit?;
         Some(self.shade(reference, &hit, ray, lift)?.color)

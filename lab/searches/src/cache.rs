@@ -7,7 +7,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folder: `revmap` below `XDG_CACHE_HOME`, `LOCALAPPDATA` or `~/.cache`.
-#[must_use]
 pub fn folder() -> Option<PathBuf> {
     let set = |name| std::env::var_os(name).filter(|v| !v.is_empty());
     let base = set("XDG_CACHE_HOME")
@@ -18,7 +17,6 @@ pub fn folder() -> Option<PathBuf> {
 }
 
 /// The content of a file that [`write()`] wrote; `None` if it is absent or damaged.
-#[must_use]
 pub fn read(file: &Path) -> Option<Vec<u8>> {
     let bytes = fs::read(file).ok()?;
     let (head, data) = bytes.split_first_chunk::<8>()?;

@@ -69,9 +69,6 @@ impl Cones {
     /// The cone map with relaxed cones (Policarpo and Oliveira 2007). Each is so wide that a
     /// straight ray of the half-plane, which comes in from the largest radius and has entered the
     /// solid, leaves the solid no sooner than the cone. The time grows with the square of `rows`.
-    ///
-    /// # Errors
-    /// The errors of [`Cones::new`].
     pub fn relaxed(contour: &Contour, rows: u32) -> Result<Self> {
         Self::with(contour, rows, relaxed_slopes)
     }

@@ -47,7 +47,6 @@ fn loaded() -> MutexGuard<'static, Vec<(&'static Search, &'static Folder)>> {
 }
 
 /// True if a solver's name is the path of a folder: it has a separator, or such a folder is there.
-#[must_use]
 pub fn is_named(name: &str) -> bool {
     name.contains(['/', '\\']) || split(name).0.join(manifest::FILE).exists()
 }
@@ -64,9 +63,6 @@ pub fn load(name: &str) -> Result<Solver> {
 }
 
 /// The search of a folder as its files are now.
-///
-/// # Errors
-/// The errors of [`load`].
 pub fn reload(name: &str) -> Result<Solver> {
     let folder: &'static Folder = Box::leak(Box::new(Folder::read(name)?));
     let twin = |other: &&Folder| other.name() == folder.name() && other.path != folder.path;
@@ -82,7 +78,6 @@ pub fn reload(name: &str) -> Result<Solver> {
 }
 
 /// The folder of a search; `None` for searches of crates.
-#[must_use]
 pub fn of(solver: Solver) -> Option<&'static Folder> {
     let Solver::Other(search) = solver else {
         return None;
@@ -97,19 +92,16 @@ pub fn name_of(solver: Solver) -> Option<String> {
 }
 
 /// The search that was loaded last.
-#[must_use]
 pub fn latest() -> Option<Solver> {
     loaded().last().map(|(search, _)| Solver::Other(search))
 }
 
 /// The folders of all searches that were loaded.
-#[must_use]
 pub fn all() -> Vec<&'static Folder> {
     loaded().iter().map(|(_, folder)| *folder).collect()
 }
 
 /// The description of a search of this crate.
-#[must_use]
 pub fn published(solver: Solver) -> Option<Manifest> {
     let all = crate::published::PUBLISHED;
     let (_, text) = all.iter().find(|(known, _)| *known == solver)?;
@@ -188,7 +180,6 @@ impl Folder {
     }
 
     /// The name in options and results, with the parameters that are not the default.
-    #[must_use]
     pub fn name(&self) -> String {
         let mut name = self.manifest.name.clone();
         if ALL.iter().any(|solver| solver.name() == name) {
@@ -204,7 +195,6 @@ impl Folder {
     }
 
     /// The origin of the search as reports state it: folder, hash, publication, licence.
-    #[must_use]
     pub fn origin(&self) -> String {
         let Manifest {
             source, licence, ..

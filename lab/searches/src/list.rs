@@ -8,7 +8,6 @@ use super::module::{Pass, SearchModule, StoredPlanes};
 pub struct Listed {
     /// The search's file in `published/`.
     pub hook: &'static str,
-    /// The module.
     pub module: SearchModule,
 }
 
@@ -21,7 +20,6 @@ impl Listed {
     }
 }
 
-/// Every module.
 pub fn modules() -> Vec<Listed> {
     let mut all = Vec::new();
     for pass in [Pass::Fragment, Pass::Compute] {

@@ -10,11 +10,9 @@ use std::time::Duration;
 /// The variable that sets another limit of a frame, and of a table's program, than ten seconds.
 pub const LIMIT: &str = "REVMAP_TIME_LIMIT";
 
-/// Ten seconds.
 const USUAL_LIMIT: Duration = Duration::from_secs(10);
 
 /// The limit.
-#[must_use]
 pub fn limit() -> Duration {
     set_limit().unwrap_or(USUAL_LIMIT)
 }
@@ -41,7 +39,6 @@ fn parsed_limit(text: &str) -> Option<Duration> {
 }
 
 /// The limit in words.
-#[must_use]
 pub fn limit_in_words() -> String {
     in_words(limit())
 }
@@ -84,7 +81,6 @@ pub struct Overrun {
     pub reason: String,
 }
 
-/// The first overrun.
 static FOUND: Mutex<Option<Overrun>> = Mutex::new(None);
 static CHANGED: Condvar = Condvar::new();
 
@@ -93,14 +89,12 @@ fn lock() -> MutexGuard<'static, Option<Overrun>> {
 }
 
 /// The first overrun so far.
-#[must_use]
 pub fn found() -> Option<Overrun> {
     lock().clone()
 }
 
 /// Blocks until a frame overruns, and returns the first overrun. The frame may still be drawn, and may
 /// block its thread for good.
-#[must_use]
 pub fn wait() -> Overrun {
     let mut found = lock();
     loop {

@@ -53,7 +53,6 @@ fn cell(trial: &Trial) -> String {
     }
 }
 
-/// Which cases were drawn.
 fn drawn(cases: &[Case], outcome: &Outcome) -> Vec<usize> {
     let is_drawn = |k: &usize| outcome.trials.iter().any(|t| t.case == *k);
     (0..cases.len()).filter(is_drawn).collect()

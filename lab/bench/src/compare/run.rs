@@ -10,7 +10,6 @@ use revmap_figures::table::{A_RUN, Table, text_of};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A run as read.
 pub(super) struct Run {
     /// `results.csv`.
     pub(super) results: Table,
@@ -97,7 +96,6 @@ impl Run {
         passes.map(|(_, times)| times.as_slice())
     }
 
-    /// The medians of a row by pass.
     pub(super) fn medians(&self, row: usize) -> Vec<f64> {
         self.times(row).filter_map(stats::median).collect()
     }
@@ -112,7 +110,6 @@ impl Run {
         (!ratios.is_empty()).then_some(ratios)
     }
 
-    /// True if a record is the RBM baseline's.
     pub(super) fn is_baseline(&self, record: &[String]) -> bool {
         let mut columns = BASELINE.iter();
         columns.all(|(column, values)| values.contains(&self.at(record, column)))

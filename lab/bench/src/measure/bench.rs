@@ -41,15 +41,11 @@ pub struct Observer<'a> {
 }
 
 /// A picture and its measure.
+#[allow(missing_docs)] // names say it
 pub struct RenderedCase<'a> {
-    /// The plan.
     pub plan: &'a Plan,
-    /// Which of its cases.
     pub case: &'a Case,
-    /// The picture.
     pub frame: &'a Frame,
-    /// The truth.
     pub truth: &'a Frame,
-    /// How the two were compared.
     pub options: &'a CompareOptions,
 }

@@ -39,14 +39,12 @@ pub struct Drawn {
     view: Vec<DrawnView>,
 }
 
-/// A view as it was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct DrawnView {
     name: String,
     /// A digest of `scene`.
     digest: String,
     scene: Table,
-    /// The scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<Table>,
 }
@@ -75,9 +73,6 @@ impl Drawn {
     }
 
     /// The file's text.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Other`] if a value has no form in TOML, which is a bug.
     pub(crate) fn text(&self) -> Result<String> {
         let text = toml::to_string(self).map_err(|e| {
             let message = format!("{FILE} cannot be written ({e}); report this");
@@ -87,9 +82,6 @@ impl Drawn {
     }
 
     /// Reads the file in the folder of a run; `None` if a run of an earlier version wrote none.
-    ///
-    /// # Errors
-    /// [`ErrorKind::File`] for a damaged file.
     pub(crate) fn load(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(FILE);
         let text = match std::fs::read_to_string(&file) {

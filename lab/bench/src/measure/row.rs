@@ -146,7 +146,6 @@ pub struct Row {
 
 impl Row {
     /// The tolerance that the row was drawn to, pixels.
-    #[must_use]
     pub fn tolerance_px(&self) -> Option<f64> {
         let settings = &self.settings;
         let own = settings.method.follows_tolerance();

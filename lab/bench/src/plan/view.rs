@@ -80,7 +80,6 @@ impl View {
     }
 
     /// The same view, of a scene file with this text.
-    #[must_use]
     pub fn of_file(mut self, text: &str) -> Self {
         self.file = text.parse().ok().map(Arc::new);
         self

@@ -94,7 +94,6 @@ fn over(context: &Context, row: &Row, other: Over) -> Cell {
     context.known(ratio(context, row, other))
 }
 
-/// A row's time over another's.
 fn ratio(context: &Context, row: &Row, other: Over) -> Option<Interval> {
     between(row, other.of(context.rows, row)?)
 }

@@ -144,7 +144,6 @@ impl FlightTimes {
     }
 
     /// A name for its file.
-    #[must_use]
     pub fn name(&self) -> String {
         let moving = ["", "-copies-move"][usize::from(self.plan.copies_move)];
         let stage = self.settings.stage.name();

@@ -108,9 +108,6 @@ fn clear(folder: &Path) -> std::io::Result<()> {
 
 /// Removes what a run without a result wrote: all of `folder` if the run has `made` it, else the run's
 /// own files.
-///
-/// # Errors
-/// [`ErrorKind::File`].
 pub fn discard(folder: &Path, made: bool) -> Result<()> {
     let removed = match made {
         true => std::fs::remove_dir_all(folder),
@@ -179,7 +176,6 @@ pub fn excluded(plan: &Plan, measured: &Measured) -> Table {
 }
 
 /// A warning about rows that are in no summary since their clocks differ.
-#[must_use]
 pub fn clock_warning(rows: &[Row]) -> Option<String> {
     let differs = |row: &&Row| matches!(row.clocks(), Clocks::Disagree { .. });
     let count = rows.iter().filter(differs).count();

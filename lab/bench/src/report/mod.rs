@@ -31,18 +31,13 @@ use revmap_figures::page::Page;
 use std::path::Path;
 
 /// All that came out of a run.
+#[allow(missing_docs)] // names say it
 pub struct Run<'a> {
-    /// The plan's file.
     pub file: &'a PlanFile,
-    /// The plan.
     pub plan: &'a Plan,
-    /// The rows.
     pub measured: &'a Measured,
-    /// The machine.
     pub machine: &'a Machine,
-    /// Pictures.
     pub album: &'a Album,
-    /// Flights.
     pub flights: &'a [FlightTimes],
 }
 
@@ -162,7 +157,6 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes one exhibit.
     fn show(&mut self, context: &Context, exhibit: &'a Exhibit) -> Result<()> {
         self.heading = None;
         if let Some(chapter) = &exhibit.chapter {

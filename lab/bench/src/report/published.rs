@@ -11,7 +11,6 @@ use revmap_figures::table::Table;
 
 /// A published table, measured by its authors on a Core i7-3612QM with a GeForce GT 630M.
 pub struct Printed {
-    /// The letter of the parameter.
     letter: char,
     /// The parameter's values: `e` and `b` as fractions of the largest distance in the map.
     values: [f64; 3],

@@ -190,7 +190,6 @@ pub fn run(bench: &mut StandIn, stop: &AtomicBool) -> Result<Measured> {
     run_plan(&plan(), &LIMITS, bench, stop)
 }
 
-/// Measures a plan.
 pub fn run_plan(
     plan: &Plan,
     limits: &TimeBudget,
@@ -206,7 +205,6 @@ pub fn run_plan(
     measure(plan, bench, limits, &mut observer)
 }
 
-/// Measures the plan with a fault.
 pub fn measured(fault: Fault) -> Measured {
     run(&mut StandIn::new(fault), &AtomicBool::new(false)).unwrap()
 }

@@ -13,12 +13,10 @@ const MOST: usize = 44;
 
 /// One line of a chart.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // names say it
 pub struct Line {
-    /// Its name.
     pub name: String,
-    /// Its value.
     pub value: Interval,
-    /// How it looks.
     pub style: Style,
     /// True if its interval is too wide: it is struck through, and its number in brackets.
     pub unresolved: bool,

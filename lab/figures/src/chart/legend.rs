@@ -19,7 +19,6 @@ const MARKER: f64 = 9.5;
 pub enum Key {
     /// A marker, with or without its line.
     Dot(Style, bool),
-    /// A line.
     Line(&'static str, Dash),
     /// The stroke through what is not resolved.
     Struck,

@@ -46,11 +46,9 @@ pub(crate) enum Mark {
     Shape(Vec<Place>, &'static str, (&'static str, f64)),
     /// An open line: its points, colour, width, and how it is broken.
     Line(Vec<Place>, &'static str, f64, Dash),
-    /// A word.
     Word(Word),
 }
 
-/// A word.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Word {
     /// Its point, on the base line.

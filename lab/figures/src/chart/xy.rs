@@ -83,16 +83,12 @@ impl Guide {
 
 /// A chart of points.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // names say it
 pub struct XyChart {
-    /// The line above it.
     pub title: String,
-    /// Across.
     pub x: Axis,
-    /// Up.
     pub y: Axis,
-    /// Its points.
     pub series: Vec<Series>,
-    /// Lines below them.
     pub guides: Vec<Guide>,
 }
 
@@ -103,7 +99,6 @@ struct Drawing {
     taken: Vec<Bounds>,
 }
 
-/// A plot and its scales.
 struct Plot {
     bounds: Bounds,
     x: Scale,

@@ -34,7 +34,6 @@ const MODULES: usize = 6;
 /// The vertex shader of shadow maps among them.
 const CASTER: usize = 5;
 
-/// What a pipeline is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in super::super) struct PipelineKey {
     pub pass: PassKind,

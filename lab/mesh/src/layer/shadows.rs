@@ -20,7 +20,6 @@ struct Caster {
     viewport: vk::Rect2D,
 }
 
-/// The maps on a device.
 pub(super) struct ShadowMaps {
     atlas: Image,
     framebuffer: vk::Framebuffer,
@@ -150,7 +149,6 @@ impl ShadowMaps {
         Ok(())
     }
 
-    /// Bytes of the maps.
     pub fn bytes(&self) -> u64 {
         self.atlas.bytes()
     }

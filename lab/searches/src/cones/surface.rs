@@ -48,7 +48,6 @@ impl Level {
     }
 }
 
-/// The surface in rows.
 pub(super) struct Surface {
     /// Rows from below.
     pub(super) rows: Vec<Row>,
@@ -58,7 +57,6 @@ pub(super) struct Surface {
     pub(super) reach: f64,
 }
 
-/// A row of the surface.
 pub(super) struct Row {
     /// Radii at the row's borders, as limits from within.
     pub(super) radii: [f64; 2],

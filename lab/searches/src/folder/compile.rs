@@ -9,7 +9,6 @@ use revmap::settings::Solver;
 use std::fmt::Write as _;
 
 /// True if the program was built with the compiler.
-#[must_use]
 pub const fn is_available() -> bool {
     cfg!(feature = "shaderc")
 }

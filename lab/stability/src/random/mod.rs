@@ -47,7 +47,6 @@ struct DraftObject {
     copies: Vec<[f64; 10]>,
 }
 
-/// A camera in the making.
 struct DraftCamera {
     eye: [f64; 3],
     target: [f64; 3],

@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 mod random;
 pub(super) use random::Random;
 
-/// The numbers of a seed.
 pub(super) fn of(seed: u64) -> Random {
     Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ 0x1234_5678_9abc_def1)
 }

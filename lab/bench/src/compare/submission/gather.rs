@@ -64,7 +64,6 @@ pub fn load(files: &[PathBuf]) -> Result<Vec<Named>> {
 
 /// A warning for each submission that drew another scene under a name than one before it, and one for
 /// all that do not say what they drew.
-#[must_use]
 pub fn warnings(all: &[Named]) -> Vec<String> {
     let different = |(number, one): (usize, &Named)| {
         let differing = |other: &Named| -> Vec<String> {
@@ -92,9 +91,6 @@ pub fn warnings(all: &[Named]) -> Vec<String> {
 
 /// Writes `results.csv`, `report.html` and the charts; returns the table that is printed, for a
 /// terminal of this width if it is for one.
-///
-/// # Errors
-/// [`ErrorKind::File`] for files that cannot be written.
 pub fn write(all: &[Named], folder: &Path, width: Option<usize>) -> Result<String> {
     write_text(&folder.join("results.csv"), &results(all).csv())?;
     let mut page = Page::new("revmap: figures of several devices");

@@ -15,10 +15,6 @@ use revmap::gpu::DeviceReport;
 
 /// The submission of a run on the device of `report`. `plan_name` names the plan, `resolved` is the
 /// plan's own.
-///
-/// # Errors
-/// [`ErrorKind::Other`](revmap::error::ErrorKind::Other) for a column that does not exist, which is a
-/// bug.
 pub fn make(
     (plan_name, plan): (&str, &Plan),
     measured: &Measured,

@@ -158,9 +158,6 @@ pub struct OneShader {
 
 impl Submission {
     /// The file's text.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Other`] if a value has no form in TOML, which is a bug.
     pub fn text(&self) -> Result<String> {
         let mut text = format!("{HEAD}\nformat = {}\n", inline(&self.format)?);
         for (key, value) in [
@@ -271,9 +268,6 @@ pub struct Pictures(Vec<(usize, MethodSettings, u64)>);
 
 impl Pictures {
     /// Takes a picture.
-    ///
-    /// # Errors
-    /// [`ErrorKind::OutOfHostMemory`].
     pub fn add(&mut self, seen: &RenderedCase) -> Result<()> {
         let picture = Picture::of(seen.frame)?;
         let sum = fnv1a_64(picture.rgba.as_flattened().iter().copied());

@@ -24,7 +24,6 @@ macro_rules! put {
     };
 }
 
-/// A scene.
 pub(super) fn scene(of: &Scene) -> Table {
     let mut all = Table::new();
     put!(all, of => Scene {
@@ -45,7 +44,6 @@ pub(super) fn scene(of: &Scene) -> Table {
 }
 
 /// Every value of a scene as `--set` takes it: `object.0.bevel=0.4`. The lights are one value.
-#[must_use]
 pub fn assignments(of: &Scene) -> Vec<String> {
     let mut all = scene(of);
     let objects: Vec<Table> = of.objects.iter().map(values).collect();

@@ -105,7 +105,6 @@ impl Exhibit {
         self.table.iter().try_for_each(Table::check).map_err(at)
     }
 
-    /// The answers of its question from these rows.
     pub(super) fn answers(&self, context: &Context, rows: &[&Row]) -> Vec<String> {
         let answers = |q: Question| q.answers(context, rows);
         self.question.map(answers).unwrap_or_default()

@@ -10,7 +10,6 @@ use revmap_figures::names::{count, number, percent, safe};
 
 /// Rows that have tables and charts of their own, and how these are named.
 pub(crate) struct Place<'a> {
-    /// The rows.
     pub(crate) rows: Vec<&'a Row>,
     /// The heading above them.
     pub(crate) heading: Option<String>,

@@ -133,7 +133,6 @@ impl Record<'_> {
         }
     }
 
-    /// Its cell in a column.
     pub(super) fn cell(&self, context: &Context, rows: &[&Row], name: &str) -> Result<Cell> {
         match self {
             Self::Row(row) => Ok((columns::named(name)?.cell)(context, row)),

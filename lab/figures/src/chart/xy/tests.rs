@@ -2,7 +2,6 @@ use super::super::front::stairs;
 use super::super::style::{Marker, PAPER, color};
 use super::*;
 
-/// A series at one point.
 fn one(style: Style, point: Point) -> Series {
     Series {
         name: String::new(),
