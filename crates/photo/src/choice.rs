@@ -1,7 +1,7 @@
 //! The best of many masks.
 
 use crate::form::{Border, Rows, mirrored, turned};
-use crate::ground::{Backdrop, Measure, distances};
+use crate::ground::{Backdrop, distances};
 use crate::mask::{Mask, cleaned, count, largest, likeness, mask, otsu, shared};
 use crate::work::Work;
 use rayon::prelude::*;
@@ -11,7 +11,6 @@ pub(crate) struct Candidate {
     pub mask: Mask,
     /// The number of its ground.
     pub ground: usize,
-    pub measure: Option<Measure>,
     pub border: Border,
     pub parts_left_out: usize,
     pub rows: Rows,
@@ -41,31 +40,26 @@ pub(crate) fn candidates(work: &Work, backdrops: &[Backdrop]) -> Vec<Candidate> 
     let (w, h) = (work.width, work.height);
     let mut rough = Vec::new();
     for (ground, backdrop) in backdrops.iter().enumerate() {
-        let distances = distances(work, backdrop);
-        for (measure, distances) in Measure::ALL.into_iter().zip(distances) {
+        for distances in distances(work, backdrop) {
             let otsu = otsu(&distances, w);
-            let edges = THRESHOLDS
-                .into_iter()
-                .map(|t| otsu * t)
-                .filter(|t| *t >= least);
-            rough.extend(edges.map(|t| (ground, measure, mask(w, h, |i| distances[i] > t))));
+            let edges = THRESHOLDS.map(|t| otsu * t).into_iter();
+            let edges = edges.filter(|t| *t >= least);
+            rough.extend(edges.map(|t| (ground, mask(w, h, |i| distances[i] > t))));
         }
     }
-    let rough = rough.into_par_iter().map(|(ground, measure, rough)| {
+    let rough = rough.into_par_iter().map(|(ground, rough)| {
         let (mask, left_out) = cleaned(&rough);
-        (ground, measure, mask, left_out)
+        (mask, ground, left_out)
     });
-    let mut distinct: Vec<(usize, Measure, Mask, usize)> = Vec::new();
+    let mut distinct: Vec<(Mask, usize, usize)> = Vec::new();
     for found in rough.collect::<Vec<_>>() {
-        if count(&found.2) >= 50 && !distinct.iter().any(|d| likeness(&d.2, &found.2) > SAME) {
+        if count(&found.0) >= 50 && !distinct.iter().any(|d| likeness(&d.0, &found.0) > SAME) {
             distinct.push(found);
         }
     }
-    let found = distinct
-        .into_par_iter()
-        .filter_map(|(ground, measure, mask, left_out)| {
-            Candidate::new(work, mask, ground, Some(measure), left_out)
-        });
+    let found = distinct.into_par_iter();
+    let found =
+        found.filter_map(|(mask, ground, left_out)| Candidate::new(work, mask, ground, left_out));
     let mut found: Vec<Candidate> = found.collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut distinct: Vec<&Candidate> = Vec::new();
@@ -78,8 +72,7 @@ pub(crate) fn candidates(work: &Work, backdrops: &[Backdrop]) -> Vec<Candidate> 
         }
     }
     let more = distinct.par_iter().flat_map_iter(|c| c.improved(work));
-    let more: Vec<_> = more.collect();
-    found.extend(more);
+    found.extend(more.collect::<Vec<_>>());
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
     found
 }
@@ -91,13 +84,7 @@ fn touches(mask: &Mask) -> bool {
 
 impl Candidate {
     /// `None` for a mask that is far too small or large, or that has no border.
-    pub fn new(
-        work: &Work,
-        mask: Mask,
-        ground: usize,
-        measure: Option<Measure>,
-        parts_left_out: usize,
-    ) -> Option<Self> {
+    pub fn new(work: &Work, mask: Mask, ground: usize, parts_left_out: usize) -> Option<Self> {
         let (w, h) = mask.dimensions();
         let area = count(&mask);
         let part = area as f64 / f64::from(w * h);
@@ -134,7 +121,6 @@ impl Candidate {
         Some(Self {
             mask,
             ground,
-            measure,
             border,
             parts_left_out,
             rows,
@@ -174,14 +160,10 @@ impl Candidate {
             if count(&mask) < 50 || likeness(&mask, &self.mask) >= 0.99 {
                 return None;
             }
-            let made = Self::new(work, mask, self.ground, self.measure, self.parts_left_out)?;
-            let score = part * made.score;
-            let origin = Some(self.mask.clone());
-            Some(Self {
-                origin,
-                score,
-                ..made
-            })
+            let mut made = Self::new(work, mask, self.ground, self.parts_left_out)?;
+            made.score *= part;
+            made.origin = Some(self.mask.clone());
+            Some(made)
         };
         let mut made = Vec::new();
         let mut base = self.mask.clone();
@@ -192,21 +174,17 @@ impl Candidate {
         let clear = 1.5 + 2.0 * work.noise;
         let is_edge = |row: usize, r: f64| {
             let side = |u: f64| {
-                strongest(work, turned([u, rows.top + row as f64], middle, -angle), 2) > clear
+                strongest(work, turned([u, rows.top + row as f64], middle, -angle)) > clear
             };
             side(axis - r) && side(axis + r)
         };
         if let Some(widths) = rows.bridged(axis, 0.17 * rows.ends.len() as f64, is_edge) {
             let bridged = mask(w, h, |i| {
-                let [u, v] = self
-                    .border
-                    .turned([(i % w) as f64 + 0.5, (i / w) as f64 + 0.5], angle);
+                let place = [(i % w) as f64 + 0.5, (i / w) as f64 + 0.5];
+                let [u, v] = turned(place, middle, angle);
                 let row = (v - rows.top).round();
-                base.as_raw()[i] > 0
-                    || row >= 0.0
-                        && widths
-                            .get(row as usize)
-                            .is_some_and(|r| (u - axis).abs() < *r)
+                let width = widths.get(row as usize).filter(|_| row >= 0.0);
+                base.as_raw()[i] > 0 || width.is_some_and(|r| (u - axis).abs() < *r)
             });
             made.extend(of(largest(&bridged).0, 0.95));
         }
@@ -219,33 +197,27 @@ fn edges(work: &Work, border: &Border) -> Option<(f64, f64)> {
     let (w, h) = (work.width, work.height);
     let inside =
         |[x, y]: &&[f64; 2]| *x > 1.0 && *y > 1.0 && *x < w as f64 - 1.0 && *y < h as f64 - 1.0;
-    let mut found: Vec<f32> = border
-        .points
-        .iter()
-        .filter(inside)
-        .map(|p| strongest(work, *p, 2))
-        .collect();
+    let points = border.points.iter().filter(inside);
+    let mut found: Vec<f32> = points.map(|p| strongest(work, *p)).collect();
     if found.len() < 20 {
         return None;
     }
     found.sort_by(f32::total_cmp);
     let at = |part: f64| f64::from(found[(part * (found.len() - 1) as f64) as usize]);
     let noise = 2.0 * f64::from(work.noise) + 0.4;
-    let edges = [0.12, 0.3, 0.5]
-        .map(|p| at(p) / (at(p) + noise))
-        .iter()
-        .sum::<f64>()
-        / 3.0;
+    let edges = [0.12, 0.3, 0.5].map(|p| at(p) / (at(p) + noise));
+    let edges = edges.iter().sum::<f64>() / 3.0;
     let faint = found.partition_point(|g| *g < 1.5) as f64 / found.len() as f64;
     Some((edges, faint))
 }
 
-/// The largest gradient within `reach` pixels of a place.
-fn strongest(work: &Work, [x, y]: [f64; 2], reach: usize) -> f32 {
-    let (x, y) = (x.max(0.0) as usize, y.max(0.0) as usize);
-    let (w, h) = (work.width, work.height);
-    let rows = y.saturating_sub(reach)..(y + reach + 1).min(h);
-    let near = rows
-        .flat_map(|y| (x.saturating_sub(reach)..(x + reach + 1).min(w)).map(move |x| y * w + x));
-    near.map(|i| work.gradient[i]).fold(0.0, f32::max)
+/// The largest gradient within two pixels of a place.
+fn strongest(work: &Work, p: [f64; 2]) -> f32 {
+    let [x, y] = p.map(|v| v.max(0.0) as usize);
+    let near = |at: usize, end: usize| at.saturating_sub(2)..(at + 3).min(end);
+    let rows = near(y, work.height).flat_map(|y| {
+        let columns = near(x, work.width);
+        columns.map(move |x| y * work.width + x)
+    });
+    rows.map(|i| work.gradient[i]).fold(0.0, f32::max)
 }

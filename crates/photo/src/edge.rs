@@ -3,6 +3,7 @@
 use crate::Photo;
 use crate::choice::Candidate;
 use crate::form::{mode, turned};
+use crate::ground::median_color;
 use crate::work::{Color, Work, distance, lab_of, median};
 use rayon::prelude::*;
 
@@ -82,7 +83,7 @@ impl Sampler<'_> {
             let samples: Vec<Color> = (0..4)
                 .map(|k| self.reduced(at(from + (to - from) * f64::from(k) / 3.0)))
                 .collect();
-            std::array::from_fn(|i| median(&mut samples.iter().map(|c| c[i]).collect::<Vec<_>>()))
+            median_color(samples.iter().copied())
         };
         let near = REACH.min(0.6 * deep);
         let (inside, outside) = (

@@ -47,13 +47,8 @@ impl Border {
         })
     }
 
-    /// A place in the frame that is turned by `angle` degrees.
-    pub fn turned(&self, p: [f64; 2], angle: f64) -> [f64; 2] {
-        turned(p, self.middle, angle)
-    }
-
     pub fn rows(&self, angle: f64) -> Rows {
-        let points: Vec<_> = self.points.iter().map(|p| self.turned(*p, angle)).collect();
+        let points: Vec<_> = (self.points.iter().map(|p| turned(*p, self.middle, angle))).collect();
         let heights = || points.iter().map(|p| p[1]);
         let (low, high) = (
             heights().fold(f64::MAX, f64::min),

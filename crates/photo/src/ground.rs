@@ -23,23 +23,6 @@ pub(crate) struct Backdrop {
     pub lab: Vec<Color>,
 }
 
-/// What counts as a difference from the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Measure {
-    /// Colour and lightness.
-    All,
-    /// Colour, with little lightness.
-    Hue,
-    /// All, without what is darker than the ground in its hue, and soft.
-    NoShadow,
-    /// All, without what is a little darker than the ground in its hue.
-    NoSoftShadow,
-}
-
-impl Measure {
-    pub const ALL: [Self; 4] = [Self::All, Self::Hue, Self::NoShadow, Self::NoSoftShadow];
-}
-
 pub(crate) fn backdrops(work: &Work) -> Vec<Backdrop> {
     let (w, h) = (work.width, work.height);
     let strip = (w / 50).max(3);
@@ -73,7 +56,7 @@ pub(crate) fn backdrops(work: &Work) -> Vec<Backdrop> {
     found
 }
 
-fn median_color(colors: impl Iterator<Item = Color> + Clone) -> Color {
+pub(crate) fn median_color(colors: impl Iterator<Item = Color> + Clone) -> Color {
     std::array::from_fn(|i| median(&mut colors.clone().map(|c| c[i]).collect::<Vec<_>>()))
 }
 
@@ -91,11 +74,9 @@ fn quadratic(work: &Work) -> [Vector6<f64>; 3] {
     let inner =
         |x: usize, y: usize| (rim..w - rim).contains(&x) && (rim.min(h / 2)..h).contains(&y);
     let places = (0..w * h).map(|i| (i % w, i / w));
-    let places: Vec<_> = places.filter(|&(x, y)| !inner(x, y)).step_by(5).collect();
-    let samples: Vec<_> = places
-        .iter()
-        .map(|&(x, y)| (terms(x, y, work), work.color(x, y)))
-        .collect();
+    let places = places.filter(|&(x, y)| !inner(x, y)).step_by(5);
+    let sample = |(x, y)| (terms(x, y, work), work.color(x, y));
+    let samples: Vec<_> = places.map(sample).collect();
     let mut weights = vec![1.0f64; samples.len()];
     let mut fit = [Vector6::zeros(); 3];
     for _ in 0..10 {
@@ -116,10 +97,8 @@ fn quadratic(work: &Work) -> [Vector6<f64>; 3] {
         };
         let away: Vec<f32> = samples.iter().map(away).collect();
         let spread = 3.0 * median(&mut away.clone()) + 2e-3;
-        weights = away
-            .iter()
-            .map(|e| 1.0 / (1.0 + f64::from(e / spread).powi(2)).powi(2))
-            .collect();
+        let weight = |e: &f32| 1.0 / (1.0 + f64::from(e / spread).powi(2)).powi(2);
+        weights = away.iter().map(weight).collect();
     }
     fit
 }
@@ -134,7 +113,9 @@ pub(crate) fn shade(work: &Work, i: usize, ground: Color) -> (f32, f32) {
     (light, distance(ratio.map(|v| (v / light).ln()), [0.0; 3]))
 }
 
-/// Distances of all pixels from a ground, one list for each of [`Measure::ALL`].
+/// Distances of all pixels from a ground, by what counts as a difference: all; colour, with little
+/// lightness; all, without what is darker than the ground in its hue, and soft; all, without what is
+/// a little darker than the ground in its hue.
 pub(crate) fn distances(work: &Work, backdrop: &Backdrop) -> [Vec<f32>; 4] {
     let ramp = |v: f32, from: f32, width: f32| ((v - from) / width).clamp(0.0, 1.0);
     let at = |i: usize| -> [f32; 4] {
@@ -154,9 +135,7 @@ pub(crate) fn distances(work: &Work, backdrop: &Backdrop) -> [Vec<f32>; 4] {
             ramp(1.03 - light, 0.0, 0.03) * ramp(light, 0.45, 0.1) * ramp(0.12 - tint, 0.0, 0.04);
         [all, hue, all * (1.0 - shadow), all * (1.0 - soft)]
     };
-    let all: Vec<[f32; 4]> = (0..work.width * work.height)
-        .into_par_iter()
-        .map(at)
-        .collect();
+    let pixels = (0..work.width * work.height).into_par_iter();
+    let all: Vec<[f32; 4]> = pixels.map(at).collect();
     std::array::from_fn(|k| all.iter().map(|d| d[k]).collect())
 }

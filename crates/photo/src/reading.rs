@@ -306,5 +306,5 @@ fn opaque(work: &Work) -> Option<Candidate> {
     let soft = part(&|a| (13..200).contains(&a)) > 0.05 * core;
     let least = if soft { 200 } else { 127 };
     let (mask, parts) = largest(&mask(work.width, work.height, |i| alpha[i] > least));
-    Candidate::new(work, mask, 0, None, parts)
+    Candidate::new(work, mask, 0, parts)
 }
