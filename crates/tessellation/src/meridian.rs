@@ -36,8 +36,8 @@ const TOLERANCES: [f64; 2] = [1e-8, 0.05];
 #[must_use]
 pub fn strands_of(contour: &Contour, most: usize) -> Vec<Strand> {
     let lines = lines(&cleaned(&contour.chains));
-    let count =
-        |tolerance: f64| -> usize { lines.iter().map(|l| l.thinned(tolerance).len() - 1).sum() };
+    let chords = |line: &Line, tolerance| line.thinned(true, &|_| tolerance).len() - 1;
+    let count = |tolerance: f64| -> usize { lines.iter().map(|l| chords(l, tolerance)).sum() };
     let [mut low, mut high] = TOLERANCES;
     if count(low) <= most {
         high = low;
@@ -112,7 +112,7 @@ pub(super) struct Line {
     /// Outward normals of the segments: segment `k` runs from point `k` on.
     normals: Vec<DVec2>,
     /// First and last point, and creases between.
-    pub(super) fixed: Vec<usize>,
+    fixed: Vec<usize>,
     closed: bool,
 }
 
@@ -143,13 +143,16 @@ impl Line {
         }
     }
 
-    /// The points that stay: between those that are fixed, chords as long as the tolerance allows.
-    fn thinned(&self, tolerance: f64) -> Vec<usize> {
+    /// The points that stay: between those that are fixed, chords as long as the tolerance of each
+    /// point allows. Without `corners` only the ends are fixed, and chords may cut folds.
+    pub(super) fn thinned(&self, corners: bool, tolerance: &dyn Fn(usize) -> f64) -> Vec<usize> {
+        let ends = [0, self.points.len() - 1];
+        let fixed = if corners { &self.fixed[..] } else { &ends };
         let mut kept = vec![0];
-        for ends in self.fixed.windows(2) {
-            let mut at = ends[0];
-            while at < ends[1] {
-                at = self.reach(at, ends[1], false, &|_| tolerance);
+        for section in fixed.windows(2) {
+            let mut at = section[0];
+            while at < section[1] {
+                at = self.reach(at, section[1], !corners, tolerance);
                 kept.push(at);
             }
         }
@@ -159,7 +162,7 @@ impl Line {
     /// The farthest point up to `end` such that all between lie within their tolerance of the line
     /// to it: the directions that meet the discs about all points so far are an interval (Imai and
     /// Iri). The line does not turn back, or with `folds` by no more than the tolerance.
-    pub(super) fn reach(
+    fn reach(
         &self,
         from: usize,
         end: usize,
@@ -198,7 +201,7 @@ impl Line {
     }
 
     fn strand(&self, tolerance: f64) -> Strand {
-        self.strand_of(&self.thinned(tolerance))
+        self.strand_of(&self.thinned(true, &|_| tolerance))
     }
 
     /// The strand with rings at these points.
@@ -206,19 +209,16 @@ impl Line {
         let chords: Vec<Chord> = kept.windows(2).map(|k| self.chord(k[0], k[1])).collect();
         let last = chords.len();
         let rings = kept.iter().enumerate().map(|(n, &k)| {
-            let neighbours = match n {
-                0 if !self.closed => None,
-                _ if n == last && !self.closed => None,
-                0 => Some([last - 1, 0]),
-                _ if n == last => Some([last - 1, 0]),
-                _ => Some([n - 1, n]),
+            let neighbours = match (0 < n && n < last, self.closed) {
+                (true, _) => Some([n - 1, n]),
+                (false, true) => Some([last - 1, 0]),
+                (false, false) => None,
             };
             let mut point = self.points[k];
             let Some([before, after]) = neighbours.map(|c| c.map(|c| chords[c])) else {
-                let end = if n == 0 {
-                    chords[0].normals[0]
-                } else {
-                    chords[last - 1].normals[1]
+                let end = match n {
+                    0 => chords[0].normals[0],
+                    _ => chords[last - 1].normals[1],
                 };
                 return Ring {
                     point,
@@ -267,13 +267,9 @@ impl Line {
     fn bulge(&self, a: usize, b: usize) -> f64 {
         let (start, chord) = (self.points[a], self.points[b] - self.points[a]);
         let outward = -chord.perp().normalize_or_zero();
-        self.points[a..b]
-            .iter()
-            .map(|p| (p - start).dot(outward))
-            .fold(
-                0.0,
-                |most, d| if d.abs() > f64::abs(most) { d } else { most },
-            )
+        let outside = self.points[a..b].iter().map(|p| (p - start).dot(outward));
+        let farther = |most: f64, d: f64| if d.abs() > most.abs() { d } else { most };
+        outside.fold(0.0, farther)
     }
 }
 

@@ -82,17 +82,9 @@ fn quads(turned: &Turned) -> usize {
 /// The points of a line that become rings: between fixed points the longest chords that, laid to
 /// both sides, keep `share`, and their strand. Without `corners` only the line's ends are fixed.
 fn kept(line: &Line, corners: bool, share: &dyn Fn(&DVec2) -> f64) -> (Vec<usize>, Strand) {
-    let last = line.points.len() - 1;
-    let ends = [0, last];
-    let fixed = if corners { &line.fixed[..] } else { &ends };
     let mut tolerances: Vec<f64> = line.points.iter().map(|p| FIRST * share(p)).collect();
     loop {
-        let mut kept = vec![0];
-        for section in fixed.windows(2) {
-            while let Some(&at) = kept.last().filter(|at| **at < section[1]) {
-                kept.push(line.reach(at, section[1], !corners, &|k| tolerances[k]));
-            }
-        }
+        let kept = line.thinned(corners, &|k| tolerances[k]);
         let strand = line.strand_of(&kept);
         let mut done = true;
         for (ends, chord) in kept.windows(2).zip(strand.rings.windows(2)) {
