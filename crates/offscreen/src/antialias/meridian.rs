@@ -1,7 +1,6 @@
 //! The part of an object's silhouettes that is independent of the view: its boundary as patches, as
 //! coarse as a copy's size on the screen allows.
 
-use glam::DVec2;
 use revmap::error::Result;
 use revmap::scene::{GrownProfiles, Object, Placement};
 use revmap::surface::{Contour, ContourSource, FitOptions, QuadricPatch, fit_patches};
@@ -16,8 +15,6 @@ pub(super) const TOLERANCE: f64 = 1.0 / 16.0;
 pub(super) struct Meridian {
     /// The object in the box that is enlarged for its offset.
     pub object: Object,
-    /// The position of the axis in the box.
-    pub axis: DVec2,
     contour: Contour,
     levels: [OnceLock<Vec<QuadricPatch>>; LEVELS],
 }
@@ -35,7 +32,6 @@ impl Meridian {
         let object = grown.map_or_else(|| object.clone(), |grown| grown.object);
         let contour = ContourSource::new(&object.profile.outline)?.contour(&object.offset)?;
         Ok(Some(Self {
-            axis: object.axis_offset().into(),
             object,
             contour,
             levels: Default::default(),

@@ -26,7 +26,6 @@ use rayon::prelude::*;
 use revmap::error::Result;
 use revmap::frame::Frame;
 use revmap::scene::{CameraFrame, Object, Placement, Scene};
-use std::sync::Arc;
 
 /// Smooths the silhouettes of a frame of this scene. The frame must have distances; an infinite
 /// distance is background.
@@ -47,23 +46,17 @@ pub(crate) type Change = (u32, [f32; 4]);
 /// The solids of a scene, prepared; unchanged solids are reused.
 #[derive(Default)]
 pub(crate) struct Solids {
-    of: Vec<(Object, Option<Arc<Meridian>>)>,
+    of: Vec<(Object, Option<Meridian>)>,
 }
 
 impl Solids {
     /// Updates the solids to a scene. Objects whose contour does not close are left out.
     pub fn update(&mut self, scene: &Scene) {
-        self.of.truncate(scene.objects.len());
-        for (number, object) in scene.objects.iter().enumerate() {
-            let known = self.of.get(number).filter(|(old, _)| old == object);
-            if known.is_none() {
-                let made = Meridian::new(object).ok().flatten().map(Arc::new);
-                let entry = (object.clone(), made);
-                match self.of.get_mut(number) {
-                    Some(old) => *old = entry,
-                    None => self.of.push(entry),
-                }
-            }
+        let mut known = std::mem::take(&mut self.of).into_iter();
+        for object in &scene.objects {
+            let unchanged = known.next().filter(|(known, _)| known == object);
+            let made = || (object.clone(), Meridian::new(object).ok().flatten());
+            self.of.push(unchanged.unwrap_or_else(made));
         }
     }
 
@@ -119,9 +112,9 @@ impl Solids {
             if depth > -size && screen.may_show(at, depth, size) {
                 let nearest = (depth - size).max(1e-3 * size);
                 let pixels = copy.scale.max_element() / (camera.right.length() * nearest);
-                Sight::new(camera, copy, solid.axis).lines(solid.patches(pixels), &mut |a, b| {
-                    screen.line(a, b, &mut blends)
-                });
+                let sight = Sight::new(camera, copy, solid.object.axis_offset().into());
+                let mut add = |a: &_, b: &_| screen.line(a, b, &mut blends);
+                sight.lines(solid.patches(pixels), &mut add);
             }
             blends
         };
@@ -133,7 +126,7 @@ impl Solids {
             a
         };
         let mut all = Vec::new();
-        for solid in self.of.iter().filter_map(|(_, solid)| solid.as_deref()) {
+        for solid in self.of.iter().filter_map(|(_, solid)| solid.as_ref()) {
             let copies = solid.object.placements().par_iter().with_min_len(16);
             let parts = copies.fold(Vec::new, |blends, copy| add(blends, solid, copy));
             all = joined(all, parts.reduce(Vec::new, joined));
