@@ -1,29 +1,30 @@
-//! Structures are laid out in C as in Rust, Vulkan's types among them.
+//! Structures are laid out in C and C++ as in Rust, Vulkan's types among them.
 
 use crate::names::*;
-use crate::programs::{compile, folder};
+use crate::programs::{compiler, folder, run};
 use std::fmt::Write;
 use std::mem::offset_of;
 
-/// Assertions in C11 of a structure's size and of where some of its fields are.
+/// Assertions of a structure's size and of where some of its fields are.
 macro_rules! assertions {
     ($($name:ident { $($field:ident),* })*) => {{
-        let mut text = String::from("#include <revmap.h>\n");
+        let mut text = String::from("#include <revmap.h>\n#include <assert.h>\n");
         $(
             let (name, size) = (stringify!($name), size_of::<$name>());
-            writeln!(text, "_Static_assert(sizeof({name}) == {size}, \"{name}\");").unwrap();
+            writeln!(text, "static_assert(sizeof({name}) == {size}, \"{name}\");").unwrap();
             $(
                 let (field, at) = (stringify!($field), offset_of!($name, $field));
-                writeln!(text, "_Static_assert(offsetof({name}, {field}) == {at}, \"{name}.{field}\");").unwrap();
+                writeln!(text, "static_assert(offsetof({name}, {field}) == {at}, \"{name}.{field}\");").unwrap();
             )*
         )*
         text
     }};
 }
 
+/// The header comes first, so it compiles alone; in C99 it does in `programs.rs`.
 #[test]
-fn structures_are_the_same_in_c() {
-    let mut text = assertions! {
+fn structures_are_the_same_in_every_standard() {
+    let text = assertions! {
         RevmapPlacement { rotation, scale }
         RevmapOffset { chamfer }
         RevmapLight { color, radius }
@@ -47,9 +48,11 @@ fn structures_are_the_same_in_c() {
         RevmapScene { camera, lighting, objects, object_count }
         RevmapTimes { prepare_ms, frame_ms }
     };
-    text.push_str("int main(void) { return revmap_abi() == REVMAP_ABI ? 0 : 1; }\n");
     let folder = folder();
-    let file = folder.path().join("layout.c");
-    std::fs::write(&file, text).unwrap();
-    compile("c11", &[], &[file], &folder.path().join("layout"));
+    for (name, standard) in [("cc", "c11"), ("cc", "c17"), ("c++", "c++17")] {
+        let ending = if name == "cc" { "c" } else { "cpp" };
+        let file = folder.path().join(format!("layout.{ending}"));
+        std::fs::write(&file, &text).unwrap();
+        run(compiler(name, standard, &["-fsyntax-only"]).arg(file));
+    }
 }

@@ -5,7 +5,7 @@ use crate::host::{
     self, COLOR, Canvas, DEPTH, Drawn, Host, borrow, dynamic, open, open_with, view_and_projection,
 };
 use crate::names::*;
-use crate::recording::{BESIDE, EYE, OPTIONS, POINTS, lend, scene};
+use crate::recording::{EYE, OPTIONS, add, lend, scene};
 
 type F = vk::Format;
 type A = RevmapAttachment;
@@ -25,10 +25,6 @@ const PLANES: [(A, Plane, vk::Format); 7] = [
     (A::Material, Plane::Material, F::R32G32_SFLOAT),
 ];
 const NONE: [u32; 2] = [u32::MAX; 2];
-const MATERIAL: Material = Material {
-    roughness: 0.75,
-    metalness: 1.0,
-};
 /// Where the first object is in the second frame.
 const MOVED: [f64; 3] = [0.05, -0.15, 0.02];
 const BIAS: f64 = 1.0 / 1024.0;
@@ -38,15 +34,6 @@ fn output() -> Output {
     let list = Planes::List(PlaneList::new(&PLANES.map(|(_, plane, _)| plane)).unwrap());
     let begun = dynamic(&PLANES.map(|(.., format)| format));
     Output::Pass(PassFormats::new(begun, list))
-}
-
-/// What every plane is drawn into.
-fn canvas(host: &Host) -> Canvas<'_> {
-    let options = host::Options {
-        dynamic: true,
-        ..OPTIONS
-    };
-    Canvas::new(host, options, &output())
 }
 
 /// The pairs of words of a plane.
@@ -89,13 +76,7 @@ fn view_in_c(seen: Seen) -> RevmapView {
 /// Two frames of the Rust renderer; the first object moves between them.
 fn drawn(host: &Host) -> [Vec<Vec<u8>>; 2] {
     let (device, search) = (borrow(host), SearchSettings::default());
-    let mut scene = scene();
-    scene.objects[1].material = Some(MATERIAL);
-    let options = host::Options {
-        dynamic: true,
-        ..OPTIONS
-    };
-    let mut drawn = Drawn::new(host, &device, options, (output(), &search), &scene);
+    let mut drawn = Drawn::new(host, &device, OPTIONS, (output(), &search), &scene());
     let first = view_in_rust(FIRST);
     let second = view_in_rust(SECOND).with_last(&first).with_depth_bias(BIAS);
     [first, second].map(|view| {
@@ -136,63 +117,30 @@ fn renderer(device: *mut RevmapDevice) -> *mut RevmapRenderer {
         ..sized!(RevmapPass)
     };
     let mut renderer = null_mut();
-    // SAFETY: live values.
-    unsafe {
-        ok! { revmap_renderer_create(device, &pass, null(), 1, &mut renderer); }
-    }
+    ok! { revmap_renderer_create(device, &pass, null(), 1, &mut renderer); }
     renderer
-}
-
-/// Adds the scene of the Rust renderer.
-fn add(renderer: *mut RevmapRenderer) -> [RevmapObject; 2] {
-    let (mut profile, mut objects) = (null_mut(), [0; 2]);
-    // SAFETY: live values.
-    unsafe {
-        ok! { revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), 0.4, &mut profile); }
-        let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
-        info.profile = profile;
-        ok! { revmap_renderer_add(renderer, &info, &mut objects[0]); }
-        info.placement.position = BESIDE;
-        info.offset.extend = 0.02;
-        info.has_material = 1;
-        (info.roughness, info.metalness) = (MATERIAL.roughness, MATERIAL.metalness);
-        ok! {
-            revmap_renderer_add(renderer, &info, &mut objects[1]);
-            revmap_profile_destroy(profile);
-        }
-    }
-    objects
 }
 
 impl<'a> Lists<'a> {
     fn new(host: &'a Host) -> Self {
         let device = lend(host);
-        // SAFETY: a live device, whose instance has the extension of the host's messenger.
-        unsafe {
-            ok! { revmap_device_enable_debug_labels(device); }
-        }
+        ok! { revmap_device_enable_debug_labels(device); }
         let renderer = renderer(device);
         Self {
             host,
             device,
             renderer,
             objects: add(renderer),
-            canvas: canvas(host),
+            canvas: Canvas::new(host, OPTIONS, &output()),
         }
     }
 
     fn draw(&self, view: &RevmapView) {
         let record = |cmd, ()| {
-            // SAFETY: the slot was prepared, the pass has the renderer's formats.
-            unsafe {
-                ok! { revmap_renderer_record(self.renderer, cmd, 0); }
-            }
+            ok! { revmap_renderer_record(self.renderer, cmd, 0); }
         };
         let prepare = |cmd| {
-            // SAFETY: the frame before is done; `cmd` is recording outside of a pass.
-            unsafe {
-                ok! { revmap_renderer_prepare(self.renderer, cmd, 0, view); }
-            }
+            ok! { revmap_renderer_prepare(self.renderer, cmd, 0, view); }
         };
         self.canvas.draw(self.host, prepare, record);
     }
@@ -200,10 +148,7 @@ impl<'a> Lists<'a> {
     /// The number of an object in the plane of identities.
     fn number(&self, object: usize) -> u32 {
         let mut number = 0;
-        // SAFETY: live values.
-        unsafe {
-            ok! { revmap_renderer_object_number(self.renderer, self.objects[object], &mut number); }
-        }
+        ok! { revmap_renderer_object_number(self.renderer, self.objects[object], &mut number); }
         number
     }
 
@@ -252,15 +197,11 @@ fn a_list_of_planes_is_what_rust_draws() {
         assert_eq!([first > 0, second > 0], wanted, "mask {mask}");
     }
     masks(u32::MAX, u32::MAX);
-    let moved = RevmapPlacement {
-        position: MOVED,
-        rotation: [0.0, 0.0, 0.0, 1.0],
-        scale: [1.0; 3],
-    };
-    ok! { revmap_renderer_end_frame(lists.renderer); }
-    // SAFETY: live values.
-    unsafe {
-        ok! { revmap_renderer_set_placement(lists.renderer, lists.objects[0], &moved); }
+    let mut moved = defaults!(revmap_object_defaults, RevmapObjectInfo).placement;
+    moved.position = MOVED;
+    ok! {
+        revmap_renderer_end_frame(lists.renderer);
+        revmap_renderer_set_placement(lists.renderer, lists.objects[0], &moved);
     }
     // Without a last view the object that has moved has motion, and the other one has none.
     lists.draw(&view_in_c(SECOND));
@@ -299,16 +240,13 @@ fn rays_through_samples_need_their_feature() {
     (pass.samples, pass.sample_rays) = (4, 1);
     (pass.color_formats, pass.color_format_count) = (&COLOR, 1);
     pass.depth_format = DEPTH;
-    // SAFETY: live values.
-    unsafe {
-        fail! {
-            Unsupported, "sampleRateShading": revmap_renderer_create(device, &pass, null(), 2, &mut made);
-        }
-        pass.sample_rays = 0;
-        ok! {
-            revmap_renderer_create(device, &pass, null(), 2, &mut made);
-            revmap_renderer_destroy(made);
-            revmap_device_destroy(device);
-        }
+    fail! {
+        Unsupported, "sampleRateShading": revmap_renderer_create(device, &pass, null(), 2, &mut made);
+    }
+    pass.sample_rays = 0;
+    ok! {
+        revmap_renderer_create(device, &pass, null(), 2, &mut made);
+        revmap_renderer_destroy(made);
+        revmap_device_destroy(device);
     }
 }

@@ -1,8 +1,9 @@
 //! The C interface: its header, its programs in C and C++, wrong arguments, growth.
 #![allow(unsafe_code, missing_docs)]
 #![allow(clippy::unwrap_used, clippy::panic)] // a test may stop at what it did not expect
+#![allow(unused_unsafe)] // some functions that `ok!` and its like call are safe
 
-use revmap_capi::fault::{RevmapResult, revmap_last_error, revmap_last_error_text};
+use names::*;
 use std::ffi::CStr;
 
 /// The text of this thread's last failure.
@@ -19,7 +20,12 @@ fn succeeds(call: &str, result: RevmapResult) {
 
 /// Calls that succeed.
 macro_rules! ok {
-    ($($call:expr;)*) => { $(crate::succeeds(stringify!($call), $call);)* };
+    ($($call:expr;)*) => {$(
+        // SAFETY: pointers are live or null, handles are numbers; Vulkan's handles are a host's, which
+        // outlives them, and its commands are recorded and waited for in order.
+        let result = unsafe { $call };
+        crate::succeeds(stringify!($call), result);
+    )*};
 }
 
 /// The call has failed so, and its text says this.
@@ -36,9 +42,11 @@ fn fails(call: &str, result: RevmapResult, wanted: RevmapResult, part: &str) {
 
 /// Calls that fail: the result of each, a part of its text, the call.
 macro_rules! fail {
-    ($($result:ident, $part:literal: $call:expr;)*) => {
-        $(crate::fails(stringify!($call), $call, crate::RevmapResult::$result, $part);)*
-    };
+    ($($result:ident, $part:literal: $call:expr;)*) => {$(
+        // SAFETY: as in `ok!`; sizes and numbers may be wrong.
+        let result = unsafe { $call };
+        crate::fails(stringify!($call), result, RevmapResult::$result, $part);
+    )*};
 }
 
 /// A structure of the header, of plain numbers and null pointers.
@@ -69,6 +77,29 @@ macro_rules! defaults {
     ($function:ident, $name:ident) => {
         crate::filled(sized!($name), $function)
     };
+}
+
+/// The profile of most of these tests: its points, its radius and a handle of it.
+const POINTS: [[f64; 2]; 5] = [[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]];
+const RADIUS: f64 = 0.4;
+fn spindle() -> *mut RevmapProfile {
+    let mut profile = null_mut();
+    ok! { revmap_profile_from_points(POINTS.as_ptr(), POINTS.len(), RADIUS, &mut profile); }
+    profile
+}
+
+/// A device of the library's own, validated.
+fn device() -> *mut RevmapDevice {
+    let mut device = null_mut();
+    ok! { revmap_device_open(null(), 1, &mut device); }
+    device
+}
+
+/// An object of a profile.
+fn object_of(profile: *mut RevmapProfile) -> RevmapObjectInfo {
+    let mut info = defaults!(revmap_object_defaults, RevmapObjectInfo);
+    info.profile = profile;
+    info
 }
 
 /// The names that most of these tests use.

@@ -5,7 +5,7 @@
 
 use crate::host::{COLOR, Canvas, DEPTH, Host, Options, Texture, assert_silent, commands, open};
 use crate::names::*;
-use crate::recording::lend_with_queue;
+use crate::recording::lend_with;
 use std::any::TypeId;
 use std::collections::{HashMap, VecDeque};
 use std::mem::offset_of;
@@ -32,13 +32,11 @@ fn noted(name: &str, result: RevmapResult) -> bool {
     } else {
         crate::text()
     };
-    {
-        let (last, done) = &mut *CALLS.lock().unwrap();
-        *done += u32::from(succeeds);
-        last.push_back(format!("{name}: {result:?} {text}"));
-        if last.len() > 30 {
-            last.pop_front();
-        }
+    let (last, done) = &mut *CALLS.lock().unwrap();
+    *done += u32::from(succeeds);
+    last.push_back(format!("{name}: {result:?} {text}"));
+    if last.len() > 30 {
+        last.pop_front();
     }
     let never = [
         RevmapResult::Internal,
@@ -53,7 +51,6 @@ fn noted(name: &str, result: RevmapResult) -> bool {
 macro_rules! call {
     ($function:ident($($argument:expr),* $(,)?)) => {{
         // SAFETY: pointers are live or null, handles are numbers. Vulkan's handles are the host's.
-        #[allow(unused_unsafe)]
         let result = unsafe { $function($($argument),*) };
         noted(stringify!($function), result)
     }};
@@ -407,7 +404,7 @@ fn random_calls_meet_no_fault() {
         dead: Vec::new(),
         seed,
     };
-    let (device, profile) = (lend_with_queue(&host), crate::arguments::spindle());
+    let (device, profile) = (lend_with(&host, host.queue), crate::spindle());
     driver.live(&device).push(device.addr());
     driver.live(&profile).push(profile.addr());
     for texture in &textures {
