@@ -139,8 +139,7 @@ pub unsafe extern "C" fn revmap_requirements(
     physical_device: vk::PhysicalDevice,
     requirements: *mut RevmapRequirements,
 ) -> RevmapResult {
-    // SAFETY: the caller's handles and pointer.
-    enter(|| unsafe {
+    enter(|| {
         let functions = instance_of(get_instance_proc_addr, instance)?;
         if physical_device.is_null() {
             return Err(Fault::usage("the VkPhysicalDevice is null"));
@@ -172,19 +171,16 @@ pub unsafe extern "C" fn revmap_device_open(
     validate: u32,
     device: *mut *mut RevmapDevice,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(device, || {
-            let choice = match choice.is_null() {
-                true => None,
-                false => Some(text(choice, "choice")?),
-            };
-            Ok(match validate {
-                0 => Device::open(choice)?,
-                _ => Device::open_validated(choice)?,
-            })
+    create(device, || {
+        let choice = match choice.is_null() {
+            true => None,
+            false => Some(text(choice, "choice")?),
+        };
+        Ok(match validate {
+            0 => Device::open(choice)?,
+            _ => Device::open_validated(choice)?,
         })
-    }
+    })
 }
 
 /// Borrows a host's device. All handles belong together. The handles must stay valid until this
@@ -196,28 +192,25 @@ pub unsafe extern "C" fn revmap_device_borrow(
     host: *const RevmapHostDevice,
     device: *mut *mut RevmapDevice,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    unsafe {
-        create(device, || {
-            let host = read(host)?;
-            let instance = instance_of(host.get_instance_proc_addr, host.instance)?;
-            if host.physical_device.is_null() || host.device.is_null() {
-                return Err(Fault::usage("the VkPhysicalDevice or the VkDevice is null"));
-            }
-            let functions = ash::Device::load(instance.fp_v1_0(), host.device);
-            let lent = HostDevice {
-                instance: &instance,
-                physical: host.physical_device,
-                device: &functions,
-                queue_family: host.queue_family,
-                queue: (!host.queue.is_null()).then_some(host.queue),
-                features: host.features.as_ref().copied().unwrap_or_default(),
-                allocator: None,
-                pipeline_cache: (!host.pipeline_cache.is_null()).then_some(host.pipeline_cache),
-            };
-            Ok(Device::borrow(&lent)?)
-        })
-    }
+    create(device, || {
+        let host = read(host)?;
+        let instance = instance_of(host.get_instance_proc_addr, host.instance)?;
+        if host.physical_device.is_null() || host.device.is_null() {
+            return Err(Fault::usage("the VkPhysicalDevice or the VkDevice is null"));
+        }
+        let functions = ash::Device::load(instance.fp_v1_0(), host.device);
+        let lent = HostDevice {
+            instance: &instance,
+            physical: host.physical_device,
+            device: &functions,
+            queue_family: host.queue_family,
+            queue: (!host.queue.is_null()).then_some(host.queue),
+            features: host.features.as_ref().copied().unwrap_or_default(),
+            allocator: None,
+            pipeline_cache: (!host.pipeline_cache.is_null()).then_some(host.pipeline_cache),
+        };
+        Ok(Device::borrow(&lent)?)
+    })
 }
 
 /// Returns the properties of a device. The size of info must be set.
@@ -235,8 +228,7 @@ pub unsafe extern "C" fn revmap_device_info(
             driver: short(&device.report().driver),
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(info, value) }
+        fill(info, value)
     })
 }
 
@@ -285,8 +277,7 @@ pub unsafe extern "C" fn revmap_device_memory_use(
             host: used.host,
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(memory, value) }
+        fill(memory, value)
     })
 }
 
@@ -300,8 +291,7 @@ pub unsafe extern "C" fn revmap_device_add_pipeline_cache(
     count: usize,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's bytes.
-        let bytes = unsafe { list(bytes.cast::<u8>(), count, "bytes") }?;
+        let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
         Ok(RevmapDevice::get(device)?.add_pipeline_cache(bytes)?)
     })
 }
@@ -315,8 +305,7 @@ pub unsafe extern "C" fn revmap_device_pipeline_cache(
     bytes: *mut c_void,
     count: *mut usize,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers; the bytes are as many as it says.
-    enter(|| unsafe {
+    enter(|| {
         put_bytes(bytes, count, || {
             Ok(RevmapDevice::get(device)?.pipeline_cache_data()?)
         })

@@ -90,11 +90,9 @@ impl RevmapObjectInfo {
         let profile = RevmapProfile::get(self.profile)?;
         let name = match self.name.is_null() {
             true => "object",
-            // SAFETY: the caller's text.
-            false => unsafe { text(self.name, "name") }?,
+            false => text(self.name, "name")?,
         };
-        // SAFETY: the caller's, as many as it says.
-        let instances = unsafe { list(self.instances, self.instance_count, "instances") }?;
+        let instances = list(self.instances, self.instance_count, "instances")?;
         let mut object = Object::new(name, profile);
         object.map_rows = self.map_rows;
         object.color = self.color;
@@ -154,7 +152,6 @@ pub unsafe extern "C" fn revmap_object_defaults(object: *mut RevmapObjectInfo) -
             placement: UPRIGHT,
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(object, value) }
+        fill(object, value)
     })
 }

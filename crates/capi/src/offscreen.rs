@@ -111,20 +111,17 @@ impl RevmapPicture {
 
 impl RevmapScene {
     unsafe fn scene(&self) -> Outcome<Scene> {
-        // SAFETY: the caller's lights and objects, as many as it says.
-        unsafe {
-            let mut scene = Scene::new(self.camera.camera());
-            let lighting = self.lighting.lighting()?;
-            scene.background = self.background;
-            scene.ambient = lighting.ambient;
-            scene.environment = lighting.environment;
-            scene.lights = lighting.lights;
-            scene.shadow = lighting.shadow;
-            for info in read_all(self.objects, self.object_count)? {
-                scene.objects.push(info.object()?);
-            }
-            Ok(scene)
+        let mut scene = Scene::new(self.camera.camera());
+        let lighting = self.lighting.lighting()?;
+        scene.background = self.background;
+        scene.ambient = lighting.ambient;
+        scene.environment = lighting.environment;
+        scene.lights = lighting.lights;
+        scene.shadow = lighting.shadow;
+        for info in read_all(self.objects, self.object_count)? {
+            scene.objects.push(info.object()?);
         }
+        Ok(scene)
     }
 }
 
@@ -163,8 +160,7 @@ pub unsafe extern "C" fn revmap_picture_defaults(picture: *mut RevmapPicture) ->
         search: RevmapSearch::defaults(),
         ..sized()
     };
-    // SAFETY: the caller's structure.
-    enter(|| unsafe { fill(picture, value) })
+    enter(|| fill(picture, value))
 }
 
 /// Fills in a scene without objects before transparent black, with the default camera and lights.
@@ -177,8 +173,7 @@ pub unsafe extern "C" fn revmap_scene_defaults(scene: *mut RevmapScene) -> Revma
             lighting: RevmapLighting::defaults(),
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(scene, value) }
+        fill(scene, value)
     })
 }
 
@@ -191,20 +186,17 @@ pub unsafe extern "C" fn revmap_offscreen_create(
     scene: *const RevmapScene,
     offscreen: *mut *mut RevmapOffscreen,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(offscreen, || {
-            let settings = read(picture)?.settings()?;
-            let scene = read(scene)?.scene()?;
-            let device = RevmapDevice::get(device)?;
-            Ok(Mutex::new(Drawing {
-                offscreen: Offscreen::new(&device, &scene, &settings)?,
-                planes: settings.planes,
-                frame: None,
-                drawn: false,
-            }))
-        })
-    }
+    create(offscreen, || {
+        let settings = read(picture)?.settings()?;
+        let scene = read(scene)?.scene()?;
+        let device = RevmapDevice::get(device)?;
+        Ok(Mutex::new(Drawing {
+            offscreen: Offscreen::new(&device, &scene, &settings)?,
+            planes: settings.planes,
+            frame: None,
+            drawn: false,
+        }))
+    })
 }
 
 /// Updates the picture to another scene. The cost depends on the differences from the former scene.
@@ -215,8 +207,7 @@ pub unsafe extern "C" fn revmap_offscreen_update(
     scene: *const RevmapScene,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's pointers.
-        let scene = unsafe { read(scene)?.scene() }?;
+        let scene = read(scene)?.scene()?;
         with(offscreen, |d| Ok(d.offscreen.update(&scene)?))
     })
 }
@@ -256,8 +247,7 @@ pub unsafe extern "C" fn revmap_offscreen_draw(
             frame_ms: drawn.frame_ms,
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(times, value) }
+        fill(times, value)
     })
 }
 
@@ -280,18 +270,15 @@ pub unsafe extern "C" fn revmap_offscreen_read(
                 return Err(Fault::usage(message));
             }
             let frame = d.frame()?;
-            // SAFETY: the caller's bytes, as many as it says.
-            unsafe {
-                match plane {
-                    RevmapPlane::Srgb8 => copy(&Picture::of(frame)?.rgba, bytes, count),
-                    RevmapPlane::Color => copy(&frame.color, bytes, count),
-                    RevmapPlane::Distance => copy(&frame.distance, bytes, count),
-                    RevmapPlane::Normal => copy(&frame.normal, bytes, count),
-                    RevmapPlane::ShadingNormal => copy(&frame.shading_normal, bytes, count),
-                    RevmapPlane::Albedo => copy(&frame.albedo, bytes, count),
-                    RevmapPlane::Uv => copy(&frame.uv, bytes, count),
-                    RevmapPlane::Steps => copy(&frame.steps, bytes, count),
-                }
+            match plane {
+                RevmapPlane::Srgb8 => copy(&Picture::of(frame)?.rgba, bytes, count),
+                RevmapPlane::Color => copy(&frame.color, bytes, count),
+                RevmapPlane::Distance => copy(&frame.distance, bytes, count),
+                RevmapPlane::Normal => copy(&frame.normal, bytes, count),
+                RevmapPlane::ShadingNormal => copy(&frame.shading_normal, bytes, count),
+                RevmapPlane::Albedo => copy(&frame.albedo, bytes, count),
+                RevmapPlane::Uv => copy(&frame.uv, bytes, count),
+                RevmapPlane::Steps => copy(&frame.steps, bytes, count),
             }
         })
     })
@@ -321,8 +308,7 @@ pub unsafe extern "C" fn revmap_offscreen_write_png(
     path: *const c_char,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's text.
-        let path = unsafe { text(path, "path") }?;
+        let path = text(path, "path")?;
         with(offscreen, |d| {
             Ok(revmap_files::write_png(d.frame()?, path)?)
         })

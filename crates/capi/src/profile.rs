@@ -25,13 +25,10 @@ pub unsafe extern "C" fn revmap_profile_from_points(
     radius: f64,
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(profile, || {
-            let points = list(points, count, "points")?;
-            Ok(Profile::polygon(points, radius)?)
-        })
-    }
+    create(profile, || {
+        let points = list(points, count, "points")?;
+        Ok(Profile::polygon(points, radius)?)
+    })
 }
 
 /// Makes a profile from the content of an SVG, PNG or JPEG file, told apart by what is in it.
@@ -47,13 +44,10 @@ pub unsafe extern "C" fn revmap_profile_from_bytes(
     axis: u32,
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(profile, || {
-            let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            Ok(revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?)
-        })
-    }
+    create(profile, || {
+        let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
+        Ok(revmap_files::profile_from_bytes(bytes, enums::axis(axis)?)?)
+    })
 }
 
 /// Makes a profile from a file, as revmap_profile_from_bytes() does from its content. The path is
@@ -64,15 +58,12 @@ pub unsafe extern "C" fn revmap_profile_from_file(
     axis: u32,
     profile: *mut *mut RevmapProfile,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(profile, || {
-            Ok(revmap_files::profile(
-                text(path, "path")?,
-                enums::axis(axis)?,
-            )?)
-        })
-    }
+    create(profile, || {
+        Ok(revmap_files::profile(
+            text(path, "path")?,
+            enums::axis(axis)?,
+        )?)
+    })
 }
 
 /// Returns the radius of the profile's box, object units.
@@ -81,8 +72,7 @@ pub unsafe extern "C" fn revmap_profile_radius(
     profile: *const RevmapProfile,
     radius: *mut f64,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe { put(radius, "radius", || Ok(RevmapProfile::get(profile)?.radius)) })
+    enter(|| put(radius, "radius", || Ok(RevmapProfile::get(profile)?.radius)))
 }
 
 /// Destroys a profile; null is none. Objects that were made from it stay as they are.

@@ -63,8 +63,7 @@ pub unsafe extern "C" fn revmap_ray_caster_create(
     object: *const RevmapObjectInfo,
     ray_caster: *mut *mut RevmapRayCaster,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe { create(ray_caster, || caster(&read(object)?.object()?)) }
+    create(ray_caster, || caster(&read(object)?.object()?))
 }
 
 /// Finds the first hit of each ray at t >= 0: the surface that is drawn, without bumps. A ray that
@@ -79,15 +78,13 @@ pub unsafe extern "C" fn revmap_ray_caster_cast(
 ) -> RevmapResult {
     enter(|| {
         let caster = RevmapRayCaster::get(ray_caster)?;
-        // SAFETY: the caller's, as many as it says.
-        let rays = unsafe { list(rays, count, "rays") }?;
+        let rays = list(rays, count, "rays")?;
         if count > 0 {
             check_room(hits.cast_const(), count, "hits")?;
         }
         for (number, ray) in rays.iter().enumerate() {
             let hit = cast(&caster, ray);
-            // SAFETY: the caller's room for so many.
-            unsafe { hits.add(number).write(hit) };
+            hits.add(number).write(hit);
         }
         Ok(())
     })
@@ -116,8 +113,7 @@ pub unsafe extern "C" fn revmap_ray_caster_bounds(
     ray_caster: *const RevmapRayCaster,
     bounds: *mut RevmapBounds,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
+    enter(|| {
         put(bounds, "bounds", || {
             let found = RevmapRayCaster::get(ray_caster)?.bounds();
             let ends = found.map(|ends| ends.map(|end| end.to_array()));

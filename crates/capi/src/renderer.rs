@@ -144,8 +144,7 @@ impl RevmapPass {
             RevmapPassKind::Dynamic => {
                 let count = self.color_format_count as usize;
                 PassKind::Dynamic {
-                    // SAFETY: the caller's, as many as it says.
-                    color: unsafe { list(self.color_formats, count, "color formats") }?.to_vec(),
+                    color: list(self.color_formats, count, "color formats")?.to_vec(),
                     depth: self.depth_format,
                     stencil: self.stencil_format,
                 }
@@ -177,8 +176,7 @@ impl RevmapPass {
 
     unsafe fn plane_list(&self) -> Outcome<PlaneList> {
         let count = self.attachment_count as usize;
-        // SAFETY: the caller's, as many as it says.
-        let numbers = unsafe { list(self.attachments, count, "attachments") }?;
+        let numbers = list(self.attachments, count, "attachments")?;
         let planes: Outcome<Vec<_>> = numbers.iter().map(|&n| enums::attachment(n)).collect();
         Ok(PlaneList::new(&planes?)?)
     }
@@ -212,8 +210,7 @@ unsafe fn recorder(
     frames: u32,
     shading: Option<(*const RevmapShading, vk::DescriptorSetLayout)>,
 ) -> Outcome<Mutex<Recorder>> {
-    // SAFETY: as the caller promised.
-    let settings = unsafe { crate::values::search(search) }?;
+    let settings = crate::values::search(search)?;
     let device = RevmapDevice::get(device)?;
     let in_pass = matches!(output, Output::Pass(_));
     let slots = frames as usize;
@@ -247,13 +244,10 @@ pub unsafe extern "C" fn revmap_renderer_create(
     frames: u32,
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    unsafe {
-        create(renderer, || {
-            let output = Output::Pass(read(pass)?.formats()?);
-            recorder(device, output, search, frames, None)
-        })
-    }
+    create(renderer, || {
+        let output = Output::Pass(read(pass)?.formats()?);
+        recorder(device, output, search, frames, None)
+    })
 }
 
 /// Makes a renderer without objects that traces in compute shaders, into a RevmapComputeTarget.
@@ -267,13 +261,10 @@ pub unsafe extern "C" fn revmap_renderer_create_compute(
     frames: u32,
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(renderer, || {
-            let output = Output::Compute(enums::planes(planes)?);
-            recorder(device, output, search, frames, None)
-        })
-    }
+    create(renderer, || {
+        let output = Output::Compute(enums::planes(planes)?);
+        recorder(device, output, search, frames, None)
+    })
 }
 
 /// Makes a renderer as revmap_renderer_create() does, with a host's function that shades in place of
@@ -296,13 +287,10 @@ pub unsafe extern "C" fn revmap_renderer_create_with_shading(
     frames: u32,
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    unsafe {
-        create(renderer, || {
-            let output = Output::Pass(read(pass)?.formats()?);
-            recorder(device, output, search, frames, Some((shading, set_layout)))
-        })
-    }
+    create(renderer, || {
+        let output = Output::Pass(read(pass)?.formats()?);
+        recorder(device, output, search, frames, Some((shading, set_layout)))
+    })
 }
 
 /// Makes a renderer as revmap_renderer_create_compute() does, with a host's function that shades as in
@@ -318,13 +306,10 @@ pub unsafe extern "C" fn revmap_renderer_create_compute_with_shading(
     frames: u32,
     renderer: *mut *mut RevmapRenderer,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    unsafe {
-        create(renderer, || {
-            let output = Output::Compute(enums::planes(planes)?);
-            recorder(device, output, search, frames, Some((shading, set_layout)))
-        })
-    }
+    create(renderer, || {
+        let output = Output::Compute(enums::planes(planes)?);
+        recorder(device, output, search, frames, Some((shading, set_layout)))
+    })
 }
 
 /// Returns the layout of all pipelines of a renderer, with which a host binds its set 3. The layout
@@ -334,8 +319,7 @@ pub unsafe extern "C" fn revmap_renderer_pipeline_layout(
     renderer: *mut RevmapRenderer,
     layout: *mut vk::PipelineLayout,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
+    enter(|| {
         put(layout, "layout", || {
             with(renderer, |r| Ok(r.renderer.pipeline_layout()?))
         })
@@ -349,8 +333,7 @@ pub unsafe extern "C" fn revmap_renderer_set_lighting(
     lighting: *const RevmapLighting,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's pointers.
-        let lighting = unsafe { read(lighting)?.lighting() }?;
+        let lighting = read(lighting)?.lighting()?;
         with(renderer, |r| Ok(r.renderer.set_lighting(&lighting)?))
     })
 }
@@ -365,8 +348,7 @@ pub unsafe extern "C" fn revmap_renderer_set_compute_target(
     renderer: *mut RevmapRenderer,
     target: *const RevmapComputeTarget,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    enter(|| unsafe {
+    enter(|| {
         let target = read(target)?;
         let images = list(target.images, target.image_count as usize, "images")?.to_vec();
         let words = target.words;

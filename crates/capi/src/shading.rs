@@ -23,13 +23,10 @@ pub unsafe extern "C" fn revmap_shading_from_bytes(
     count: usize,
     shading: *mut *mut RevmapShading,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers; the bytes are as many as it says.
-    unsafe {
-        create(shading, || {
-            let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
-            Ok(Shading::from_bytes(bytes)?)
-        })
-    }
+    create(shading, || {
+        let bytes = list(bytes.cast::<u8>(), count, "bytes")?;
+        Ok(Shading::from_bytes(bytes)?)
+    })
 }
 
 /// Compiles GLSL: count files, each with a name and a text in UTF-8. The first defines the function,
@@ -45,17 +42,14 @@ pub unsafe extern "C" fn revmap_shading_compile(
     count: usize,
     shading: *mut *mut RevmapShading,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers; the lists are as long as it says.
-    unsafe {
-        create(shading, || {
-            let stage = enums::stage(stage)?;
-            let names = list(names, count, "names")?;
-            let texts = list(texts, count, "texts")?;
-            let files = names.iter().zip(texts);
-            let files = files.map(|(n, t)| Ok((text(*n, "name")?, text(*t, "text")?)));
-            compiled(stage, &files.collect::<Outcome<Vec<_>>>()?)
-        })
-    }
+    create(shading, || {
+        let stage = enums::stage(stage)?;
+        let names = list(names, count, "names")?;
+        let texts = list(texts, count, "texts")?;
+        let files = names.iter().zip(texts);
+        let files = files.map(|(n, t)| Ok((text(*n, "name")?, text(*t, "text")?)));
+        compiled(stage, &files.collect::<Outcome<Vec<_>>>()?)
+    })
 }
 
 #[cfg(feature = "shaderc")]

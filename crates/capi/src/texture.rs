@@ -24,12 +24,9 @@ pub unsafe extern "C" fn revmap_color_map_from_file(
     path: *const c_char,
     color_map: *mut *mut RevmapColorMap,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(color_map, || {
-            Ok(revmap_files::color_map(text(path, "path")?)?)
-        })
-    }
+    create(color_map, || {
+        Ok(revmap_files::color_map(text(path, "path")?)?)
+    })
 }
 
 /// Makes a colour map from width * height sRGB texels with straight alpha, 4 bytes each, row by row
@@ -41,13 +38,10 @@ pub unsafe extern "C" fn revmap_color_map_from_texels(
     texels: *const [u8; 4],
     color_map: *mut *mut RevmapColorMap,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(color_map, || {
-            let texels = list(texels, width as usize * height as usize, "texels")?;
-            Ok(ColorMap::from_texels(width, height, texels.to_vec())?)
-        })
-    }
+    create(color_map, || {
+        let texels = list(texels, width as usize * height as usize, "texels")?;
+        Ok(ColorMap::from_texels(width, height, texels.to_vec())?)
+    })
 }
 
 /// Destroys a colour map; null is none. Objects that use it stay as they are.
@@ -66,13 +60,10 @@ pub unsafe extern "C" fn revmap_height_map_from_file(
     filter: u32,
     height_map: *mut *mut RevmapHeightMap,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(height_map, || {
-            let filter = enums::slope_filter(filter)?;
-            Ok(revmap_files::displacement_map(text(path, "path")?, filter)?)
-        })
-    }
+    create(height_map, || {
+        let filter = enums::slope_filter(filter)?;
+        Ok(revmap_files::displacement_map(text(path, "path")?, filter)?)
+    })
 }
 
 /// Makes a height map from width * height heights in [0, 1], row by row from the top; filter is a
@@ -85,16 +76,13 @@ pub unsafe extern "C" fn revmap_height_map_from_heights(
     filter: u32,
     height_map: *mut *mut RevmapHeightMap,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    unsafe {
-        create(height_map, || {
-            let heights = list(heights, width as usize * height as usize, "heights")?;
-            let filter = enums::slope_filter(filter)?;
-            Ok(DisplacementMap::from_heights(
-                width, height, heights, filter,
-            )?)
-        })
-    }
+    create(height_map, || {
+        let heights = list(heights, width as usize * height as usize, "heights")?;
+        let filter = enums::slope_filter(filter)?;
+        Ok(DisplacementMap::from_heights(
+            width, height, heights, filter,
+        )?)
+    })
 }
 
 /// Destroys a height map; null is none. Objects that use it stay as they are.

@@ -220,8 +220,7 @@ impl RevmapLighting {
     }
 
     pub(crate) unsafe fn lighting(&self) -> Outcome<Lighting> {
-        // SAFETY: the caller's, as many as it says.
-        let lights = unsafe { list(self.lights, self.light_count as usize, "lights") }?;
+        let lights = list(self.lights, self.light_count as usize, "lights")?;
         let light = |light: &RevmapLight| Light {
             direction: light.direction.into(),
             color: light.color,
@@ -264,8 +263,7 @@ impl RevmapView {
         if self.last.is_null() {
             return Ok(view);
         }
-        // SAFETY: the caller's structure.
-        let last = unsafe { read(self.last) }?;
+        let last = read(self.last)?;
         Ok(view.with_last(&last.without_last()?))
     }
 
@@ -339,23 +337,20 @@ impl RevmapSearch {
 /// as long as the program. The size must be set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_lighting_defaults(lighting: *mut RevmapLighting) -> RevmapResult {
-    // SAFETY: the caller's structure.
-    enter(|| unsafe { fill(lighting, RevmapLighting::defaults()) })
+    enter(|| fill(lighting, RevmapLighting::defaults()))
 }
 
 /// Fills in a camera at (2, 0, 0.5) that looks at (0, 0, 0.5), z up, 40 degrees. The size must be
 /// set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_camera_defaults(camera: *mut RevmapCamera) -> RevmapResult {
-    // SAFETY: the caller's structure.
-    enter(|| unsafe { fill(camera, RevmapCamera::defaults()) })
+    enter(|| fill(camera, RevmapCamera::defaults()))
 }
 
 /// Fills in the default search. The size must be set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn revmap_search_defaults(search: *mut RevmapSearch) -> RevmapResult {
-    // SAFETY: the caller's structure.
-    enter(|| unsafe { fill(search, RevmapSearch::defaults()) })
+    enter(|| fill(search, RevmapSearch::defaults()))
 }
 
 /// A null search is the default one.
@@ -363,6 +358,5 @@ pub(crate) unsafe fn search(from: *const RevmapSearch) -> Outcome<SearchSettings
     if from.is_null() {
         return Ok(SearchSettings::default());
     }
-    // SAFETY: the caller's structure.
-    unsafe { read(from) }?.settings()
+    read(from)?.settings()
 }

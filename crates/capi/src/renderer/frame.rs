@@ -16,8 +16,7 @@ impl Recorder {
         if cmd.is_null() {
             return Err(Fault::usage("the VkCommandBuffer is null"));
         }
-        // SAFETY: the caller of the entry point has promised it.
-        let (frame, error) = match unsafe { self.renderer.prepare(cmd, slot as usize, view) } {
+        let (frame, error) = match self.renderer.prepare(cmd, slot as usize, view) {
             Ok(frame) => (Some(frame), Ok(())),
             Err(error) => (None, Err(error.into())),
         };
@@ -67,8 +66,7 @@ pub unsafe extern "C" fn revmap_renderer_prepare(
     slot: u32,
     view: *const RevmapView,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    enter(|| unsafe {
+    enter(|| {
         let view = read(view)?.view()?;
         with(renderer, |r| r.prepare(command_buffer, slot, &view))
     })
@@ -99,8 +97,7 @@ pub unsafe extern "C" fn revmap_renderer_prepare_camera(
     near: f64,
     far: f64,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers and handles.
-    enter(|| unsafe {
+    enter(|| {
         let view = View::from_camera(&read(camera)?.camera(), (width, height), [near, far])?;
         with(renderer, |r| r.prepare(command_buffer, slot, &view))
     })
@@ -172,8 +169,7 @@ pub unsafe extern "C" fn revmap_renderer_prewarm(
     renderer: *mut RevmapRenderer,
     prewarm: *mut *mut RevmapPrewarm,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    unsafe { create(prewarm, || with(renderer, |r| Ok(r.renderer.prewarm()?))) }
+    create(prewarm, || with(renderer, |r| Ok(r.renderer.prewarm()?)))
 }
 
 /// Lists the pipelines that would draw the frames of all slots faster. Once they are compiled, the next
@@ -183,12 +179,9 @@ pub unsafe extern "C" fn revmap_renderer_special_forms(
     renderer: *mut RevmapRenderer,
     prewarm: *mut *mut RevmapPrewarm,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    unsafe {
-        create(prewarm, || {
-            with(renderer, |r| Ok(r.renderer.special_forms()))
-        })
-    }
+    create(prewarm, || {
+        with(renderer, |r| Ok(r.renderer.special_forms()))
+    })
 }
 
 /// Compiles those that are not compiled yet. Another thread may use the renderer meanwhile, or
@@ -204,8 +197,7 @@ pub unsafe extern "C" fn revmap_prewarm_count(
     prewarm: *const RevmapPrewarm,
     count: *mut usize,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe { put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len())) })
+    enter(|| put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len())))
 }
 
 /// Destroys the list; null is none. Compiled pipelines stay.

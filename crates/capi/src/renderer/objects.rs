@@ -35,8 +35,7 @@ pub unsafe extern "C" fn revmap_renderer_add(
     info: *const RevmapObjectInfo,
     object: *mut RevmapObject,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers.
-    enter(|| unsafe {
+    enter(|| {
         put(object, "object", || {
             let added = read(info)?.object()?;
             with(renderer, |r| Ok(r.renderer.add(added)?.to_bits()))
@@ -66,8 +65,7 @@ pub unsafe extern "C" fn revmap_renderer_set(
     info: *const RevmapObjectInfo,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's pointers.
-        let values = unsafe { read(info)?.object() }?;
+        let values = read(info)?.object()?;
         with_object(renderer, object, |r, id| r.set(id, values))
     })
 }
@@ -91,8 +89,7 @@ pub unsafe extern "C" fn revmap_renderer_object_number(
     object: RevmapObject,
     number: *mut u32,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
+    enter(|| {
         put(number, "number", || {
             let id = ObjectId::from_bits(object);
             with(renderer, |r| {
@@ -111,14 +108,11 @@ pub unsafe extern "C" fn revmap_renderer_ray_caster(
     object: RevmapObject,
     ray_caster: *mut *mut RevmapRayCaster,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    unsafe {
-        create(ray_caster, || {
-            let id = ObjectId::from_bits(object);
-            let values = with(renderer, |r| Ok(r.renderer.object(id)?.clone()))?;
-            rays::caster(&values)
-        })
-    }
+    create(ray_caster, || {
+        let id = ObjectId::from_bits(object);
+        let values = with(renderer, |r| Ok(r.renderer.object(id)?.clone()))?;
+        rays::caster(&values)
+    })
 }
 
 /// Moves the surface of an object: extension, bevel and chamfer.
@@ -131,8 +125,7 @@ pub unsafe extern "C" fn revmap_renderer_set_offset(
     offset: *const RevmapOffset,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's pointer.
-        let offset = unsafe { take(offset, "offset") }?;
+        let offset = take(offset, "offset")?;
         with_object(renderer, object, |r, id| r.set_offset(id, offset.into()))
     })
 }
@@ -147,8 +140,7 @@ pub unsafe extern "C" fn revmap_renderer_set_placement(
     placement: *const RevmapPlacement,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's pointer.
-        let placement = unsafe { take(placement, "placement") }?;
+        let placement = take(placement, "placement")?;
         let placement = placement.into();
         with_object(renderer, object, |r, id| r.set_placement(id, placement))
     })
@@ -165,8 +157,7 @@ pub unsafe extern "C" fn revmap_renderer_set_instances(
     count: usize,
 ) -> RevmapResult {
     enter(|| {
-        // SAFETY: the caller's, as many as it says.
-        let all = placements(unsafe { list(instances, count, "instances") }?);
+        let all = placements(list(instances, count, "instances")?);
         with_object(renderer, object, |r, id| r.set_instances(id, all))
     })
 }
@@ -185,8 +176,7 @@ pub unsafe extern "C" fn revmap_host_image_create(
     sampler: vk::Sampler,
     image: *mut *mut RevmapHostImage,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer and handles.
-    unsafe { create(image, || Ok(HostImage::new(view, sampler)?)) }
+    create(image, || Ok(HostImage::new(view, sampler)?))
 }
 
 /// Returns 1 if an object or a slot holds the image, else 0. A slot holds the images of its last frame
@@ -196,8 +186,7 @@ pub unsafe extern "C" fn revmap_host_image_is_held(
     image: *const RevmapHostImage,
     held: *mut u32,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
+    enter(|| {
         put(held, "held", || {
             Ok(u32::from(RevmapHostImage::get(image)?.is_held()))
         })

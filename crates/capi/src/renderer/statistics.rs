@@ -103,8 +103,7 @@ pub unsafe extern "C" fn revmap_renderer_statistics(
 ) -> RevmapResult {
     enter(|| {
         let value = with(renderer, |r| Ok(r.statistics()))?;
-        // SAFETY: the caller's structure.
-        unsafe { fill(statistics, value) }
+        fill(statistics, value)
     })
 }
 
@@ -130,8 +129,7 @@ pub unsafe extern "C" fn revmap_renderer_frame_statistics(
             record_ms: of.record_ms,
             ..sized()
         };
-        // SAFETY: the caller's structure.
-        unsafe { fill(statistics, value) }
+        fill(statistics, value)
     })
 }
 
@@ -143,8 +141,7 @@ pub unsafe extern "C" fn revmap_renderer_note(
     number: u32,
     note: *mut *const c_char,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointer.
-    enter(|| unsafe {
+    enter(|| {
         put(note, "note", || {
             with(renderer, |r| {
                 let Recorder {
