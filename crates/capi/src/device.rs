@@ -2,7 +2,7 @@
 
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::handle::{Handle, create, handle};
-use crate::pointers::{list, put_bytes, text};
+use crate::pointers::{list, optional_text, put_bytes};
 use crate::structures::{described, fill, read, sized};
 use ash::vk;
 use ash::vk::Handle as _;
@@ -172,10 +172,7 @@ pub unsafe extern "C" fn revmap_device_open(
     device: *mut *mut RevmapDevice,
 ) -> RevmapResult {
     create(device, || {
-        let choice = match choice.is_null() {
-            true => None,
-            false => Some(text(choice, "choice")?),
-        };
+        let choice = optional_text(choice, "choice")?;
         Ok(match validate {
             0 => Device::open(choice)?,
             _ => Device::open_validated(choice)?,
@@ -305,10 +302,8 @@ pub unsafe extern "C" fn revmap_device_pipeline_cache(
     bytes: *mut c_void,
     count: *mut usize,
 ) -> RevmapResult {
-    enter(|| {
-        put_bytes(bytes, count, || {
-            Ok(RevmapDevice::get(device)?.pipeline_cache_data()?)
-        })
+    put_bytes(bytes, count, || {
+        Ok(RevmapDevice::get(device)?.pipeline_cache_data()?)
     })
 }
 

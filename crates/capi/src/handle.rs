@@ -6,12 +6,10 @@ use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use crate::pointers::put;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError, RwLock, RwLockWriteGuard, TryLockError};
+use std::sync::{Arc, Mutex, PoisonError, RwLock, RwLockWriteGuard, TryLockError};
 
-/// The values behind the handles of one kind.
-pub(crate) struct Registry<T> {
-    live: RwLock<BTreeMap<usize, T>>,
-}
+/// The values behind the live handles of one kind, by their numbers.
+pub(crate) type Registry<T> = RwLock<BTreeMap<usize, T>>;
 
 /// The handle's type in the header.
 pub(crate) trait Handle: Sized + 'static {
@@ -27,13 +25,13 @@ pub(crate) trait Handle: Sized + 'static {
         // nothing.
         static NEXT: AtomicUsize = AtomicUsize::new(16);
         let number = NEXT.fetch_add(16, Ordering::Relaxed);
-        Self::registry().write().insert(number, value);
+        write(Self::registry()).insert(number, value);
         std::ptr::without_provenance_mut(number)
     }
 
     fn get(handle: *const Self) -> Outcome<Self::Value> {
-        let live = &Self::registry().live;
-        let live = live.read().unwrap_or_else(PoisonError::into_inner);
+        let live = Self::registry().read();
+        let live = live.unwrap_or_else(PoisonError::into_inner);
         let found = live.get(&handle.addr()).cloned();
         found.ok_or_else(|| missing(Self::NAME, handle.is_null()))
     }
@@ -51,7 +49,7 @@ pub(crate) trait Handle: Sized + 'static {
         if handle.is_null() {
             return Ok(());
         }
-        let value = Self::registry().write().remove(&handle.addr());
+        let value = write(Self::registry()).remove(&handle.addr());
         // The value is dropped without the lock, since that may take long.
         value.map(drop).ok_or_else(|| missing(Self::NAME, false))
     }
@@ -65,16 +63,8 @@ fn missing(name: &str, null: bool) -> Fault {
     Fault::new(RevmapResult::Handle, format!("the {name} {why}"))
 }
 
-impl<T> Registry<T> {
-    pub const fn new() -> Self {
-        Self {
-            live: RwLock::new(BTreeMap::new()),
-        }
-    }
-
-    fn write(&self) -> RwLockWriteGuard<'_, BTreeMap<usize, T>> {
-        self.live.write().unwrap_or_else(PoisonError::into_inner)
-    }
+fn write<T>(registry: &Registry<T>) -> RwLockWriteGuard<'_, BTreeMap<usize, T>> {
+    registry.write().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The body of an entry point that makes a handle.
@@ -83,15 +73,15 @@ pub(crate) unsafe fn create<H: Handle, V: Into<H::Value>>(
     value: impl FnOnce() -> Outcome<V>,
 ) -> RevmapResult {
     // SAFETY: the caller's pointer.
-    enter(|| unsafe { put(to, H::NAME, || Ok(H::create(value()?.into()))) })
+    unsafe { put(to, H::NAME, || Ok(H::create(value()?.into()))) }
 }
 
-/// Calls `work` with a value that one thread at a time may use.
-pub(crate) fn alone<T, R>(
-    shared: &Mutex<T>,
-    name: &str,
+/// Calls `work` with the value of a handle that one thread at a time may use.
+pub(crate) fn with<H: Handle<Value = Arc<Mutex<T>>>, T: 'static, R>(
+    handle: *const H,
     work: impl FnOnce(&mut T) -> Outcome<R>,
 ) -> Outcome<R> {
+    let (name, shared) = (H::NAME, H::get(handle)?);
     match shared.try_lock() {
         Ok(mut value) => work(&mut value),
         Err(TryLockError::WouldBlock) => Err(Fault::new(
@@ -105,6 +95,14 @@ pub(crate) fn alone<T, R>(
     }
 }
 
+/// The body of an entry point that works with such a value.
+pub(crate) fn enter_with<H: Handle<Value = Arc<Mutex<T>>>, T: 'static>(
+    handle: *const H,
+    work: impl FnOnce(&mut T) -> Outcome<()>,
+) -> RevmapResult {
+    enter(|| with(handle, work))
+}
+
 /// Declares the type of a handle.
 macro_rules! handle {
     ($name:ident, $text:literal, $value:ty) => {
@@ -113,8 +111,9 @@ macro_rules! handle {
             const NAME: &'static str = $text;
 
             fn registry() -> &'static crate::handle::Registry<$value> {
-                static REGISTRY: crate::handle::Registry<$value> = crate::handle::Registry::new();
-                &REGISTRY
+                static LIVE: crate::handle::Registry<$value> =
+                    std::sync::RwLock::new(std::collections::BTreeMap::new());
+                &LIVE
             }
         }
     };
@@ -124,7 +123,6 @@ pub(crate) use handle;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
 
     struct Thing;
     handle!(Thing, "thing", Arc<Mutex<u32>>);
@@ -151,14 +149,15 @@ mod tests {
 
     #[test]
     fn two_threads_at_once_are_refused() {
-        let shared = Mutex::new(0);
-        let inner = alone(&shared, "thing", |_| {
-            Ok(std::thread::scope(|s| {
-                s.spawn(|| alone(&shared, "thing", |_| Ok(())).unwrap_err().result)
-                    .join()
-            }))
-        });
+        let shared = Thing::create(Arc::new(Mutex::new(0)));
+        let number = shared.addr();
+        let other = move || {
+            let same = std::ptr::without_provenance::<Thing>(number);
+            with(same, |_| Ok(())).unwrap_err().result
+        };
+        let inner = with(shared, |_| Ok(std::thread::spawn(other).join()));
         assert_eq!(inner.unwrap().unwrap(), RevmapResult::Busy);
-        assert!(alone(&shared, "thing", |_| Ok(())).is_ok());
+        assert!(with(shared, |_| Ok(())).is_ok());
+        Thing::destroy(shared).unwrap();
     }
 }

@@ -3,7 +3,7 @@
 use crate::enums;
 use crate::fault::{Outcome, RevmapResult, enter};
 use crate::handle::Handle;
-use crate::pointers::{list, text};
+use crate::pointers::{list, optional_text};
 use crate::profile::RevmapProfile;
 use crate::structures::{described, fill, sized};
 use crate::texture::{RevmapColorMap, RevmapHeightMap};
@@ -88,10 +88,7 @@ described!(RevmapObjectInfo {
 impl RevmapObjectInfo {
     pub(crate) unsafe fn object(&self) -> Outcome<Object> {
         let profile = RevmapProfile::get(self.profile)?;
-        let name = match self.name.is_null() {
-            true => "object",
-            false => text(self.name, "name")?,
-        };
+        let name = optional_text(self.name, "name")?.unwrap_or("object");
         let instances = list(self.instances, self.instance_count, "instances")?;
         let mut object = Object::new(name, profile);
         object.map_rows = self.map_rows;

@@ -3,7 +3,7 @@
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPlane};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::handle::{Handle, alone, create, handle};
+use crate::handle::{Handle, create, enter_with, handle, with};
 use crate::object::RevmapObjectInfo;
 use crate::pointers::text;
 use crate::structures::{described, fill, read, read_all, sized};
@@ -139,14 +139,6 @@ impl Drawing {
     }
 }
 
-fn with<R>(
-    offscreen: *const RevmapOffscreen,
-    work: impl FnOnce(&mut Drawing) -> Outcome<R>,
-) -> Outcome<R> {
-    let shared = RevmapOffscreen::get(offscreen)?;
-    alone(&shared, RevmapOffscreen::NAME, work)
-}
-
 /// Fills in 800x600 pixels, REVMAP_STAGE_FRAGMENT, REVMAP_PLANES_COLOR and the default search. The
 /// size must be set.
 #[unsafe(no_mangle)]
@@ -215,12 +207,10 @@ pub unsafe extern "C" fn revmap_offscreen_update(
 /// Compiles every pipeline that updates can come to need, as long as no object's technique changes.
 #[unsafe(no_mangle)]
 pub extern "C" fn revmap_offscreen_prewarm(offscreen: *mut RevmapOffscreen) -> RevmapResult {
-    enter(|| {
-        with(offscreen, |d| {
-            d.drawn = false;
-            d.frame = None;
-            Ok(d.offscreen.prewarm()?)
-        })
+    enter_with(offscreen, |d| {
+        d.drawn = false;
+        d.frame = None;
+        Ok(d.offscreen.prewarm()?)
     })
 }
 

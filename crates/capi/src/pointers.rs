@@ -1,25 +1,27 @@
 //! Pointers from the caller, checked before use.
 
-use crate::fault::{Fault, Outcome};
+use crate::fault::{Fault, Outcome, RevmapResult, enter};
 use std::ffi::{CStr, c_char, c_void};
 
 pub(crate) fn null(what: &str) -> Fault {
     Fault::usage(format!("the pointer to {what} is null"))
 }
 
-/// Writes a value that has no size of its own.
+/// The body of an entry point that returns a value without a size of its own.
 pub(crate) unsafe fn put<T>(
     to: *mut T,
     what: &str,
     value: impl FnOnce() -> Outcome<T>,
-) -> Outcome<()> {
-    if to.is_null() {
-        return Err(null(what));
-    }
-    let value = value()?;
-    // SAFETY: the caller's, for one value.
-    unsafe { to.write(value) };
-    Ok(())
+) -> RevmapResult {
+    enter(|| {
+        if to.is_null() {
+            return Err(null(what));
+        }
+        let value = value()?;
+        // SAFETY: the caller's, for one value.
+        unsafe { to.write(value) };
+        Ok(())
+    })
 }
 
 /// A value from the caller without a size of its own.
@@ -28,14 +30,15 @@ pub(crate) unsafe fn take<T: Copy>(from: *const T, what: &str) -> Outcome<T> {
     unsafe { from.as_ref() }.copied().ok_or_else(|| null(what))
 }
 
-/// Writes bytes, or with a null pointer their number alone. `count` is the room, and becomes the number.
+/// The body of an entry point that returns bytes, or with a null pointer their number alone. `count`
+/// is the room, and becomes the number.
 pub(crate) unsafe fn put_bytes(
     to: *mut c_void,
     count: *mut usize,
     data: impl FnOnce() -> Outcome<Vec<u8>>,
-) -> Outcome<()> {
+) -> RevmapResult {
     // SAFETY: the caller's pointers; the room is as large as it says.
-    unsafe {
+    enter(|| unsafe {
         let room = take(count, "count")?;
         let data = data()?;
         if !to.is_null() {
@@ -47,8 +50,8 @@ pub(crate) unsafe fn put_bytes(
                 .copy_from_nonoverlapping(data.as_ptr(), data.len());
         }
         count.write(data.len());
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// An array from the caller; null if it is empty.
@@ -76,11 +79,19 @@ pub(crate) fn check_room<T>(at: *const T, count: usize, what: &str) -> Outcome<(
 
 /// A text from the caller.
 pub(crate) unsafe fn text<'a>(from: *const c_char, what: &str) -> Outcome<&'a str> {
+    optional_text(from, what)?.ok_or_else(|| null(what))
+}
+
+/// A text from the caller; `None` for null.
+pub(crate) unsafe fn optional_text<'a>(
+    from: *const c_char,
+    what: &str,
+) -> Outcome<Option<&'a str>> {
     if from.is_null() {
-        return Err(null(what));
+        return Ok(None);
     }
     // SAFETY: the caller's, ended by 0, unchanged during the call.
-    let text = unsafe { CStr::from_ptr(from) };
-    text.to_str()
+    let text = unsafe { CStr::from_ptr(from) }.to_str();
+    text.map(Some)
         .map_err(|_| Fault::usage(format!("the {what} is not UTF-8")))
 }

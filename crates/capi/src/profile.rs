@@ -72,7 +72,7 @@ pub unsafe extern "C" fn revmap_profile_radius(
     profile: *const RevmapProfile,
     radius: *mut f64,
 ) -> RevmapResult {
-    enter(|| put(radius, "radius", || Ok(RevmapProfile::get(profile)?.radius)))
+    put(radius, "radius", || Ok(RevmapProfile::get(profile)?.radius))
 }
 
 /// Destroys a profile; null is none. Objects that were made from it stay as they are.

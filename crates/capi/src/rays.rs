@@ -113,13 +113,11 @@ pub unsafe extern "C" fn revmap_ray_caster_bounds(
     ray_caster: *const RevmapRayCaster,
     bounds: *mut RevmapBounds,
 ) -> RevmapResult {
-    enter(|| {
-        put(bounds, "bounds", || {
-            let found = RevmapRayCaster::get(ray_caster)?.bounds();
-            let ends = found.map(|ends| ends.map(|end| end.to_array()));
-            let [low, high] = ends.unwrap_or([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
-            Ok(RevmapBounds { low, high })
-        })
+    put(bounds, "bounds", || {
+        let found = RevmapRayCaster::get(ray_caster)?.bounds();
+        let ends = found.map(|ends| ends.map(|end| end.to_array()));
+        let [low, high] = ends.unwrap_or([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]);
+        Ok(RevmapBounds { low, high })
     })
 }
 

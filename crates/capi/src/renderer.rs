@@ -7,7 +7,7 @@ pub mod statistics;
 use crate::device::RevmapDevice;
 use crate::enums::{self, RevmapPassKind};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::handle::{Handle, alone, create, handle};
+use crate::handle::{Handle, create, enter_with, handle, with};
 use crate::pointers::{list, put};
 use crate::shading::RevmapShading;
 use crate::structures::{described, read};
@@ -182,23 +182,6 @@ impl RevmapPass {
     }
 }
 
-/// Calls `work` with a renderer.
-fn with<R>(
-    renderer: *const RevmapRenderer,
-    work: impl FnOnce(&mut Recorder) -> Outcome<R>,
-) -> Outcome<R> {
-    let shared = RevmapRenderer::get(renderer)?;
-    alone(&shared, RevmapRenderer::NAME, work)
-}
-
-/// The body of an entry point that works with a renderer.
-fn enter_with(
-    renderer: *const RevmapRenderer,
-    work: impl FnOnce(&mut Recorder) -> Outcome<()>,
-) -> RevmapResult {
-    enter(|| with(renderer, work))
-}
-
 /// A renderer without objects.
 ///
 /// # Safety
@@ -319,10 +302,8 @@ pub unsafe extern "C" fn revmap_renderer_pipeline_layout(
     renderer: *mut RevmapRenderer,
     layout: *mut vk::PipelineLayout,
 ) -> RevmapResult {
-    enter(|| {
-        put(layout, "layout", || {
-            with(renderer, |r| Ok(r.renderer.pipeline_layout()?))
-        })
+    put(layout, "layout", || {
+        with(renderer, |r| Ok(r.renderer.pipeline_layout()?))
     })
 }
 

@@ -73,14 +73,11 @@ pub unsafe extern "C" fn revmap_shading_bytes(
     bytes: *mut c_void,
     count: *mut usize,
 ) -> RevmapResult {
-    // SAFETY: the caller's pointers; the room is as large as it says.
-    enter(|| unsafe {
-        put_bytes(
-            bytes,
-            count,
-            || Ok(RevmapShading::get(shading)?.to_bytes()?),
-        )
-    })
+    put_bytes(
+        bytes,
+        count,
+        || Ok(RevmapShading::get(shading)?.to_bytes()?),
+    )
 }
 
 /// Destroys a shading; null is none. Renderers that use it stay as they are.

@@ -199,17 +199,10 @@ impl Layout {
             let size = self.size(to, usize::MAX)?;
             // The sizes of structures within this one are not set yet, and follow from the release.
             let release = match self.release_of(size) {
-                None if self.is_flat() => u32::MAX,
+                None if self.is_flat() && size > self.bytes() => u32::MAX,
                 None => return Err(self.wrong_size(size)),
                 Some(release) => release,
             };
-            let ends = self.members.iter().scan(0, |end, member| {
-                *end += member.bytes;
-                Some(*end)
-            });
-            if self.is_flat() && size < self.bytes() && !ends.into_iter().any(|end| end == size) {
-                return Err(self.wrong_size(size));
-            }
             let end = self.put(from, to, release, size);
             to.add(end).write_bytes(0, size - end);
             to.cast::<u32>().write_unaligned(size as u32);

@@ -1,8 +1,8 @@
 //! A frame of a renderer: prepared, then recorded. Pipelines compiled before they are needed.
 
-use super::{Recorder, RevmapRenderer, enter_with, with};
+use super::{Recorder, RevmapRenderer};
 use crate::fault::{Fault, Outcome, RevmapResult, enter};
-use crate::handle::{Handle, create, handle};
+use crate::handle::{Handle, create, enter_with, handle, with};
 use crate::pointers::put;
 use crate::structures::read;
 use crate::values::{RevmapCamera, RevmapView};
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn revmap_prewarm_count(
     prewarm: *const RevmapPrewarm,
     count: *mut usize,
 ) -> RevmapResult {
-    enter(|| put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len())))
+    put(count, "count", || Ok(RevmapPrewarm::get(prewarm)?.len()))
 }
 
 /// Destroys the list; null is none. Compiled pipelines stay.

@@ -1,8 +1,8 @@
 //! Objects of a renderer: added, changed, removed; images of a host as their textures.
 
-use super::{RevmapRenderer, with};
+use super::RevmapRenderer;
 use crate::fault::{Outcome, RevmapResult, enter};
-use crate::handle::{Handle, create, handle};
+use crate::handle::{Handle, create, handle, with};
 use crate::object::{RevmapObjectInfo, placements};
 use crate::pointers::{list, put, take};
 use crate::rays::{self, RevmapRayCaster};
@@ -16,14 +16,14 @@ use std::sync::Arc;
 /// object for all its values, and is never reused after its removal.
 pub type RevmapObject = u64;
 
-/// Calls `change` with a renderer and one of its objects.
-fn with_object(
+/// Calls `work` with a renderer and one of its objects.
+fn with_object<R>(
     renderer: *const RevmapRenderer,
     object: RevmapObject,
-    change: impl FnOnce(&mut Renderer, ObjectId) -> revmap::Result<()>,
-) -> Outcome<()> {
+    work: impl FnOnce(&mut Renderer, ObjectId) -> revmap::Result<R>,
+) -> Outcome<R> {
     let id = ObjectId::from_bits(object);
-    with(renderer, |r| Ok(change(&mut r.renderer, id)?))
+    with(renderer, |r| Ok(work(&mut r.renderer, id)?))
 }
 
 /// Adds an object, which is drawn from the next prepared frame on.
@@ -35,11 +35,9 @@ pub unsafe extern "C" fn revmap_renderer_add(
     info: *const RevmapObjectInfo,
     object: *mut RevmapObject,
 ) -> RevmapResult {
-    enter(|| {
-        put(object, "object", || {
-            let added = read(info)?.object()?;
-            with(renderer, |r| Ok(r.renderer.add(added)?.to_bits()))
-        })
+    put(object, "object", || {
+        let added = read(info)?.object()?;
+        with(renderer, |r| Ok(r.renderer.add(added)?.to_bits()))
     })
 }
 
@@ -89,13 +87,8 @@ pub unsafe extern "C" fn revmap_renderer_object_number(
     object: RevmapObject,
     number: *mut u32,
 ) -> RevmapResult {
-    enter(|| {
-        put(number, "number", || {
-            let id = ObjectId::from_bits(object);
-            with(renderer, |r| {
-                Ok(r.renderer.object(id).map(|_| id.number())?)
-            })
-        })
+    put(number, "number", || {
+        with_object(renderer, object, |r, id| r.object(id).map(|_| id.number()))
     })
 }
 
@@ -109,8 +102,7 @@ pub unsafe extern "C" fn revmap_renderer_ray_caster(
     ray_caster: *mut *mut RevmapRayCaster,
 ) -> RevmapResult {
     create(ray_caster, || {
-        let id = ObjectId::from_bits(object);
-        let values = with(renderer, |r| Ok(r.renderer.object(id)?.clone()))?;
+        let values = with_object(renderer, object, |r, id| r.object(id).cloned())?;
         rays::caster(&values)
     })
 }
@@ -186,10 +178,8 @@ pub unsafe extern "C" fn revmap_host_image_is_held(
     image: *const RevmapHostImage,
     held: *mut u32,
 ) -> RevmapResult {
-    enter(|| {
-        put(held, "held", || {
-            Ok(u32::from(RevmapHostImage::get(image)?.is_held()))
-        })
+    put(held, "held", || {
+        Ok(u32::from(RevmapHostImage::get(image)?.is_held()))
     })
 }
 

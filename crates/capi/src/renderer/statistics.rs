@@ -1,7 +1,8 @@
 //! Statistics of a renderer.
 
-use super::{Recorder, RevmapRenderer, with};
+use super::{Recorder, RevmapRenderer};
 use crate::fault::{Fault, RevmapResult, enter};
+use crate::handle::with;
 use crate::pointers::put;
 use crate::structures::{described, fill, sized};
 use revmap::gpu::DrawPath;
@@ -141,18 +142,16 @@ pub unsafe extern "C" fn revmap_renderer_note(
     number: u32,
     note: *mut *const c_char,
 ) -> RevmapResult {
-    enter(|| {
-        put(note, "note", || {
-            with(renderer, |r| {
-                let Recorder {
-                    renderer, notes, ..
-                } = r;
-                for text in &renderer.notes()[notes.len()..] {
-                    notes.push(CString::new(text.replace('\0', " ")).unwrap_or_default());
-                }
-                let note = notes.get(number as usize).map(|text| text.as_ptr());
-                note.ok_or_else(|| Fault::usage(format!("there is no note {number}")))
-            })
+    put(note, "note", || {
+        with(renderer, |r| {
+            let Recorder {
+                renderer, notes, ..
+            } = r;
+            for text in &renderer.notes()[notes.len()..] {
+                notes.push(CString::new(text.replace('\0', " ")).unwrap_or_default());
+            }
+            let note = notes.get(number as usize).map(|text| text.as_ptr());
+            note.ok_or_else(|| Fault::usage(format!("there is no note {number}")))
         })
     })
 }
