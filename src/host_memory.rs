@@ -11,7 +11,6 @@ thread_local! {
 
 /// True while this thread makes a request whose failure becomes an error. A program's allocator that
 /// ends the program when memory ends passes the failure of such a request on.
-#[must_use]
 pub fn is_handled() -> bool {
     HANDLED.get()
 }
@@ -96,7 +95,6 @@ fn refusal<T>(count: usize, what: &str) -> Error {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

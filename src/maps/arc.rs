@@ -149,7 +149,6 @@ fn chains(outline: &Outline) -> Vec<Vec<DVec2>> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn nearest(arc: &ArcLength, p: DVec2) -> f64 {

@@ -184,7 +184,6 @@ impl<T, F: Fn(usize, usize, f64, usize) -> T> Search<F> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use proptest::prelude::*;
 

@@ -189,7 +189,6 @@ impl DisplacementMap {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use std::f32::consts::TAU;
 

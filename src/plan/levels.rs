@@ -43,7 +43,6 @@ impl CopyLevels {
         let reach = (object.profile.radius * SQRT_2).hypot(0.5);
         let pixels = stretch(view) / (pixel_of(view) * height);
         let error = tolerance.pixels() / (COPIES * GRAZING);
-        #[allow(clippy::cast_possible_truncation)]
         let limit = |level: u8| ((reach + bound(level) * pixels / error) * (1.0 + 1e-6)) as f32;
         Self {
             limits: std::array::from_fn(|n| limit(COPY_LEVELS[n + 1])),
@@ -170,7 +169,6 @@ impl<'a> CopyDepths<'a> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::profile::Profile;
     use crate::scene::Camera;

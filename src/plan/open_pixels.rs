@@ -13,7 +13,6 @@ pub struct OpenPixels {
 impl OpenPixels {
     /// The pixels of a picture of this width, row 0 on top.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // pictures have at most 32,768 pixels a side
     pub fn new(width: u32, pixels: &[bool]) -> Self {
         let wide = width.max(1) as usize;
         let side = GROUP_PIXELS as usize;

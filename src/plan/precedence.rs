@@ -201,7 +201,6 @@ impl Precedence {
 
     /// The lag of an instance in a view, as a part of its depths; in a parallel view, of the depth
     /// range.
-    #[allow(clippy::cast_possible_truncation)]
     pub fn lag(&self, instance: u32, copy: &InstanceBlock, view: &View) -> f32 {
         let Some(rank) = self.0.get(&instance) else {
             return 0.0;
@@ -234,7 +233,6 @@ pub(crate) fn lag_depth(view: &View) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plan::{DepthOrder, Viewport};
     use crate::profile::Profile;

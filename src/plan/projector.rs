@@ -198,7 +198,6 @@ fn last_pixel(place: f64) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plan::DepthOrder;
     use crate::plan::Viewport;

@@ -199,11 +199,6 @@ impl View {
 
     /// The number of tiles in all rows of the picture, from that in the rows that are drawn: an
     /// estimate, so that bands of a frame choose as the whole frame does.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss
-    )]
     pub(crate) fn tiles_of_all_rows(&self, tiles: u64) -> u64 {
         let share = |[first, end]: [u32; 2]| self.viewport.height.abs() / f64::from(end - first);
         self.rows

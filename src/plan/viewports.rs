@@ -1,6 +1,5 @@
 //! Views of any matrices, and plans of viewports of any numbers: refused by name, or planned within
 //! the picture.
-#![allow(clippy::unwrap_used)]
 
 use super::path::Conditions;
 use super::walk::Walks;

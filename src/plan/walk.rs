@@ -116,7 +116,6 @@ impl Grid {
     }
 
     /// The node of a copy, whose box contains the copy's.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to STEPS
     fn node(&self, leaf: &Leaf) -> WalkNode {
         let steps = |p: DVec3| (p - self.low) / self.unit;
         let low = steps(leaf.low)

@@ -50,7 +50,6 @@ pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn outline(points: &[[f64; 2]]) -> Outline {

@@ -141,7 +141,6 @@ impl CameraFrame {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn camera() -> Camera {

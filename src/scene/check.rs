@@ -229,7 +229,6 @@ fn factors(key: &str, values: &[f64]) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::error::ErrorKind;
     use crate::profile::Profile;

@@ -41,7 +41,6 @@ const SMALL: f64 = 1.0 / 8.0;
 
 impl Growth {
     /// The growth that `object` needs; none if its box cuts, or if its offset stays within the box.
-    #[must_use]
     pub fn of(object: &Object) -> Self {
         let bounds = object.profile.outline.bounds();
         let Some(bounds) = bounds.filter(|_| object.clip == Clip::None && object.repeat == [1; 3])
@@ -101,13 +100,11 @@ impl Growth {
     }
 
     /// Returns true if the box is the profile's own.
-    #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
     /// Height of the grown box, object units.
-    #[must_use]
     pub fn height(&self) -> f64 {
         1.0 + self.low + self.high
     }
@@ -128,7 +125,6 @@ impl Growth {
     }
 
     /// The picture with empty pixels around it.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most some 10^4
     fn raster(&self, raster: &Raster) -> Raster {
         let pixels = |length: f64| (length * f64::from(raster.rows)).round() as u32;
         let columns = raster.columns + pixels(self.side);
@@ -163,7 +159,6 @@ impl Growth {
     }
 
     /// The placement of the grown box that leaves the solid at `placement`.
-    #[must_use]
     pub fn placement(&self, placement: &Placement) -> Placement {
         let down = DVec3::new(0.0, 0.0, -self.low * placement.scale.z);
         Placement {
@@ -185,7 +180,6 @@ pub struct GrownObject {
 
 impl GrownObject {
     /// The same solid with the placements of `object`, which are those of a box that has not grown.
-    #[must_use]
     pub fn placed_as(&self, object: &Object) -> Self {
         let of = |p: &Placement| self.growth.placement(p);
         Self {

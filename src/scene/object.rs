@@ -199,7 +199,6 @@ pub struct Material {
 
 impl Material {
     /// Two numbers of 16 bits, as `unpackUnorm2x16` reads them.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 65535
     pub(crate) fn bits(self) -> u32 {
         let part = |v: f32| (v.clamp(0.0, 1.0) * 65535.0).round() as u32;
         part(self.roughness) | part(self.metalness) << 16

@@ -7,7 +7,6 @@ use std::collections::HashMap;
 /// The words of a module with plain constants in place of specialisation constants of 32 bits.
 /// `values`: by `constant_id`; other constants have their defaults. Operations on constants that are not in
 /// [`folded`] stay as they are.
-#[must_use]
 pub fn frozen(words: &[u32], values: &HashMap<u32, u32>) -> Vec<u32> {
     // By result id.
     let mut given = HashMap::new();
@@ -69,7 +68,6 @@ fn folded(code: u32, operand: impl Fn(usize) -> Option<u32>) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::shader::{modules, words};
 

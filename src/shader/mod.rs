@@ -38,7 +38,7 @@ pub use variant::{Drawn, Kind, Lights, Speciality, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.
 // The list includes numbers that only the shaders read, or that only tests compare.
-#[allow(clippy::unreadable_literal, dead_code)]
+#[allow(dead_code)]
 pub mod generated {
     include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 }

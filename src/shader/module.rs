@@ -5,7 +5,6 @@ use super::generated::MODULES;
 use crate::search::unpacked;
 
 /// The words of a module; `None` if the catalogue does not have it.
-#[must_use]
 pub fn words(module: &Module) -> Option<Vec<u32>> {
     let n = modules().iter().position(|m| m == module)?;
     unpacked(MODULES.get(n)?)

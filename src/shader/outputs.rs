@@ -24,7 +24,6 @@ fn located(words: &[u32], class: u32) -> HashMap<u32, u32> {
 
 /// The words of a vertex module that passes only what a fragment module reads. Vertices write the
 /// inputs of all fragments.
-#[must_use]
 pub fn with_outputs_for(vertex: &[u32], fragment: &[u32]) -> Vec<u32> {
     let read = located(fragment, op::INPUT);
     let kept = |n: u32| read.values().any(|known| *known == n).then_some(n);
@@ -37,7 +36,6 @@ pub fn with_outputs_for(vertex: &[u32], fragment: &[u32]) -> Vec<u32> {
 ///
 /// The module must write its outputs as whole variables, and be of SPIR-V 1.4 or later, where an
 /// entry point lists its private variables, too. A test checks both.
-#[must_use]
 pub fn with_locations(words: &[u32], locations: &[Option<u32>]) -> Vec<u32> {
     let at: HashMap<u32, Option<u32>> = located(words, op::OUTPUT)
         .into_iter()
@@ -77,7 +75,6 @@ pub fn with_locations(words: &[u32], locations: &[Option<u32>]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::settings::Plane;
     use crate::shader::catalogue::{Entry, Module, modules};

@@ -31,7 +31,6 @@ fn is_decoration((code, one): &(u32, &[u32])) -> bool {
 }
 
 /// The words of a module in which each operation rounds by itself, as with GLSL's `precise`.
-#[must_use]
 pub fn without_contraction(words: &[u32]) -> Vec<u32> {
     let rounded = |(code, _): &(u32, &[u32])| ROUNDED.contains(code);
     // `precise` in the GLSL has decorated some.

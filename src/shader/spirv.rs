@@ -91,7 +91,6 @@ pub fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
 
 /// A module's words for reversed depth. Fragments that declare a depth no nearer than their
 /// triangle then declare it for depth that decreases away from the eye.
-#[must_use]
 pub fn depth_less(words: &[u32]) -> Vec<u32> {
     let mut out = words[..HEADER].to_vec();
     for (code, one) in instructions(words) {

@@ -95,7 +95,6 @@ impl Technique {
 
     /// The technique that draws `object` by the search `solver`, which is the search of the settings
     /// or a replacement for it.
-    #[must_use]
     pub fn new(
         settings: &SearchSettings,
         planes: Planes,
@@ -165,7 +164,6 @@ impl Technique {
     }
 
     /// This technique and those that replace it when a bevel is added or removed.
-    #[must_use]
     pub fn by_bevel(self) -> Vec<Self> {
         let beveled = !self.beveled;
         let twin = |external| Self {
@@ -193,13 +191,11 @@ impl Technique {
     }
 
     /// True if the number of lights makes another pipeline.
-    #[must_use]
     pub const fn is_lit(&self) -> bool {
         self.is_shaded() && self.shadow == g::SHADOW_OFF
     }
 
     /// True if colours are stored, not only depths.
-    #[must_use]
     pub const fn is_shaded(&self) -> bool {
         !matches!(self.output, Stored::Depth)
     }

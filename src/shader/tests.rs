@@ -1,6 +1,5 @@
 //! Rust and GLSL agree on shared bytes: block layouts, specialisation constants, the
 //! catalogue of modules, and the stored SPIR-V for builds without shaderc.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::profile::Profile;
 use crate::scene::{Lighting, Object};

@@ -92,7 +92,6 @@ pub fn varying_textures(words: &[u32]) -> usize {
 
 /// A module's words with the capability for indices that vary, which the compiler of GLSL leaves out,
 /// if there are any.
-#[must_use]
 pub fn with_varying_textures(words: &[u32]) -> Vec<u32> {
     let (head, rest) = words.split_at(HEADER);
     let mut out = head.to_vec();
@@ -109,7 +108,6 @@ pub fn with_varying_textures(words: &[u32]) -> Vec<u32> {
 
 /// A module's words with a switch over constant indices in place of each look-up in an array of
 /// textures by an index that varies. A loop's header, which cannot be divided, keeps its look-ups.
-#[must_use]
 pub fn with_constant_textures(words: &[u32]) -> Vec<u32> {
     let declared = Declared::new(words);
     if declared.varying.is_empty() || headers_sample(words, &declared) {

@@ -38,7 +38,6 @@ pub enum Kind {
 
 impl Kind {
     /// Its name in lists of commands.
-    #[must_use]
     pub const fn label(self) -> &'static CStr {
         match self {
             Self::Cells => c"revmap cells",
@@ -56,7 +55,6 @@ impl Kind {
     }
 
     /// True if it draws in compute.
-    #[must_use]
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
@@ -73,7 +71,6 @@ impl Kind {
     }
 
     /// True if it makes what other kinds draw from.
-    #[must_use]
     pub const fn makes_lists(self) -> bool {
         self.entry().makes_lists()
     }
@@ -114,7 +111,6 @@ pub enum Lights {
 
 impl Lights {
     /// The limit for so many lights.
-    #[must_use]
     pub const fn of(count: usize) -> Self {
         match count {
             0 | 1 => Self::One,
@@ -209,7 +205,6 @@ pub struct Variant {
 
 impl Variant {
     /// The variant of a technique that promises nothing.
-    #[must_use]
     pub const fn general(technique: Technique) -> Self {
         Self {
             technique,
@@ -219,7 +214,6 @@ impl Variant {
 
     /// This variant for objects of which [`FramePlan::outside`](crate::plan::FramePlan::outside) is
     /// this.
-    #[must_use]
     pub const fn seen_from_outside(mut self, outside: bool) -> Self {
         self.speciality.outside = if outside { Outside::All } else { Outside::None };
         self
@@ -227,7 +221,6 @@ impl Variant {
 
     /// The form of this variant for pipelines of `kind`. Constants that the kind does not read, or
     /// that do not make it faster, have fixed values, so that equal pipelines have equal keys.
-    #[must_use]
     pub fn of_kind(self, kind: Kind) -> Self {
         let technique = self.technique;
         let mut speciality = self.speciality;
@@ -259,7 +252,6 @@ impl Variant {
 
     /// The forms of pipelines that may draw what this variant draws, the fastest first: this one with
     /// specialities of a set, one for up to two lights if there are no more, and the general one.
-    #[must_use]
     pub fn forms(self, kind: Kind, set: u32) -> [Self; 3] {
         let mut few_lights = self.speciality.only(set & LIGHTS_BIT);
         few_lights.lights = few_lights.lights.max(Lights::Two);
@@ -273,7 +265,6 @@ impl Variant {
 
     /// The module of its vertices, before [`with_outputs_for`](super::with_outputs_for) its
     /// fragments; none in the compute stage.
-    #[must_use]
     pub fn vertices(&self, kind: Kind) -> Option<Module> {
         let entry = match kind {
             Kind::Boxes => Entry::BoxVertex,
@@ -289,7 +280,6 @@ impl Variant {
     }
 
     /// The module of its fragments, or of its compute invocations.
-    #[must_use]
     pub const fn module(&self, kind: Kind) -> Module {
         let entry = match kind.entry() {
             // Without the code of replicas walks take 64 registers in place of 72 on RDNA2.
@@ -314,7 +304,6 @@ impl Variant {
     }
 
     /// `(constant_id, value)` of every specialisation constant.
-    #[must_use]
     pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);

@@ -8,7 +8,6 @@ use crate::surface::{Contour, FitOptions, GpuPatch, QuadricPatch, Tables, fit_pa
 impl SearchTable {
     /// The library's own patches of a solid with its offset, exact, in the layout of
     /// `core/patch_tables.glsl`. GLSL searches them with `search/quadric.glsl`.
-    #[must_use]
     pub fn of_patches(contour: &Contour) -> Self {
         Self::new(&fit_patches(contour, &FitOptions::default()), contour)
     }

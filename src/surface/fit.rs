@@ -65,7 +65,6 @@ const SMALL: f64 = 0.05;
 const LEVEL: f64 = 1e-9;
 
 /// Cuts all chains of a contour, each in its own order. Patches of a chain are contiguous.
-#[must_use]
 pub fn fit_patches(contour: &Contour, options: &FitOptions) -> Vec<QuadricPatch> {
     let mut patches = Vec::new();
     let mut cutter = Cutter::new(options.tolerance);

@@ -83,7 +83,6 @@ pub struct ProxyHull {
 
 impl ProxyHull {
     /// The shells around patches that [`fit_patches`](super::fit_patches) made.
-    #[must_use]
     pub fn new(patches: &[QuadricPatch], options: &ProxyHullOptions) -> Self {
         let sides = options.sides.max(3);
         let mut hull = Self {
@@ -109,13 +108,11 @@ impl ProxyHull {
 
     /// Runs of frusta that eyes at these `(r, z)` may see. Cells in cavities that no eye looks into
     /// are left out, because drawing their shells has no effect.
-    #[must_use]
     pub fn seen_from(&self, eyes: &[DVec2]) -> Vec<Range<u32>> {
         self.runs(|cell| !eyes.iter().all(|&eye| self.sight.hides(cell, eye)))
     }
 
     /// Runs of the frusta of cells for which `wanted` is true.
-    #[must_use]
     pub fn runs(&self, wanted: impl Fn(usize) -> bool) -> Vec<Range<u32>> {
         let wanted: Vec<bool> = (0..self.extents.len()).map(wanted).collect();
         let mut runs: Vec<Range<u32>> = Vec::new();
@@ -157,7 +154,6 @@ impl ProxyHull {
 
     /// True if an eye at `(r, z)` is outside all shells by at least `margin`. Otherwise front faces
     /// may be behind it.
-    #[must_use]
     pub fn clear_of(&self, eye: DVec2, margin: f64) -> bool {
         self.extents.iter().all(|e| {
             eye.x < e[0] - margin

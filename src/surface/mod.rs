@@ -114,7 +114,6 @@ pub struct QuadricPatch {
 
 impl QuadricPatch {
     /// `r^2` on the quadric at height `z`; NaN for a plane, which has none.
-    #[must_use]
     pub fn square_at(&self, z: f64) -> f64 {
         let [a, k0, k1, k2] = self.quadric;
         if a == 0.0 {
@@ -146,13 +145,11 @@ impl QuadricPatch {
     }
 
     /// True if it is a plane `z = const`.
-    #[must_use]
     pub fn is_plane(&self) -> bool {
         self.quadric[0] == 0.0
     }
 
     /// `grad G` at `(r, z)`: outward, not of unit length.
-    #[must_use]
     pub fn gradient(&self, p: DVec2) -> DVec2 {
         let [a, _, k1, k2] = self.quadric;
         DVec2::new(2.0 * a * p.x, k1 + 2.0 * k2 * p.y)

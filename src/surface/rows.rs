@@ -39,7 +39,6 @@ pub struct GpuPatch {
 
 impl GpuPatch {
     /// The record of patch number `index`.
-    #[must_use]
     pub fn new(patch: &QuadricPatch, index: usize) -> Self {
         let (anchor, quadric) = patch.about_anchor(|z| f64::from(z as f32));
         let [cz, cr, low, high] = patch.guard;
@@ -75,7 +74,6 @@ pub const ROWS: u32 = 256;
 
 impl Tables {
     /// Distributes patches to `rows` rows (at least 1, at most 4096).
-    #[must_use]
     pub fn new(patches: &[QuadricPatch], rows: u32) -> Self {
         let rows = rows.clamp(1, 4096) as usize;
         let mut nodes = extents(patches, rows);

@@ -240,7 +240,6 @@ impl PreparedObject {
 
     /// Half of the box's side, then the radius, lowest `z` and highest `z` of the cylinder outside
     /// of which nothing is solid.
-    #[allow(clippy::cast_possible_truncation)]
     pub fn bounds(&self, surfaces: &[Arc<OffsetSurface>]) -> [f32; 4] {
         let (object, map, solver) = (self.drawn(), &self.derived.facts, self.derived.solver);
         let texel = 1.0 / f64::from(map.rows);

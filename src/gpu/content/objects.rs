@@ -40,7 +40,6 @@ impl ObjectId {
     /// The object's number in pictures of [`Plane::Identity`](crate::settings::Plane::Identity). No
     /// two objects of a renderer have the same one at a time.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // masked
     pub const fn number(self) -> u32 {
         self.0 as u32 & (MOST_NUMBERS as u32 - 1)
     }
@@ -325,7 +324,6 @@ pub(in crate::gpu) fn named(error: Error, position: usize, object: &Object) -> E
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

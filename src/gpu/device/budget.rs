@@ -69,7 +69,6 @@ impl MemoryBudget {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -118,7 +118,6 @@ pub(super) fn level_tables(planned: &PlannedObject) -> LevelTables {
 
 /// The block of an object. `outside`: as in
 /// [`FramePlan::outside`](crate::plan::FramePlan::outside).
-#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)] // at most 65536
 pub(super) fn object_block(planned: &PlannedObject, outside: bool) -> ObjectBlock {
     let prepared = &*planned.object;
     let derived = &prepared.derived;

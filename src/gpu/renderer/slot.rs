@@ -200,7 +200,6 @@ impl FrameSlot {
         let serial = self.serial;
         let mark: u32 =
             bytemuck::pod_read_unaligned(&self.buffer_mut(SlotBuffer::Mark).mapped()?[..4]);
-        #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
         let behind = (serial as u32).wrapping_sub(mark);
         let last = serial.saturating_sub(u64::from(behind));
         self.uploads.run(last);
@@ -221,7 +220,6 @@ impl FrameSlot {
         mark.barrier(cmd, Usage::ComputeWrite, Usage::TransferWrite);
         // An earlier frame of these commands may have written the mark.
         mark.barrier(cmd, Usage::TransferWrite, Usage::TransferWrite);
-        #[allow(clippy::cast_possible_truncation)] // the mark is the lower word
         let word = self.serial as u32;
         // SAFETY: `cmd` is recording outside of a pass, and the buffer holds the word.
         unsafe { self.device.raw.cmd_fill_buffer(cmd, mark.raw, 0, 4, word) };

@@ -192,7 +192,6 @@ pub(crate) unsafe fn write(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::{SETS, Stages};
     use crate::shader::{instructions, modules, op, words};
     use std::collections::BTreeMap;
