@@ -17,7 +17,7 @@ use crate::plan::Conditions;
 use crate::scene::{Clip, Lighting, Object, Shadow};
 use crate::settings::{DrawStage, Plane, Planes, SearchSettings, Solver};
 use crate::shader::{
-    Drawn, HostLook, Kind, Lights, Outside, ShadowCasters, Speciality, Technique, Variant,
+    Demands, Drawn, HostLook, Kind, Lights, Outside, ShadowCasters, Speciality, Technique, Variant,
 };
 use ash::{khr, vk};
 use std::mem::ManuallyDrop;
@@ -136,9 +136,15 @@ impl PipelineCompiler {
             map_format: look.format,
             ..SearchSettings::default()
         };
-        let (lighting, object, planes) = (&look.lighting, &look.object, look.planes);
+        let (lighting, object) = (&look.lighting, &look.object);
+        let demands = Demands {
+            settings: &settings,
+            planes: look.planes,
+            host_shades: false,
+            lighting,
+        };
         let (casters, host) = (ShadowCasters::default(), HostLook::default());
-        let technique = Technique::new(&settings, planes, solver, lighting, object, casters, host);
+        let technique = Technique::new(&demands, solver, object, casters, host);
         let conditions = Conditions {
             compute: stage == DrawStage::Compute,
             takes_patches: settings.takes_patches(),

@@ -17,7 +17,7 @@ pub(crate) const COARSEST: u8 = 12;
 /// Pixels of tolerance for one pixel that the surface moves. A ray that meets the surface at an
 /// angle with the cosine `c` is off by `1 / c` times that movement. Over eight solids, the 99.9th
 /// percentile of this factor is 7 to 15.
-pub(crate) const GRAZING: f64 = 16.0;
+const GRAZING: f64 = 16.0;
 
 /// Levels among which each copy of an object with many copies has its own. A step of three levels
 /// about halves the number of patches.
@@ -63,6 +63,11 @@ impl CopyLevels {
     }
 }
 
+/// Largest distance of a level's surface from the finest one on the screen, pixels.
+pub(crate) fn allowed(tolerance: Tolerance) -> f64 {
+    tolerance.pixels() / GRAZING
+}
+
 /// Largest distance between the patches of a level and the exact contour, in units of the profile's
 /// height.
 pub(crate) fn bound(level: u8) -> f64 {
@@ -72,9 +77,8 @@ pub(crate) fn bound(level: u8) -> f64 {
 /// The coarsest level that `tolerance` allows. `pixels`: length of one object unit on the screen
 /// where the object is nearest.
 pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
-    let allowed = tolerance.pixels() / GRAZING;
     (1..=COARSEST)
-        .take_while(|&level| bound(level) * pixels <= allowed)
+        .take_while(|&level| bound(level) * pixels <= allowed(tolerance))
         .last()
         .unwrap_or(0)
 }

@@ -141,7 +141,11 @@ fn for_each<T: Send>(
 /// The projector of a view, with a margin for the levels of copies.
 fn projector(view: &View, objects: &[PlanObject], with: &Conditions) -> Projector {
     let levelled = objects.iter().any(|of| of.levels.is_some());
-    let slack = if levelled { with.level_pixels } else { 0.0 };
+    let slack = if levelled {
+        levels::allowed(with.tolerance)
+    } else {
+        0.0
+    };
     Projector::new(view, with.ray_spread, slack)
 }
 

@@ -5,6 +5,7 @@ use super::projector::Cylinder;
 use super::proxy;
 use super::view::View;
 use crate::scene::Object;
+use crate::settings::Tolerance;
 use crate::shader::generated::{
     CULLED_PIXELS, GROUP_PIXELS, LONG_LIST, LONGEST_LIST, MIDDLE_LIST, SHORT_LIST, WALK_BIN,
 };
@@ -82,8 +83,8 @@ pub(crate) struct Conditions {
     pub least_pixels: u32,
     /// Largest distance of a ray from its pixel's centre, pixels: 0 without rays through samples.
     pub ray_spread: f64,
-    /// Largest distance of a copy's surface on the screen from the finest level, pixels.
-    pub level_pixels: f64,
+    /// What the levels of surfaces may be off by.
+    pub tolerance: Tolerance,
     /// True if rays are parallel. Nothing walks then.
     pub parallel: bool,
     /// True if cells and lists of patches may replace the tree.

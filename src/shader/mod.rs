@@ -28,7 +28,7 @@ pub use outputs::{with_locations, with_outputs_for};
 pub use rounding::without_contraction;
 pub use spirv::{depth_less, instructions, op};
 pub(crate) use technique::is_beveled;
-pub use technique::{HostLook, ShadowCasters, Technique};
+pub use technique::{Demands, HostLook, ShadowCasters, Technique};
 pub use textures::{with_constant_textures, with_varying_textures};
 #[cfg(feature = "other-shaders")]
 pub(crate) use variant::Outside;

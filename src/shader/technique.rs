@@ -20,11 +20,19 @@ pub struct ShadowCasters {
     pub beveled: bool,
 }
 
+/// What techniques depend on beside the object and its host.
+#[derive(Clone, Copy)]
+pub struct Demands<'a> {
+    pub settings: &'a SearchSettings,
+    pub planes: Planes,
+    /// A function of the host shades. It reads texture coordinates, and no light of ours.
+    pub host_shades: bool,
+    pub lighting: &'a Lighting,
+}
+
 /// What a host brings to the look of an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HostLook {
-    /// Its function shades. The function reads texture coordinates, and no light of ours.
-    pub shading: bool,
     /// Its image has the colours.
     pub colors: bool,
     /// Its image has the slopes or the heights.
@@ -96,15 +104,14 @@ impl Technique {
     /// The technique that draws `object` by the search `solver`, which is the search of the settings
     /// or a replacement for it.
     pub fn new(
-        settings: &SearchSettings,
-        planes: Planes,
+        demands: &Demands,
         solver: Solver,
-        lighting: &Lighting,
         object: &Object,
         casters: ShadowCasters,
         host: HostLook,
     ) -> Self {
-        let texturing = &object.texturing;
+        let (settings, lighting) = (demands.settings, demands.lighting);
+        let (texturing, host_shades) = (&object.texturing, demands.host_shades);
         let casts = lighting.shadow != Shadow::Off;
         let replicas = object.repeat != [1; 3] || (casts && casters.repeated);
         let shadow = match lighting.shadow {
@@ -115,7 +122,7 @@ impl Technique {
         let color_map = host.colors || texturing.color_map.is_some();
         let bump = bump_of(texturing, host);
         let textured = color_map || bump != g::BUMP_OFF;
-        let (output, parallel) = match planes {
+        let (output, parallel) = match demands.planes {
             Planes::Color => (Stored::Color, false),
             Planes::All => (Stored::Planes, false),
             Planes::List(_) => (Stored::List, false),
@@ -146,12 +153,12 @@ impl Technique {
         }
         Self {
             shadow,
-            environment: lighting.environment.is_some() && !host.shading,
+            environment: lighting.environment.is_some() && !host_shades,
             color_map,
             bump,
             projection: match texturing.projection {
                 // No code reads coordinates.
-                _ if !textured && !host.shading && output != Stored::Planes => {
+                _ if !textured && !host_shades && output != Stored::Planes => {
                     g::PROJECTION_CYLINDRICAL
                 }
                 Projection::Planar => g::PROJECTION_PLANAR,

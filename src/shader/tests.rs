@@ -8,7 +8,7 @@ use crate::settings::{Planes, SearchSettings, Solver};
 use crate::shader::catalogue::{SearchCode, modules};
 use crate::shader::textures::{varying_textures, with_constant_textures, with_varying_textures};
 use crate::shader::{
-    HostLook, Kind, Module, ShadowCasters, Technique, Variant, depth_less, generated as g,
+    Demands, HostLook, Kind, Module, ShadowCasters, Technique, Variant, depth_less, generated as g,
     instructions, op, words,
 };
 use crate::surface::{ROWS, Tables};
@@ -28,16 +28,14 @@ fn any(solver: Solver, planes: Planes) -> Technique {
         solver,
         ..SearchSettings::exact()
     };
-    let lighting = Lighting::default();
-    Technique::new(
-        &settings,
+    let demands = Demands {
+        settings: &settings,
         planes,
-        solver,
-        &lighting,
-        &object,
-        ShadowCasters::default(),
-        HostLook::default(),
-    )
+        host_shades: false,
+        lighting: &Lighting::default(),
+    };
+    let casters = ShadowCasters::default();
+    Technique::new(&demands, solver, &object, casters, HostLook::default())
 }
 
 /// Identifiers of the specialisation constants that a module reads.

@@ -14,19 +14,18 @@ use crate::gpu::device::Shared;
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::textures::Textures;
 use crate::gpu::vk::output::{ComputeTarget, Output};
-use crate::plan::levels::GRAZING;
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, OpenPixels, View, missing_hulls, plan};
 use crate::scene::{Lighting, Shadow};
 use crate::settings::{Planes, SearchSettings};
-use crate::shader::{InstanceBlock, Lights};
+use crate::shader::{Demands, InstanceBlock, Lights};
 use crate::solid::offset_surface::OffsetSurface;
 use entry::Stale;
 use objects::Objects;
 use rayon::prelude::*;
-use snapshot::{Demands, Snapshot, distinct, find_boundaries};
+use snapshot::{Snapshot, distinct, find_boundaries};
 use std::sync::{Arc, Mutex};
-use view_plan::{LevelRules, PlannedObject, ViewPlan, precedence};
+use view_plan::{PlannedObject, ViewPlan, planned, precedence};
 
 /// Objects and lights as set, the last snapshot of all objects, and the last plan. One owner has them,
 /// because a failed step must leave all of them as they were.
@@ -98,15 +97,15 @@ impl Content {
         if !self.objects.stale {
             return Ok(self.snapshot.clone());
         }
-        let new = find_boundaries(&mut self.objects, &self.geometry, &self.settings)?;
-        self.rebuilds += new.failed as u64;
-        self.make_surfaces(new.tables.iter());
-        let demands = Demands::new(
-            &self.settings,
-            &self.output,
-            self.host_shades,
-            &self.lighting,
-        );
+        let (failed, tables) = find_boundaries(&mut self.objects, &self.geometry, &self.settings)?;
+        self.rebuilds += failed as u64;
+        self.make_surfaces(tables.iter());
+        let demands = Demands {
+            settings: &self.settings,
+            planes: self.output.planes(),
+            host_shades: self.host_shades,
+            lighting: &self.lighting,
+        };
         let (textures, notes) = (&mut self.textures, &mut self.notes);
         let snapshot = Snapshot::new(&self.objects, &self.snapshot, demands, textures, notes)?;
         for object in &snapshot.objects {
@@ -146,15 +145,10 @@ impl Content {
         snapshot: Arc<Snapshot>,
         with: Conditions,
     ) -> Result<ViewPlan> {
-        let rules = LevelRules {
-            tolerance: self.settings.tolerance,
-            casts: self.casts(),
-            parallel: self.is_parallel(),
-        };
         let known = self.plan.as_ref().filter(|known| {
             Arc::ptr_eq(&known.snapshot, &snapshot) && known.view.mask == view.mask
         });
-        let objects = rules.planned(view, &snapshot)?;
+        let objects = planned(view, &snapshot, &with)?;
         let order = known.map(|known| known.precedence.clone());
         let precedence = order.unwrap_or_else(|| Arc::new(precedence(&objects)));
         let shadowed = self.casts() && !matches!(self.output.planes(), Planes::Depth { .. });
@@ -201,7 +195,7 @@ impl Content {
             most_storage: limits.max_storage_buffer_range,
             least_pixels: self.settings.proxy_min_pixels,
             ray_spread: self.output.ray_spread(),
-            level_pixels: self.settings.tolerance.pixels() / GRAZING,
+            tolerance: self.settings.tolerance,
             parallel: self.is_parallel(),
             takes_patches: self.settings.takes_patches(),
             lights: match self.casts() || self.host_shades {

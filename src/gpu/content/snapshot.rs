@@ -7,13 +7,12 @@ use super::objects::{Objects, named};
 use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::geometry::Geometry;
 use crate::gpu::resources::shape_texture::{MapKey, ShapeTexture};
-use crate::gpu::resources::textures::{BoundTextures, ObjectImages, ShadowMaps, Textures};
-use crate::gpu::vk::output::Output;
+use crate::gpu::resources::textures::{BoundTextures, ShadowMaps, Textures};
 use crate::maps::{MapFormat, Projection};
 use crate::scene::{Lighting, Object, Shadow};
-use crate::settings::{Planes, SearchSettings, Solver};
+use crate::settings::{SearchSettings, Solver};
 use crate::shader::generated::MAX_SHADOW_MAPS;
-use crate::shader::{HostLook, ShadowCasters, Technique, is_beveled};
+use crate::shader::{Demands, ShadowCasters, Technique, is_beveled};
 use crate::solid::offset_surface::{OffsetSurface, Recipe};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -46,7 +45,7 @@ pub(in crate::gpu) struct SceneFacts {
     /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
     /// all by one search.
     falls_back: bool,
-    casters: ShadowCasters,
+    pub casters: ShadowCasters,
     pub shadow_maps: Arc<ShadowMaps>,
 }
 
@@ -88,7 +87,7 @@ impl SceneFacts {
         all: &[Option<Arc<ShapeTexture>>],
         known: &Arc<ShadowMaps>,
     ) -> Result<()> {
-        let mut maps: Vec<Arc<ShapeTexture>> = Vec::new();
+        let mut maps = ShadowMaps::new();
         for map in all.iter().flatten().filter(|_| self.shadow != Shadow::Off) {
             if !maps.iter().any(|known| Arc::ptr_eq(known, map)) {
                 maps.push(map.clone());
@@ -102,85 +101,21 @@ impl SceneFacts {
             return content("shadow", message);
         }
         let same = known
-            .maps
             .iter()
             .map(Arc::as_ptr)
             .eq(maps.iter().map(Arc::as_ptr));
-        self.shadow_maps = if same {
-            known.clone()
-        } else {
-            Arc::new(ShadowMaps { maps })
-        };
+        self.shadow_maps = if same { known.clone() } else { maps.into() };
         Ok(())
     }
 }
 
-/// What techniques depend on beside the object.
-#[derive(Clone, Copy)]
-pub(in crate::gpu) struct Demands<'a> {
-    pub settings: &'a SearchSettings,
-    pub planes: Planes,
-    pub host_shades: bool,
-    pub lighting: &'a Lighting,
-}
-
-impl<'a> Demands<'a> {
-    /// The demands of a renderer's content.
-    pub fn new(
-        settings: &'a SearchSettings,
-        output: &Output,
-        host_shades: bool,
-        lighting: &'a Lighting,
-    ) -> Self {
-        Self {
-            settings,
-            planes: output.planes(),
-            host_shades,
-            lighting,
-        }
-    }
-
-    /// The technique that draws an object with these images by this search.
-    pub fn technique(
-        &self,
-        solver: Solver,
-        object: &Object,
-        images: &ObjectImages,
-        facts: &SceneFacts,
-    ) -> Technique {
-        let host = HostLook {
-            shading: self.host_shades,
-            colors: images.color.is_some(),
-            relief: images.relief.is_some(),
-            heights: images.relief.is_some() && images.heights,
-        };
-        let casters = facts.casters;
-        Technique::new(
-            self.settings,
-            self.planes,
-            solver,
-            self.lighting,
-            object,
-            casters,
-            host,
-        )
-    }
-}
-
-/// What [`find_boundaries`] has made.
-pub(in crate::gpu) struct NewBoundaries {
-    /// The number of contours that do not close.
-    pub failed: usize,
-    /// Tables of searches, not made yet.
-    pub tables: Vec<Arc<OffsetSurface>>,
-}
-
-/// Finds or makes the boundaries that objects lack, on all cores.
+/// Finds or makes the boundaries that objects lack, on all cores. Returns the number of contours that
+/// do not close, and the tables of searches, which are not made yet.
 pub(in crate::gpu) fn find_boundaries(
     objects: &mut Objects,
     geometry: &Mutex<Geometry>,
     settings: &SearchSettings,
-) -> Result<NewBoundaries> {
+) -> Result<(usize, Vec<Arc<OffsetSurface>>)> {
     let solver = settings.solver;
     let mut geometry = lock(geometry)?;
     let (mut contours, mut tables) = (Vec::new(), Vec::new());
@@ -213,7 +148,7 @@ pub(in crate::gpu) fn find_boundaries(
     contours.retain(|contour| !contour.is_made());
     let fails = distinct(&mut contours).par_iter();
     let failed = fails.filter(|c| c.get().is_err()).count();
-    Ok(NewBoundaries { failed, tables })
+    Ok((failed, tables))
 }
 
 impl Snapshot {
@@ -221,7 +156,7 @@ impl Snapshot {
     pub fn new(
         objects: &Objects,
         before: &Self,
-        demands: Demands<'_>,
+        demands: Demands,
         textures: &mut Textures,
         notes: &mut Vec<String>,
     ) -> Result<Self> {
@@ -334,7 +269,7 @@ impl Maker<'_> {
             None
         };
         let shadows = &self.facts.shadow_maps;
-        let mut numbered = (0u32..).zip(&shadows.maps);
+        let mut numbered = (0u32..).zip(shadows.iter());
         let shadow_map = map.as_ref().and_then(|map| {
             let found = numbered.find(|(_, known)| Arc::ptr_eq(known, map));
             found.map(|(number, _)| number)
@@ -347,6 +282,8 @@ impl Maker<'_> {
             shadows: shadows.clone(),
         };
         let textures = self.textures.set(&object.texturing, bound)?;
+        let casters = self.facts.casters;
+        let technique = Technique::new(&self.demands, solver, object, casters, images.look());
         let steps = settings.max_steps;
         let steps = steps.unwrap_or_else(|| solver.default_steps(is_beveled(object)));
         Ok(Derived {
@@ -357,7 +294,7 @@ impl Maker<'_> {
             arc,
             shadow_map: shadow_map.unwrap_or(0),
             textures,
-            technique: (self.demands).technique(solver, object, images, self.facts),
+            technique,
         })
     }
 

@@ -75,78 +75,53 @@ impl PlannedObject {
     }
 }
 
-/// What the levels of objects follow, beside the view.
-#[derive(Clone, Copy)]
-pub(super) struct LevelRules {
-    pub tolerance: Tolerance,
-    /// True if objects cast shadows. All objects then take the finest level that one of them needs,
-    /// because a shadow may fall nearer to the eye than its caster.
-    pub casts: bool,
-    /// True if rays are parallel.
-    pub parallel: bool,
+/// The objects that a view shows, with surfaces of the levels that it allows. New surfaces are not
+/// made yet. With shadows all objects take the finest level that one of them needs, because a shadow
+/// may fall nearer to the eye than its caster.
+pub(super) fn planned(
+    view: &View,
+    snapshot: &Snapshot,
+    with: &Conditions,
+) -> Result<Vec<PlannedObject>> {
+    let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
+    let mut all: Vec<_> = shown.map(|object| with_level(object, view, with)).collect();
+    if with.casts {
+        let finest = all.iter().map(|f| f.level).min().unwrap_or(0);
+        all.iter_mut().for_each(|f| f.level = finest);
+    }
+    for one in &mut all {
+        // The device finds the level of each copy, so no view rules a level out.
+        let coarser = one.levels.iter().flat_map(|_| &COPY_LEVELS[1..]);
+        for level in [one.level].iter().chain(coarser) {
+            one.surfaces.extend(one.object.surface(*level)?);
+        }
+    }
+    Ok(all)
 }
 
-impl LevelRules {
-    /// The objects that a view shows, with surfaces of the levels that it allows. New surfaces are
-    /// not made yet.
-    pub fn planned(self, view: &View, snapshot: &Snapshot) -> Result<Vec<PlannedObject>> {
-        let shown = snapshot.objects.iter().filter(|o| o.mask & view.mask != 0);
-        let mut all = Vec::with_capacity(snapshot.objects.len());
-        for object in shown {
-            all.push(self.with_level(object, view)?);
-        }
-        if self.casts {
-            let finest = all.iter().map(|f| f.level).min().unwrap_or(0);
-            all.iter_mut().for_each(|f| f.level = finest);
-        }
-        for one in &mut all {
-            // The device finds the level of each copy, so no view rules a level out.
-            let coarser = one.levels.iter().flat_map(|_| &COPY_LEVELS[1..]);
-            for level in [one.level].iter().chain(coarser) {
-                one.surfaces.extend(one.object.surface(*level)?);
-            }
-        }
-        Ok(all)
+/// An object at the coarsest level that the view allows, without surfaces. Objects with many copies
+/// have a level for each, if they cast no shadow: the view has no influence on that, so a moving
+/// camera needs no other pipelines.
+fn with_level(object: &Arc<PreparedObject>, view: &View, with: &Conditions) -> PlannedObject {
+    let drawn = object.drawn();
+    let many = drawn.instances.len() > MOST_PROXIES && drawn.repeat == [1; 3];
+    let follows = object.derived.solver.follows_tolerance() && with.tolerance != Tolerance::EXACT;
+    let (mut level, mut levels) = (0, None);
+    if follows && many && !with.casts && !with.parallel {
+        let height = object.growth().height();
+        levels = Some(CopyLevels::new(drawn, height, view, with.tolerance));
+    } else if follows {
+        let pixels = object.pixels_per_unit(view, with.casts);
+        // An object that does not show takes a level that is already made.
+        let hidden = pixels <= 0.0 && !with.casts;
+        let known = object.known_level().filter(|_| hidden);
+        level = known.unwrap_or_else(|| coarsest(with.tolerance, pixels));
     }
-
-    /// An object at the coarsest level that the view allows, without surfaces. Objects with many
-    /// copies have a level for each.
-    fn with_level(self, object: &Arc<PreparedObject>, view: &View) -> Result<PlannedObject> {
-        let mut planned = PlannedObject {
-            object: object.clone(),
-            level: 0,
-            surfaces: Vec::new(),
-            levels: None,
-        };
-        let follows = object.derived.solver.follows_tolerance();
-        if self.tolerance == Tolerance::EXACT || !follows {
-            return Ok(planned);
-        }
-        if self.levels_copies(object) {
-            let height = object.growth().height();
-            planned.level = COPY_LEVELS[0];
-            planned.levels = Some(CopyLevels::new(
-                object.drawn(),
-                height,
-                view,
-                self.tolerance,
-            ));
-        } else {
-            let pixels = object.pixels_per_unit(view, self.casts);
-            // An object that does not show takes a level that is already made.
-            let hidden = pixels <= 0.0 && !self.casts;
-            let known = object.known_level().filter(|_| hidden);
-            planned.level = known.unwrap_or_else(|| coarsest(self.tolerance, pixels));
-        }
-        Ok(planned)
-    }
-
-    /// True if each copy of an object has a level of its own. The view has no influence, so a
-    /// moving camera needs no other pipelines.
-    fn levels_copies(self, object: &PreparedObject) -> bool {
-        let object = object.drawn();
-        let many = object.instances.len() > MOST_PROXIES && object.repeat == [1; 3];
-        many && !self.casts && !self.parallel
+    PlannedObject {
+        object: object.clone(),
+        level,
+        surfaces: Vec::new(),
+        levels,
     }
 }
 

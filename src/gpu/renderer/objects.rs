@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::error::{Error, ErrorKind, Result, content};
-use crate::gpu::content::entry::Stale;
+use crate::gpu::content::entry::{ObjectState, Stale};
 use crate::gpu::content::objects::{ObjectId, named};
 use crate::gpu::resources::textures::{HostImage, ObjectImages};
 use crate::scene::{Copies, Lighting, Object, Offset, Placement, Shadow};
@@ -56,8 +56,13 @@ impl Renderer {
             return self.set_placement(id, object.placement);
         }
         self.content.objects.resize(id, object.placements().len())?;
-        self.content.objects.change(id, Stale::Shape)?.set.object = object;
+        self.change(id, Stale::Shape)?.object = object;
         Ok(())
+    }
+
+    /// The values of an object, to be changed.
+    fn change(&mut self, id: ObjectId, stale: Stale) -> Result<&mut ObjectState> {
+        Ok(&mut self.content.objects.change(id, stale)?.set)
     }
 
     /// Names the object in the error of values that were checked for it.
@@ -73,7 +78,7 @@ impl Renderer {
     /// [`Usage`](crate::error::ErrorKind::Usage) for an object that does not exist.
     pub fn set_mask(&mut self, id: ObjectId, mask: u32) -> Result<()> {
         if self.content.objects.entry(id)?.set.mask != mask {
-            self.content.objects.change(id, Stale::State)?.set.mask = mask;
+            self.change(id, Stale::State)?.mask = mask;
         }
         Ok(())
     }
@@ -115,7 +120,7 @@ impl Renderer {
     }
 
     fn set_image(&mut self, id: ObjectId, set: impl FnOnce(&mut ObjectImages)) -> Result<()> {
-        set(&mut self.content.objects.change(id, Stale::Look)?.set.images);
+        set(&mut self.change(id, Stale::Look)?.images);
         Ok(())
     }
 
@@ -126,12 +131,7 @@ impl Renderer {
     pub fn set_offset(&mut self, id: ObjectId, offset: Offset) -> Result<()> {
         self.accept(id, offset.check())?;
         if self.object(id)?.offset != offset {
-            self.content
-                .objects
-                .change(id, Stale::Shape)?
-                .set
-                .object
-                .offset = offset;
+            self.change(id, Stale::Shape)?.object.offset = offset;
         }
         Ok(())
     }
@@ -143,12 +143,7 @@ impl Renderer {
     pub fn set_placement(&mut self, id: ObjectId, placement: Placement) -> Result<()> {
         self.accept(id, placement.check())?;
         if self.object(id)?.placement != placement {
-            self.content
-                .objects
-                .change(id, Stale::State)?
-                .set
-                .object
-                .placement = placement;
+            self.change(id, Stale::State)?.object.placement = placement;
         }
         Ok(())
     }
@@ -161,12 +156,7 @@ impl Renderer {
         let instances = instances.into();
         self.accept(id, instances.check())?;
         self.content.objects.resize(id, instances.len().max(1))?;
-        self.content
-            .objects
-            .change(id, Stale::State)?
-            .set
-            .object
-            .instances = instances;
+        self.change(id, Stale::State)?.object.instances = instances;
         Ok(())
     }
 

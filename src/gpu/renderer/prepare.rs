@@ -140,7 +140,7 @@ impl Renderer {
         let (output, lighting) = (&self.content.output, &self.content.lighting);
         let mut block = frame_block(view, output, lighting, snapshot.instances);
         block.picture = plan.frame.picture;
-        let maps = snapshot.facts.shadow_maps.maps.len();
+        let maps = snapshot.facts.shadow_maps.len();
         block.casters = caster_root(&plan.walks, view.eye, maps);
         if !plan.walks.nodes.is_empty() {
             block.eye = placed_eye(view, &plan.walks.grid);

@@ -4,10 +4,10 @@ use super::Renderer;
 use super::prepare::PreparedFrame;
 use crate::error::Result;
 use crate::gpu::content::Content;
-use crate::gpu::content::snapshot::{Demands, FALLBACK};
+use crate::gpu::content::snapshot::FALLBACK;
 use crate::gpu::device::Shared;
 use crate::gpu::vk::pipelines::Owner;
-use crate::shader::{Kind, Lights, Pushed, Technique, Variant};
+use crate::shader::{Demands, Kind, Lights, Pushed, Technique, Variant};
 use ash::vk;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -151,12 +151,16 @@ impl Content {
         let (with, solver) = (self.conditions(&self.snapshot), self.settings.solver);
         let mut known = HashSet::new();
         let mut all = Vec::new();
-        let (settings, lighting) = (&self.settings, &self.lighting);
-        let demands = Demands::new(settings, &self.output, self.host_shades, lighting);
-        let common = &self.snapshot.facts;
+        let demands = Demands {
+            settings: &self.settings,
+            planes: self.output.planes(),
+            host_shades: self.host_shades,
+            lighting: &self.lighting,
+        };
+        let casters = self.snapshot.facts.casters;
         for object in &self.snapshot.objects {
-            let (drawn, images) = (object.drawn(), &object.images);
-            let drawn_by = |solver| demands.technique(solver, drawn, images, common);
+            let (drawn, look) = (object.drawn(), object.images.look());
+            let drawn_by = |solver| Technique::new(&demands, solver, drawn, casters, look);
             let wanted = drawn_by(solver).by_bevel().into_iter();
             let wanted = wanted.map(|technique| (technique, Lights::Two));
             let replaced = (solver.follows_tolerance()).then(|| (drawn_by(FALLBACK), Lights::Any));

@@ -10,6 +10,7 @@ use crate::gpu::vk::descriptors::{TEXTURE_SET, allocate};
 use crate::maps::{Level, MapFormat};
 use crate::profile::Profile;
 use crate::scene::Texturing;
+use crate::shader::HostLook;
 use crate::shader::generated::MAX_SHADOW_MAPS;
 use crate::solid::cache::Kept;
 use ash::vk;
@@ -72,6 +73,16 @@ pub(crate) struct ObjectImages {
     pub heights: bool,
 }
 
+impl ObjectImages {
+    pub fn look(&self) -> HostLook {
+        HostLook {
+            colors: self.color.is_some(),
+            relief: self.relief.is_some(),
+            heights: self.relief.is_some() && self.heights,
+        }
+    }
+}
+
 /// A colour or displacement map on the device. The map is kept because its address is the key.
 struct Covering {
     _map: Arc<dyn Any + Send + Sync>,
@@ -88,10 +99,7 @@ pub(crate) struct TextureSet {
 }
 
 /// The shape maps that shadows read, in the order of their numbers.
-#[derive(Default)]
-pub(crate) struct ShadowMaps {
-    pub maps: Vec<Arc<ShapeTexture>>,
-}
+pub(crate) type ShadowMaps = Vec<Arc<ShapeTexture>>;
 
 /// Addresses of the textures of a set, and the address mode of its surface textures.
 type Key = ([usize; 5], bool);
@@ -223,7 +231,7 @@ impl Textures {
             look(&bound.images.relief, &made.slopes),
             bound.arc.as_ref().map_or(blank, arc),
         ];
-        let shadows = bound.shadows.maps.iter().map(shape);
+        let shadows = bound.shadows.iter().map(shape);
         let shadows: Vec<_> = shadows
             .chain(std::iter::repeat(blank))
             .take(MAX_SHADOW_MAPS as usize)
