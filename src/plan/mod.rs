@@ -18,7 +18,7 @@ pub(crate) mod walk;
 mod walk_steps;
 
 pub use path::DrawPath;
-pub(crate) use path::{Conditions, Path, PlanObject, shape_of};
+pub(crate) use path::{Conditions, PlanObject, shape_of};
 pub use view::{DepthOrder, View, Viewport};
 
 pub use open_pixels::OpenPixels;
@@ -29,6 +29,7 @@ use crate::shader::generated::{BOX_INDICES, RING_CORNERS};
 use crate::shader::{Drawn, Kind, Pushed, Speciality, Variant};
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use crate::surface::Frustum;
+use path::CellRuns;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -100,15 +101,20 @@ pub(crate) fn plan(
     open: Option<&OpenPixels>,
     walks: &Walks,
 ) -> FramePlan {
-    let paths = for_each(objects, |of| with.choose(of, view));
+    let cells = for_each(objects, |of| with.cells(of, view));
+    let path = |(of, cells): (&PlanObject, &Option<_>)| match cells {
+        Some(_) => DrawPath::Cells,
+        None if with.walks_to(of) => DrawPath::Walk,
+        None => DrawPath::Box,
+    };
     let mut plan = FramePlan {
-        paths: paths.iter().map(Path::public).collect(),
+        paths: objects.iter().zip(&cells).map(path).collect(),
         parts: vec![[false; 3]; objects.len()],
         outside: vec![false; objects.len()],
         ..FramePlan::default()
     };
     let variants = variants(objects, with);
-    plan.add_proxies(view, objects, (&paths, &variants));
+    plan.add_proxies(view, objects, cells, &variants);
     plan.add_walks(view, objects, &variants, (walks, with), open);
     for (parts, object) in plan.parts.iter_mut().zip(objects) {
         let tables = &mut parts[Part::Tables as usize];
@@ -149,16 +155,6 @@ fn projector(view: &View, objects: &[PlanObject], with: &Conditions) -> Projecto
     Projector::new(view, with.ray_spread, slack)
 }
 
-impl Path {
-    fn public(&self) -> DrawPath {
-        match self {
-            Self::Box => DrawPath::Box,
-            Self::Cells(_) => DrawPath::Cells,
-            Self::Walk => DrawPath::Walk,
-        }
-    }
-}
-
 /// The variant of each object: its technique, and what its draws promise. A promise may depend on
 /// the other objects of the plan.
 fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
@@ -178,15 +174,7 @@ fn variants(objects: &[PlanObject], with: &Conditions) -> Vec<Variant> {
     objects.iter().map(of_look).collect()
 }
 
-/// Objects that share a pipeline and a set of textures.
-struct Layer {
-    variant: Variant,
-    kind: Kind,
-    objects: Vec<u32>,
-    draws: Vec<IndexedDraw>,
-}
-
-/// Layers in the order of their first objects.
+/// Draws of objects that share a pipeline and a set of textures, in the order of the first objects.
 #[derive(Default)]
 struct Layers {
     all: Vec<Layer>,
@@ -194,26 +182,34 @@ struct Layers {
     numbers: HashMap<(Variant, Kind, usize), usize>,
 }
 
+struct Layer {
+    variant: Variant,
+    kind: Kind,
+    /// The first object.
+    object: u32,
+    draws: Vec<IndexedDraw>,
+}
+
 impl Layers {
-    /// The index of an object's layer; the layer is created for its first object.
-    fn of(
+    /// Adds draws of an object; the layer is created for its first object.
+    fn add(
         &mut self,
-        objects: &[PlanObject],
-        number: u32,
+        object: u32,
+        textures: usize,
         (variant, kind): (Variant, Kind),
-    ) -> usize {
-        let textures = objects[number as usize].textures;
-        let at = *(self.numbers.entry((variant, kind, textures))).or_insert_with(|| {
-            self.all.push(Layer {
+        draws: Vec<IndexedDraw>,
+    ) {
+        let next = self.all.len();
+        let at = *(self.numbers.entry((variant, kind, textures))).or_insert(next);
+        match self.all.get_mut(at) {
+            Some(layer) => layer.draws.extend(draws),
+            None => self.all.push(Layer {
                 variant,
                 kind,
-                objects: Vec::new(),
-                draws: Vec::new(),
-            });
-            self.all.len() - 1
-        });
-        self.all[at].objects.push(number);
-        at
+                object,
+                draws,
+            }),
+        }
     }
 }
 
@@ -223,60 +219,52 @@ impl FramePlan {
         &mut self,
         view: &View,
         objects: &[PlanObject],
-        (paths, variants): (&[Path], &[Variant]),
+        cells: Vec<Option<CellRuns>>,
+        variants: &[Variant],
     ) {
         let mut layers = Layers::default();
-        for (n, (of, path)) in objects.iter().zip(paths).enumerate() {
+        for (n, (of, cells)) in objects.iter().zip(cells).enumerate() {
             let count = of.object.placements().len() as u32;
             let draw = |indices: u32, first| [indices, count, first, 0, of.first_instance];
             let mut add = |kind, [outside, single]: [bool; 2], draws: Vec<IndexedDraw>| {
                 let mut variant = variants[n].seen_from_outside(outside);
                 variant.speciality.single = single;
-                let variant = variant.of_kind(kind);
-                let layer = layers.of(objects, n as u32, (variant, kind));
-                layers.all[layer].draws.extend(draws);
+                layers.add(n as u32, of.textures, (variant.of_kind(kind), kind), draws);
             };
-            match path {
-                Path::Walk => {}
-                Path::Box => {
-                    let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
-                    self.parts[n][Part::Tables as usize] = true;
-                    let surface = of.surface().filter(|s| s.is_of_patches());
-                    self.outside[n] = surface.is_some_and(|s| apart(s));
-                    add(
-                        Kind::Boxes,
-                        [self.outside[n], false],
-                        vec![draw(BOX_INDICES, 0)],
-                    );
-                }
-                Path::Cells([cut, whole]) => {
-                    let corners = |frusta: usize| 6 * RING_CORNERS * frusta as u32;
-                    let hull = of.surface().and_then(|s| s.hull());
-                    let frusta = hull.map(|made| made.hull.frusta.as_slice());
-                    let is_single = |f: &Frustum| f.count == 1;
-                    // The draws of the parts of a run whose cells have one patch, or several.
-                    let of_run = |run: &Range<u32>, single: bool| {
-                        let mut begin = run.start as usize;
-                        let frusta = &frusta.unwrap_or_default()[begin..run.end as usize];
-                        let parts = frusta.chunk_by(|a, b| is_single(a) == is_single(b));
-                        let draws = parts.filter_map(|part| {
-                            let first = BOX_INDICES + corners(begin);
-                            begin += part.len();
-                            (is_single(&part[0]) == single)
-                                .then(|| draw(corners(part.len()), first))
-                        });
-                        draws.collect::<Vec<_>>()
-                    };
-                    self.parts[n][Part::Frusta as usize] = true;
-                    self.parts[n][Part::Tables as usize] = !cut.is_empty();
-                    for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
-                        for single in [true, false] {
-                            let draws: Vec<_> =
-                                runs.iter().flat_map(|run| of_run(run, single)).collect();
-                            if !draws.is_empty() {
-                                add(kind, [false, single], draws);
-                            }
-                        }
+            if self.paths[n] == DrawPath::Box {
+                let surface = of.surface().filter(|s| s.is_of_patches());
+                let apart = |s| proxy::is_seen_from_outside(of.object, s, view);
+                self.outside[n] = surface.is_some_and(|s| apart(s));
+                self.parts[n][Part::Tables as usize] = true;
+                let draws = vec![draw(BOX_INDICES, 0)];
+                add(Kind::Boxes, [self.outside[n], false], draws);
+            }
+            let Some([cut, whole]) = cells else {
+                continue;
+            };
+            let corners = |frusta: usize| 6 * RING_CORNERS * frusta as u32;
+            let hull = of.surface().and_then(|s| s.hull());
+            let frusta = hull.map(|made| made.hull.frusta.as_slice());
+            let is_single = |f: &Frustum| f.count == 1;
+            // The draws of the parts of a run whose cells have one patch, or several.
+            let of_run = |run: &Range<u32>, single: bool| {
+                let mut begin = run.start as usize;
+                let frusta = &frusta.unwrap_or_default()[begin..run.end as usize];
+                let parts = frusta.chunk_by(|a, b| is_single(a) == is_single(b));
+                let draws = parts.filter_map(|part| {
+                    let first = BOX_INDICES + corners(begin);
+                    begin += part.len();
+                    (is_single(&part[0]) == single).then(|| draw(corners(part.len()), first))
+                });
+                draws.collect::<Vec<_>>()
+            };
+            self.parts[n][Part::Frusta as usize] = true;
+            self.parts[n][Part::Tables as usize] = !cut.is_empty();
+            for (kind, runs) in [(Kind::CutCells, cut), (Kind::Cells, whole)] {
+                for single in [true, false] {
+                    let draws: Vec<_> = runs.iter().flat_map(|run| of_run(run, single)).collect();
+                    if !draws.is_empty() {
+                        add(kind, [false, single], draws);
                     }
                 }
             }
@@ -288,7 +276,7 @@ impl FramePlan {
                 phase: 0,
                 variant: layer.variant,
                 kind: layer.kind,
-                object: layer.objects[0],
+                object: layer.object,
                 call: Call::Draws(first..self.draws.len() as u32),
             });
         }

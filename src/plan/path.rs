@@ -32,14 +32,8 @@ pub enum DrawPath {
     Walk,
 }
 
-/// A draw path with its parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Path {
-    Box,
-    /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
-    Cells([Vec<Range<u32>>; 2]),
-    Walk,
-}
+/// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
+pub(super) type CellRuns = [Vec<Range<u32>>; 2];
 
 /// One object, as input of a plan.
 pub(crate) struct PlanObject<'a> {
@@ -133,10 +127,13 @@ pub(crate) const LIST_LENGTHS: [u32; WALK_BIN as usize] =
     [SHORT_LIST, MIDDLE_LIST, LONG_LIST, LONGEST_LIST];
 
 impl Conditions {
-    /// True if an object may be drawn by cells. The view may still rule that out.
-    fn takes_cells(&self, of: &PlanObject) -> bool {
-        let few = of.object.placements().len() <= MOST_PROXIES;
-        self.shows_patches(of) && self.passes_cells && few
+    /// The surface of an object that may be drawn by cells, and the least pixels of its box per
+    /// frustum at which cells are cheaper. The view may still rule them out.
+    fn celled<'a>(&self, of: &PlanObject<'a>) -> Option<(&'a Arc<OffsetSurface>, u32)> {
+        let copies = of.object.placements().len();
+        let few = copies <= MOST_PROXIES && !self.walks_to(of);
+        let surface = of.surface().filter(|_| few && self.passes_cells)?;
+        (self.shows_patches(of)).then(|| (surface, self.least_pixels(copies)))
     }
 
     /// True if rays walk a hierarchy of an object's copies, in any view: all of them in compute.
@@ -157,27 +154,15 @@ impl Conditions {
 
     /// The surface of an object whose path follows from its hull, if the hull is not made yet.
     pub fn lacks_hull(&self, of: &PlanObject, view: &View) -> Option<Arc<OffsetSurface>> {
-        let surface = of.surface().filter(|surface| surface.hull().is_none())?;
-        let least = self.least_pixels(of.object.placements().len());
-        let reads = !self.walks_to(of) && self.takes_cells(of);
-        let lacks = reads && proxy::may_pay(of.object, surface, view, least);
+        let (surface, least) = self.celled(of)?;
+        let lacks = surface.hull().is_none() && proxy::may_pay(of.object, surface, view, least);
         lacks.then(|| surface.clone())
     }
 
-    /// The path of an object in a view: a walk, else cells, else boxes.
-    pub fn choose(&self, of: &PlanObject, view: &View) -> Path {
-        if self.walks_to(of) {
-            return Path::Walk;
-        }
-        let surface = of.surface().filter(|_| self.takes_cells(of));
-        let cells = surface.and_then(|surface| {
-            let least = self.least_pixels(of.object.placements().len());
-            proxy::frusta(of.object, surface, view, least)
-        });
-        match cells {
-            Some(frusta) => Path::Cells(frusta),
-            None => Path::Box,
-        }
+    /// The cells of an object in a view; `None` if a walk or boxes draw it.
+    pub fn cells(&self, of: &PlanObject, view: &View) -> Option<CellRuns> {
+        let (surface, least) = self.celled(of)?;
+        proxy::frusta(of.object, surface, view, least)
     }
 
     /// Least pixels of the box per frustum at which cells are cheaper.

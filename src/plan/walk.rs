@@ -61,7 +61,7 @@ pub(crate) struct Walks {
     /// Index of the first node of the copies that cast shadows; `None` if nothing is shaded in
     /// shadow.
     pub casters: Option<u32>,
-    /// Objects whose path is [`Path::Walk`](super::path::Path::Walk).
+    /// Objects whose path is [`DrawPath::Walk`](super::DrawPath::Walk).
     pub(super) layers: Vec<Layer>,
 }
 
@@ -70,11 +70,6 @@ impl Layer {
     pub fn copies(&self, objects: &[PlanObject]) -> usize {
         let placements = |n: &u32| objects[*n as usize].object.placements().len();
         self.objects.iter().map(placements).sum()
-    }
-
-    /// True if it has one copy.
-    pub fn is_of_one(&self, objects: &[PlanObject]) -> bool {
-        self.copies(objects) == 1
     }
 }
 

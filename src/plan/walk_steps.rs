@@ -37,11 +37,6 @@ enum Lists {
 }
 
 impl Lists {
-    /// Those of a layer whose patches are not listed. `alone`: true if it has one copy.
-    const fn without_patches(alone: bool) -> Self {
-        if alone { Self::None } else { Self::Copies }
-    }
-
     /// Heads of bins for each dispatch.
     const fn heads(self) -> u32 {
         match self {
@@ -138,7 +133,8 @@ impl FramePlan {
         };
         let variants: Vec<Variant> = walks.layers.iter().map(of_layer).collect();
         if with.compute {
-            return self.add_walk_tiles(view, objects, (walks, &variants), (with, open));
+            let layers = (walks, variants.as_slice());
+            return self.add_walk_tiles((view, &projector), objects, layers, (with, open));
         }
         for (layer, variant) in walks.layers.iter().zip(variants) {
             let Some((pixels, _)) = covered(&projector, objects, walks, layer) else {
@@ -158,16 +154,15 @@ impl FramePlan {
     /// drawn; all if none.
     fn add_walk_tiles(
         &mut self,
-        view: &View,
+        (view, projector): (&View, &Projector),
         objects: &[PlanObject],
         (walks, variants): (&Walks, &[Variant]),
         (with, open): (&Conditions, Option<&OpenPixels>),
     ) {
-        let projector = projector(view, objects, with);
         let layers = walks.layers.iter().zip(variants);
         let mut shown: Vec<Shown> = layers
             .filter_map(|(layer, &variant)| {
-                let (pixels, covered) = covered(&projector, objects, walks, layer)?;
+                let (pixels, covered) = covered(projector, objects, walks, layer)?;
                 let lists = match open {
                     Some(_) => Lists::None,
                     None => self.lists_of(view, objects, layer, (covered, with)),
@@ -299,26 +294,24 @@ impl FramePlan {
             let apart = |surface: &Arc<_>| proxy::is_apart_from_all(of.object, surface, view);
             with.permits_lists(of) && of.surface().is_some_and(apart)
         };
-        let alone = layer.is_of_one(objects);
-        let lists = match layer.copies(objects) <= MOST_PROXIES && of_layer().all(permits) {
-            true if alone && with.has_wide_groups() => Lists::Culled,
-            true => {
-                let patches = of_layer().filter_map(PlanObject::surface);
-                let patches: u64 = patches.map(|surface| surface.patches() as u64).sum();
-                let (each, tiles) = (
-                    patches / layer.objects.len() as u64,
-                    view.tiles_of_all_rows(tiles),
-                );
-                let flat = || of_layer().any(|of| is_flat(of.object));
-                match with.gains_by_lists(tiles, each, flat) {
-                    true => Lists::Patches,
-                    false => Lists::without_patches(alone),
-                }
-            }
-            false => Lists::without_patches(alone),
+        let copies = layer.copies(objects);
+        let may_list = copies <= MOST_PROXIES && of_layer().all(permits);
+        let gains = || {
+            let patches = of_layer().filter_map(PlanObject::surface);
+            let patches: u64 = patches.map(|surface| surface.patches() as u64).sum();
+            let (each, tiles) = (
+                patches / layer.objects.len() as u64,
+                view.tiles_of_all_rows(tiles),
+            );
+            with.gains_by_lists(tiles, each, || of_layer().any(|of| is_flat(of.object)))
         };
-        let reads = matches!(lists, Lists::Culled | Lists::Patches);
-        for &n in layer.objects.iter().filter(|_| reads) {
+        let lists = match copies == 1 {
+            true if may_list && with.has_wide_groups() => Lists::Culled,
+            _ if may_list && gains() => Lists::Patches,
+            true => return Lists::None,
+            false => return Lists::Copies,
+        };
+        for &n in &layer.objects {
             self.parts[n as usize][Part::Patches as usize] = true;
         }
         lists
