@@ -158,7 +158,6 @@ impl RayCaster {
         })
     }
 
-    /// The hit of one copy before `most`.
     fn cast_copy(
         &self,
         placement: &Placement,
@@ -289,7 +288,6 @@ impl RayCaster {
     }
 }
 
-/// The rows between two heights.
 fn rows_of(low: f64, high: f64) -> Range<usize> {
     let rows = f64::from(ROWS);
     let row = |z: f64| (z * rows).floor().clamp(0.0, rows - 1.0) as usize;

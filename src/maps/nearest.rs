@@ -79,13 +79,11 @@ impl Piece {
         }
     }
 
-    /// The point of the segment that is nearest to `p`.
     fn nearest(&self, p: DVec2) -> DVec2 {
         let t = ((p - self.start).dot(self.along) * self.inverse).clamp(0.0, 1.0);
         self.start + self.along * t
     }
 
-    /// Squared distance in texels.
     fn squared(&self, p: DVec2) -> f64 {
         self.nearest(p).distance_squared(p)
     }

@@ -146,7 +146,6 @@ impl<'a> CopyDepths<'a> {
         depth / scale.max_element()
     }
 
-    /// A lower bound for the copies of a cluster.
     fn of_cluster(&self, cluster: &Cluster) -> f64 {
         let around = cluster.around(self.view.eye, [self.shape.radius, 1.0]);
         self.over_scale(cluster.most_scale, around.along(self.view.forward)) * (1.0 - 1e-6)

@@ -43,7 +43,6 @@ const MANY: usize = 4096;
 /// A frame's draws and dispatches, and all data that they read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FramePlan {
-    /// Steps in the order in which they are recorded.
     pub steps: Vec<Step>,
     pub draws: Vec<IndexedDraw>,
     /// The buffer of open pixels: see `walk.comp`.
@@ -54,7 +53,6 @@ pub(crate) struct FramePlan {
     pub bin_heads: u32,
     /// The pixels that walks may draw: left and upper edge, width, height.
     pub picture: [u32; 4],
-    /// One path per object.
     pub paths: Vec<DrawPath>,
     /// For each object, whether each [`Part`] of its surfaces is read.
     pub parts: Vec<[bool; 3]>,
@@ -76,7 +74,6 @@ pub(crate) struct Step {
     pub call: Call,
 }
 
-/// The command that a step records.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Call {
     /// Draws of [`FramePlan::draws`].
@@ -85,7 +82,6 @@ pub(crate) enum Call {
     Walk(Range<u32>, u32),
     /// Work groups; this head of the bins holds their number.
     Indirect(u32, Pushed),
-    /// This many work groups.
     Groups(u32, Pushed),
 }
 
@@ -185,7 +181,6 @@ struct Layers {
 struct Layer {
     variant: Variant,
     kind: Kind,
-    /// The first object.
     object: u32,
     draws: Vec<IndexedDraw>,
 }
@@ -214,7 +209,6 @@ impl Layers {
 }
 
 impl FramePlan {
-    /// Boxes and cells.
     fn add_proxies(
         &mut self,
         view: &View,

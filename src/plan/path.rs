@@ -35,7 +35,6 @@ pub enum DrawPath {
 /// Runs of frusta that may be seen: of cells that the box's sides cut, and of whole cells.
 pub(super) type CellRuns = [Vec<Range<u32>>; 2];
 
-/// One object, as input of a plan.
 pub(crate) struct PlanObject<'a> {
     pub object: &'a Object,
     /// Number of its block among all solids.
@@ -49,7 +48,6 @@ pub(crate) struct PlanObject<'a> {
     pub look_copies: usize,
     /// The surfaces that its search walks, from the finest level on.
     pub surfaces: &'a [Arc<OffsetSurface>],
-    /// The choice of each copy's level, if copies have levels of their own.
     pub levels: Option<&'a CopyLevels>,
     pub shape: Cylinder,
 }
@@ -66,11 +64,8 @@ pub(crate) struct Conditions {
     pub passes_cells: bool,
     /// True if the device is a CPU, on which triangles are expensive.
     pub software: bool,
-    /// Invocations of a subgroup, which run together.
     pub subgroup_size: u32,
-    /// Most invocations of a compute work group.
     pub group_invocations: u32,
-    /// Most bytes in a storage buffer.
     pub most_storage: u32,
     /// Same value as
     /// [`SearchSettings::proxy_min_pixels`](crate::settings::SearchSettings::proxy_min_pixels).
@@ -83,7 +78,6 @@ pub(crate) struct Conditions {
     pub parallel: bool,
     /// True if cells and lists of patches may replace the tree.
     pub takes_patches: bool,
-    /// Upper limit of lights.
     pub lights: Lights,
     /// True if shadows are cast: their rays may meet every copy of every object.
     pub casts: bool,
@@ -146,7 +140,6 @@ impl Conditions {
         !self.parallel && (self.compute || pays && may)
     }
 
-    /// True if rays may walk a hierarchy of copies of a technique.
     fn may_walk(&self, technique: &Technique) -> bool {
         let patches = technique.search == SearchCode::Quadric;
         !self.parallel && (self.compute || patches && !technique.replicas)
@@ -181,7 +174,6 @@ impl Conditions {
         lists && of.surface().is_some_and(|s| !s.listed().is_empty())
     }
 
-    /// True if the device gains by lists of patches.
     fn lists_patches(&self) -> bool {
         self.subgroup_size >= LEAST_SUBGROUP
     }
@@ -213,7 +205,6 @@ impl Conditions {
         pixels(tiles) >= least && (self.software || self.least_pixels == 0 || flat())
     }
 
-    /// Most bytes that bins of tiles may take.
     pub fn room(&self) -> u64 {
         u64::from(self.most_storage) / 4
     }
@@ -249,13 +240,11 @@ impl Conditions {
     }
 }
 
-/// Pixels of so many tiles.
 fn pixels(tiles: u64) -> u64 {
     tiles * u64::from(GROUP_PIXELS * GROUP_PIXELS)
 }
 
 impl<'a> PlanObject<'a> {
-    /// The surface of the finest level.
     pub fn surface(&self) -> Option<&'a Arc<OffsetSurface>> {
         self.surfaces.first()
     }

@@ -34,7 +34,6 @@ const ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
 /// ball.
 const AT_MIDDLE: f64 = 8.0;
 const BESIDE: f64 = 4.0;
-/// Roundings of the depth buffer for each rounding of a lag.
 const BUFFER: f64 = 0.25;
 /// Planes and axes this near to each other, as a part of the larger solid, are one. It is also the
 /// largest slope of a flat.
@@ -45,7 +44,6 @@ const MOST_LAG: f64 = 1e-5;
 /// Heights of the flats of an object, in order, object units; `None` if they are not known.
 pub(crate) type Flats = Option<Arc<[f64]>>;
 
-/// Finds the flats of an object.
 pub(crate) fn flats(object: &Object) -> Flats {
     let (outline, side) = (&object.profile.outline, object.profile.radius);
     let bounds = outline.bounds()?;
@@ -92,7 +90,6 @@ pub(crate) struct Rank {
 pub(crate) struct Precedence(HashMap<u32, Rank>);
 
 impl Body {
-    /// The copy of a solid at a placement.
     pub fn new(instance: u32, placement: &Placement, solid: &Cylinder, flats: &Flats) -> Self {
         let turn = DMat3::from_quat(placement.rotation.normalize());
         let local = solid.axis.extend(0.5 * (solid.low + solid.high));
@@ -118,7 +115,6 @@ impl Body {
         x.hypot(y) + z.abs()
     }
 
-    /// The radius of a ball around it.
     fn size(&self) -> f64 {
         let [x, y, z] = self.ways.map(DVec3::length);
         x.max(y).hypot(z)
@@ -170,7 +166,6 @@ impl Body {
 }
 
 impl Precedence {
-    /// True if no copy lags.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -189,7 +189,6 @@ fn first_pixel(place: f64) -> i32 {
     whole.saturating_add(i32::from(f64::from(whole) < place))
 }
 
-/// The last pixel whose centre is not after a position.
 fn last_pixel(place: f64) -> i32 {
     let place = place - 0.5;
     let whole = place as i32;

@@ -28,7 +28,6 @@ const LARGE: f64 = 0.25;
 /// nodes then.
 const MANY: Range<u32> = 64..1 << 17;
 
-/// A copy and its box in the world.
 #[derive(Clone, Copy, Debug)]
 struct Leaf {
     instance: u32,
@@ -47,13 +46,11 @@ pub(crate) struct Grid {
 /// Objects that share a pipeline, a set of textures and a hierarchy of their copies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layer {
-    /// Indices of the objects.
     pub objects: Vec<u32>,
     /// Index of the hierarchy's first node in [`Walks::nodes`].
     pub root: u32,
 }
 
-/// All hierarchies of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walks {
     pub grid: Grid,
@@ -66,7 +63,6 @@ pub(crate) struct Walks {
 }
 
 impl Layer {
-    /// Number of its copies.
     pub fn copies(&self, objects: &[PlanObject]) -> usize {
         let placements = |n: &u32| objects[*n as usize].object.placements().len();
         self.objects.iter().map(placements).sum()
@@ -74,7 +70,6 @@ impl Layer {
 }
 
 impl Leaf {
-    /// The box around a copy of a solid.
     fn new(instance: u32, placement: &Placement, solid: &Cylinder) -> Self {
         let turn = DMat3::from_quat(placement.rotation.normalize());
         let scale = placement.scale;
@@ -126,7 +121,6 @@ impl Grid {
     }
 }
 
-/// The node around two nodes.
 fn around(a: &WalkNode, b: &WalkNode) -> WalkNode {
     let join = |a: u32, b: u32| (a & 0xffff).min(b & 0xffff) | (a >> 16).max(b >> 16) << 16;
     WalkNode {
@@ -267,7 +261,6 @@ impl Walks {
     }
 }
 
-/// The boxes of all copies of these objects.
 fn leaves(objects: &[PlanObject], numbers: &[u32]) -> Vec<Leaf> {
     let mut all = Vec::new();
     for &n in numbers {

@@ -56,7 +56,6 @@ impl Lists {
     }
 }
 
-/// A layer that may show.
 struct Shown<'a> {
     layer: &'a Layer,
     variant: Variant,
@@ -70,7 +69,6 @@ impl Shown<'_> {
         squares(self.pixels, side)
     }
 
-    /// Blocks of tiles that hold its rectangle.
     fn blocks(&self) -> u32 {
         let [across, down] = self
             .squares(GROUP_PIXELS)
@@ -78,7 +76,6 @@ impl Shown<'_> {
         across * down
     }
 
-    /// Dispatches that make its lists.
     fn chunks(&self) -> u32 {
         self.blocks().div_ceil(MOST_BLOCKS)
     }
@@ -89,7 +86,6 @@ fn squares([left, top, right, bottom]: Rectangle, side: u32) -> [u32; 2] {
     [[left, right], [top, bottom]].map(|[first, last]| last / side - first / side + 1)
 }
 
-/// Tiles that hold a rectangle of pixels.
 fn tiles(pixels: Rectangle) -> u64 {
     let [across, down] = squares(pixels, GROUP_PIXELS).map(u64::from);
     across * down
@@ -352,7 +348,6 @@ fn points([_, begin, width, height]: [u32; 4], [_, top, _, bottom]: Rectangle) -
     across * ((top - begin) / side)..across * ((bottom - begin) / side + 1)
 }
 
-/// Parts of a range that are no longer than `most`.
 fn chunks(range: Range<u32>, most: u32) -> impl Iterator<Item = Range<u32>> {
     let Range { start, end } = range;
     (start..end)

@@ -14,7 +14,6 @@ pub(crate) struct Clusters {
     all: Vec<Cluster>,
 }
 
-/// Common bounds of some copies.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     pub range: Range<u32>,
@@ -25,7 +24,6 @@ pub(crate) struct Cluster {
     pub most_scale: DVec3,
 }
 
-/// Number of copies in a cluster.
 const SIZE: usize = 64;
 /// Bits of a position along each axis.
 const BITS: u32 = 21;
@@ -115,7 +113,6 @@ impl Cluster {
 pub(crate) struct Around {
     /// The box's middle relative to the eye.
     pub middle: DVec3,
-    /// Half of the box's sides.
     half: DVec3,
     reach: f64,
 }

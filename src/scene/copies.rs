@@ -23,7 +23,6 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Default)]
 pub struct Copies(Arc<Known>);
 
-/// Placements and derived data.
 #[derive(Default)]
 struct Known {
     placements: Vec<Placement>,

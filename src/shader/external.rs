@@ -5,10 +5,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::search::{Pass, Reads, Search, SearchModule, StoredPlanes};
 use crate::settings::SearchSettings;
 
-/// A search and its bound on steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct External {
-    /// The search.
     pub search: &'static Search,
     /// The bound on steps if that bound is the default; else 0, and the bound is data. A
     /// compiled-in default keeps comparisons fair: a search is not slowed by an unused option.
@@ -32,7 +30,6 @@ impl External {
         }
     }
 
-    /// True if the search reads a table of its own.
     pub const fn reads_table(self) -> bool {
         matches!(self.search.reads, Reads::Table(_))
     }
@@ -70,13 +67,11 @@ impl External {
         })
     }
 
-    /// The name of `module`.
     pub fn name(self, module: &Module) -> String {
         let own = self.module(module).map(|own| own.name());
         format!("{}.{}", self.search.name, own.unwrap_or_default())
     }
 
-    /// The SPIR-V of `module`.
     pub fn words(self, module: &Module) -> Result<Vec<u32>> {
         let none = || {
             Error::new(

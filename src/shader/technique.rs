@@ -14,9 +14,7 @@ use crate::settings::{Planes, SearchSettings, Solver};
 /// starts must handle them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShadowCasters {
-    /// An object with replicas.
     pub repeated: bool,
-    /// An object with a bevel.
     pub beveled: bool,
 }
 
@@ -33,7 +31,6 @@ pub struct Demands<'a> {
 /// What a host brings to the look of an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HostLook {
-    /// Its image has the colours.
     pub colors: bool,
     /// Its image has the slopes or the heights.
     pub relief: bool,
@@ -45,11 +42,9 @@ pub struct HostLook {
 /// one general pipeline, which is right for every view, light and number of objects. Each member selects code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Technique {
-    /// The search that finds hits.
     pub search: SearchCode,
     /// The search of another crate, for [`SearchCode::External`].
     pub external: Option<External>,
-    /// The stored values of a hit.
     pub output: Stored,
     /// True if the box holds several replicas.
     pub replicas: bool,

@@ -18,7 +18,6 @@ use std::sync::Arc;
 mod kept;
 use kept::assert_kept;
 
-/// The number of modules.
 const MODULES: usize = 28;
 
 fn any(solver: Solver, planes: Planes) -> Technique {

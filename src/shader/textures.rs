@@ -175,7 +175,6 @@ pub fn with_constant_textures(words: &[u32]) -> Vec<u32> {
     out
 }
 
-/// Appends an instruction.
 fn put(out: &mut Vec<u32>, code: u32, operands: &[u32]) {
     out.push(code | (operands.len() as u32 + 1) << 16);
     out.extend(operands);

@@ -37,7 +37,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Its name in lists of commands.
     pub const fn label(self) -> &'static CStr {
         match self {
             Self::Cells => c"revmap cells",
@@ -54,7 +53,6 @@ impl Kind {
         }
     }
 
-    /// True if it draws in compute.
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
@@ -110,7 +108,6 @@ pub enum Lights {
 }
 
 impl Lights {
-    /// The limit for so many lights.
     pub const fn of(count: usize) -> Self {
         match count {
             0 | 1 => Self::One,
@@ -127,7 +124,6 @@ pub enum Drawn {
     Objects,
     /// One object. Uniform buffers hold its block and the tables of all its levels.
     OneObject,
-    /// One object with one copy.
     OneCopy,
 }
 
@@ -184,7 +180,6 @@ impl Speciality {
         |to, from| to.single = from.single,
     ];
 
-    /// Promises nothing.
     pub const GENERAL: Self = Self {
         lights: Lights::Any,
         drawn: Drawn::Objects,

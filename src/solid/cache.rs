@@ -47,13 +47,11 @@ impl<K: Hash + Eq, V> Kept<K, V> {
         }
     }
 
-    /// All values that are alive.
     pub fn living(&self) -> impl Iterator<Item = Arc<V>> + '_ {
         self.0.values().filter_map(Weak::upgrade)
     }
 }
 
-/// Solids by profile.
 #[derive(Default)]
 pub(crate) struct SolidCache {
     /// The key is the profile's address. A solid keeps its profile, so no other profile gets the
@@ -64,14 +62,12 @@ pub(crate) struct SolidCache {
 }
 
 impl SolidCache {
-    /// The solid of a profile.
     pub fn get(&mut self, profile: &Arc<Profile>) -> Arc<Solid> {
         let key = Arc::as_ptr(profile) as usize;
         let known = self.solids.known(&key);
         known.unwrap_or_else(|| self.solids.keep(key, Solid::new(profile)))
     }
 
-    /// All surfaces that are alive.
     pub fn surfaces(&self) -> Result<Vec<Arc<OffsetSurface>>> {
         let mut all = Vec::new();
         for solid in self.solids.living() {
@@ -81,7 +77,6 @@ impl SolidCache {
     }
 }
 
-/// A profile, and everything that is made from it.
 pub(crate) struct Solid {
     source: Arc<OutlineSource>,
     contours: Mutex<Kept<[u64; 3], OffsetContour>>,

@@ -15,12 +15,10 @@ use std::sync::{Arc, Mutex, OnceLock};
 #[derive(Debug)]
 pub(crate) struct Slot {
     pub range: Range<u32>,
-    /// The free ranges of the buffer.
     pub ranges: Arc<Mutex<RangeAllocator<u32>>>,
 }
 
 impl Slot {
-    /// The first vector.
     pub fn begin(&self) -> u32 {
         self.range.start
     }
@@ -60,7 +58,6 @@ pub(crate) struct OffsetSurface {
     slots: [OnceLock<Slot>; 3],
 }
 
-/// The way to make a surface from a contour.
 #[derive(Clone, Copy)]
 pub(crate) enum Recipe {
     /// Quadrics of a level that follow the contour within a tolerance in object units.
@@ -93,7 +90,6 @@ impl OffsetSurface {
         self.made.get().is_some()
     }
 
-    /// Makes it, if it is not made yet.
     pub fn make(&self) {
         let _ = self.made();
     }
@@ -161,7 +157,6 @@ impl OffsetSurface {
         self.hull.get()
     }
 
-    /// True if it is made of patches.
     pub fn is_of_patches(&self) -> bool {
         matches!(self.recipe, Recipe::Patches { .. })
     }
@@ -183,7 +178,6 @@ impl OffsetSurface {
         }
     }
 
-    /// Number of its patches.
     pub fn patches(&self) -> usize {
         self.quadrics().unwrap_or_default().len()
     }

@@ -57,7 +57,6 @@ fn touches(patches: &[QuadricPatch]) -> bool {
     })
 }
 
-/// A hull's frusta in the layout of `proxy_cells.vert`.
 fn pack(hull: &ProxyHull, patches: &[QuadricPatch]) -> Vec<[u32; 4]> {
     let mut out = Vec::with_capacity(hull.frusta.len() * FRUSTUM_VECTORS as usize);
     // A guard that no point passes.

@@ -25,12 +25,9 @@ use std::ops::Range;
 /// Distance by which discs are widened, and points moved towards the visible side, object units.
 const MARGIN: f64 = 1e-4;
 
-/// The lining of one tube.
 #[derive(Clone, Debug, PartialEq)]
 struct Tube {
-    /// Least and largest `z`.
     z: [f64; 2],
-    /// Its largest `r`.
     r: f64,
     /// True if it ends on the axis, for its lower and its upper end.
     closed: [bool; 2],
@@ -46,7 +43,6 @@ struct Place {
     r: [f64; 2],
 }
 
-/// The constant data of a hull's cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct CavityCulling {
     tubes: Vec<Tube>,

@@ -125,7 +125,6 @@ impl ContourSource {
         })
     }
 
-    /// Parts of the outline itself.
     fn plain(&self) -> Segments {
         let mut parts = Segments::default();
         for s in &self.segments {
@@ -136,7 +135,6 @@ impl ContourSource {
         parts
     }
 
-    /// Parts of the outline moved by `w`.
     fn moved(&self, offset: &Offset) -> Segments {
         let mut parts = Segments::default();
         let size = (self.segments.iter()).fold(1.0f64, |size, s| size.max(s.a.x).max(s.b.x));
@@ -170,7 +168,6 @@ fn close(mut parts: Segments) -> Option<Vec<Chain>> {
     parts.join()
 }
 
-/// Corners of one loop's surface.
 fn corners_of(segments: &[Segment], corners: &mut Vec<[Option<Corner>; 2]>) {
     let n = segments.len();
     let normal = |s: &Segment| -(s.b - s.a).perp().normalize_or_zero();

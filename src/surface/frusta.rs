@@ -215,7 +215,6 @@ impl FrustaBuilder<'_> {
         [from, to]
     }
 
-    /// Walls at both ends.
     fn wall_off(&self, cell: &[QuadricPatch], is_single: bool, shell: &mut Vec<[DVec2; 2]>) {
         let (Some(&[begin, _]), Some(&[_, end])) = (shell.first(), shell.last()) else {
             return;

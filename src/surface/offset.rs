@@ -47,7 +47,6 @@ pub(super) struct Layer<'a> {
 }
 
 impl Layer<'_> {
-    /// The offset `w` at a height.
     fn offset(&self, z: f64) -> f64 {
         self.alpha + self.beta * z
     }
@@ -143,13 +142,11 @@ struct Candidate {
     feature: u32,
 }
 
-/// The curves of a layer.
 struct Trimmer<'a> {
     layer: &'a Layer<'a>,
     candidates: Vec<Candidate>,
 }
 
-/// Appends the parts of the contour within a layer.
 pub(super) fn trim(
     layer: &Layer,
     segments: &[Segment],

@@ -100,7 +100,6 @@ impl Tables {
     }
 }
 
-/// Most patches that a row can hold.
 const MOST: usize = (1 << 12) - 1;
 const EMPTY: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
@@ -134,7 +133,6 @@ pub(crate) fn extents(patches: &[QuadricPatch], rows: usize) -> Vec<[f32; 2]> {
 /// The patches of each row: one allocation for all rows.
 struct Members {
     patches: Vec<u32>,
-    /// The end of each row's patches.
     ends: Vec<usize>,
 }
 
@@ -168,7 +166,6 @@ impl Members {
         members
     }
 
-    /// The place of a row's patches.
     fn of(&self, row: usize) -> Range<usize> {
         row.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[row]
     }
@@ -237,7 +234,6 @@ fn least<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers.
 fn most<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }

@@ -15,7 +15,6 @@ struct Node {
     count: u32,
 }
 
-/// A segment prepared for distances.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     a: DVec2,

@@ -44,7 +44,6 @@ pub(in crate::gpu) struct ObjectState {
     pub images: ObjectImages,
     /// Views whose mask shares no bit with it do not show the object.
     pub mask: u32,
-    /// Numbers of its copies among all instances.
     pub instances: Range<u32>,
     pub last: Last,
 }
@@ -95,7 +94,6 @@ impl Boundary {
 pub(in crate::gpu) struct Derived {
     /// The search that draws the object; it may differ from the settings.
     pub solver: Solver,
-    /// The bound on its steps, 1 if there is none.
     pub steps: u32,
     pub map: Option<Arc<ShapeTexture>>,
     pub facts: MapFacts,
@@ -106,7 +104,6 @@ pub(in crate::gpu) struct Derived {
     pub technique: Technique,
 }
 
-/// An object's values of the last frame.
 #[derive(Clone)]
 pub(in crate::gpu) struct LastValues {
     placement: Placement,
@@ -149,7 +146,6 @@ impl Entry {
         }
     }
 
-    /// Marks what must be made anew.
     pub fn mark(&mut self, stale: Stale) {
         self.stale = self.stale.max(stale);
         if stale == Stale::Shape {

@@ -35,7 +35,6 @@ pub(super) struct Content {
     /// The memory that shaders write to, in compute or for all planes.
     pub target: Option<ComputeTarget>,
     pub snapshot: Arc<Snapshot>,
-    /// The plan of the last view.
     pub plan: Option<Arc<ViewPlan>>,
     /// The pixels that compute draws; all if none.
     pub open: Option<Arc<OpenPixels>>,
@@ -45,7 +44,6 @@ pub(super) struct Content {
     pub notes: Vec<String>,
     pub settings: SearchSettings,
     pub output: Output,
-    /// True if a function of the host shades.
     pub host_shades: bool,
     device: Arc<Shared>,
 }
@@ -80,12 +78,10 @@ impl Content {
         })
     }
 
-    /// True if tiles are traced in compute.
     pub fn is_compute(&self) -> bool {
         matches!(self.output, Output::Compute(_))
     }
 
-    /// True if objects cast shadows.
     pub fn casts(&self) -> bool {
         self.lighting.shadow != Shadow::Off
     }
@@ -217,7 +213,6 @@ impl Content {
         self.rebuilds += in_parallel(new.cloned(), OffsetSurface::make) as u64;
     }
 
-    /// True if the view has parallel rays.
     pub fn is_parallel(&self) -> bool {
         self.output.planes() == Planes::Depth { parallel: true }
     }

@@ -68,9 +68,7 @@ pub(crate) struct Objects {
     /// The number of dead ones in `order`.
     dead: usize,
     instances: RangeAllocator<u32>,
-    /// The number of copies of all objects.
     copies: u32,
-    /// Upper limit on instances.
     most_instances: u32,
     /// True if anything was changed since the last snapshot.
     pub stale: bool,
@@ -102,7 +100,6 @@ impl Objects {
         }
     }
 
-    /// The number of objects.
     pub fn len(&self) -> usize {
         self.order.len() - self.dead
     }
@@ -163,7 +160,6 @@ impl Objects {
         self.numbered.get_mut(number as usize)?.entry.as_mut()
     }
 
-    /// All entries, by number.
     pub fn entries_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
         self.numbered.iter_mut().filter_map(|n| n.entry.as_mut())
     }

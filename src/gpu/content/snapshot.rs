@@ -24,7 +24,6 @@ pub(in crate::gpu) const FALLBACK: Solver = Solver::Live;
 /// All objects at one time. Nothing in it changes but the surfaces that its objects keep alive.
 #[derive(Default)]
 pub(in crate::gpu) struct Snapshot {
-    /// In the order in which they were added.
     pub objects: Vec<Arc<PreparedObject>>,
     /// Number of copies of each [`PreparedObject::look`].
     pub looks: HashMap<(Technique, usize), usize>,
@@ -40,7 +39,6 @@ pub(in crate::gpu) struct Snapshot {
 #[derive(Clone, Default)]
 pub(in crate::gpu) struct SceneFacts {
     shadow: Shadow,
-    /// True if surfaces reflect an environment.
     environment: bool,
     /// True if the fallback draws every object, because one has no surface and a shadow's ray meets
     /// all by one search.
@@ -232,7 +230,6 @@ fn find_map(
     textures.shape(&object.profile, key).map(Some)
 }
 
-/// Makes what objects are drawn by.
 struct Maker<'a> {
     demands: Demands<'a>,
     facts: &'a SceneFacts,

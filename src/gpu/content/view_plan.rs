@@ -14,7 +14,6 @@ use crate::solid::offset_surface::{OffsetSurface, Part};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The plan of one view of a snapshot.
 pub(crate) struct ViewPlan {
     pub view: View,
     pub snapshot: Arc<Snapshot>,
@@ -25,11 +24,9 @@ pub(crate) struct ViewPlan {
     pub objects: Vec<PlannedObject>,
     /// Those of their copies that lag behind others.
     pub precedence: Arc<Precedence>,
-    /// The hierarchies of copies that rays walk.
     pub walks: Arc<Walks>,
 }
 
-/// An object in a plan.
 pub(crate) struct PlannedObject {
     pub object: Arc<PreparedObject>,
     pub level: u8,

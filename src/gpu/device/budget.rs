@@ -35,7 +35,6 @@ impl MemoryUse {
     }
 }
 
-/// The memory in use, and the limit on it in bytes.
 #[derive(Default)]
 pub(crate) struct MemoryBudget {
     pub used: MemoryUse,

@@ -30,9 +30,7 @@ pub(crate) struct Instance {
 
 /// What to install where Vulkan is missing, as the end of a message.
 pub(crate) struct Packages {
-    /// The loader and a driver.
     pub driver: &'static str,
-    /// The validation layers.
     pub layers: &'static str,
 }
 
@@ -111,7 +109,6 @@ impl Instance {
         Ok(made)
     }
 
-    /// Makes the messenger.
     fn listen(&mut self) -> Result<()> {
         use vk::{
             DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Kind,
@@ -129,12 +126,10 @@ impl Instance {
         Ok(())
     }
 
-    /// True if the validation layers are on.
     pub fn validated(&self) -> bool {
         self.messenger.is_some()
     }
 
-    /// Takes all messages since the last call.
     pub fn take_messages(&self) -> Vec<String> {
         let all = self.messages.lock();
         all.map(|mut all| std::mem::take(&mut *all))
@@ -172,7 +167,6 @@ pub(crate) fn no_driver(call: &str, code: vk::Result) -> Error {
     Error::new(kind, format!("{what}; {remedy}"))
 }
 
-/// True if an extension is among these.
 pub(crate) fn is_among(offered: &[vk::ExtensionProperties], extension: &CStr) -> bool {
     let is = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(extension);
     offered.iter().any(is)

@@ -11,13 +11,10 @@ use std::path::{Path, PathBuf};
 /// Lists of drivers' files and of folders with such files. The first one that is set hides the later
 /// ones. The last one adds to the system's drivers, the others replace them.
 const DRIVERS: [&str; 3] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"];
-/// Patterns of file names of drivers.
 const DRIVER_FILTERS: [&str; 2] = ["VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"];
 /// Lists of folders and files of layers. The first one replaces the system's folders.
 const LAYERS: [&str; 2] = ["VK_LAYER_PATH", "VK_ADD_LAYER_PATH"];
-/// The end of every message.
 const REMEDY: &str = "correct or unset the variable";
-/// Patterns of names of layers.
 const LAYER_FILTER: &str = "VK_LOADER_LAYERS_DISABLE";
 
 /// The variable that keeps drivers from the loader, with the remedy; `None` if none is set that may.
@@ -108,7 +105,6 @@ fn json(file: &Path) -> Result<Value, String> {
     serde_json::from_slice(&bytes).map_err(|e| format!("is damaged: it is not JSON ({e})"))
 }
 
-/// The fault of a driver's file.
 fn driver_fault(file: &Path) -> Option<String> {
     let driver = match json(file) {
         Ok(driver) => driver,

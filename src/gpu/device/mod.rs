@@ -26,7 +26,6 @@ pub(crate) struct Shared {
     pub pipelines: ManuallyDrop<Pipelines>,
     pub raw: ash::Device,
     pub queue: Option<Arc<Mutex<vk::Queue>>>,
-    /// The functions of the instance.
     pub functions: ash::Instance,
     /// The physical device, with the features that are on.
     pub chosen: Candidate,
@@ -101,7 +100,6 @@ impl Shared {
         &self.chosen.properties.limits
     }
 
-    /// Names a handle.
     pub fn name(&self, handle: impl vk::Handle, name: &str) {
         if let (Some(functions), Ok(name)) = (self.debug_labels.get(), CString::new(name)) {
             let info = vk::DebugUtilsObjectNameInfoEXT::default()
@@ -113,7 +111,6 @@ impl Shared {
         }
     }
 
-    /// Records `commands` under a label.
     pub fn labelled<T>(
         &self,
         cmd: vk::CommandBuffer,

@@ -82,12 +82,10 @@ impl Candidate {
         }
     }
 
-    /// Returns true if the device offers an extension.
     pub fn offers(&self, extension: &CStr) -> bool {
         is_among(&self.extensions, extension)
     }
 
-    /// The constants of all pipelines.
     pub fn constants(&self) -> DeviceConstants {
         let limits = &self.properties.limits;
         let most = limits.max_uniform_buffer_range / 16;
@@ -119,7 +117,6 @@ impl Candidate {
         }
     }
 
-    /// The rows of [`DeviceReport::uses`].
     fn uses(&self) -> Vec<(String, String)> {
         let flag = |what, is| (what, if is { "yes" } else { "no" }.to_owned());
         let limits = &self.properties.limits;
@@ -271,7 +268,6 @@ fn version(v: u32) -> String {
     format!("{}.{}.{}", major(v), minor(v), patch(v))
 }
 
-/// A driver's text.
 pub(crate) fn text(raw: std::result::Result<&CStr, FromBytesUntilNulError>) -> String {
     raw.unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -156,14 +156,12 @@ impl Drop for Buffer {
     }
 }
 
-/// The use of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     /// A uniform block, written every frame.
     Uniform,
     /// Tables and instances, bound both as storage buffers and as uniform buffers.
     Storage,
-    /// Draws that the host writes.
     Draws,
     /// Corners of proxies.
     Indices,

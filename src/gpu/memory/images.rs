@@ -144,7 +144,6 @@ pub(crate) struct Uploads {
     device: Arc<Shared>,
 }
 
-/// The copy of one image.
 pub(crate) struct Upload {
     staging: Buffer,
     image: Arc<Image>,
@@ -193,7 +192,6 @@ impl RecordedUploads {
 }
 
 impl Uploads {
-    /// No copies yet.
     pub fn new(device: &Arc<Shared>) -> Self {
         Self {
             waiting: Vec::new(),

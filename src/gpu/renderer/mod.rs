@@ -55,7 +55,6 @@ pub struct Renderer {
     pub(super) device: Arc<Shared>,
 }
 
-/// Upper limit on slots.
 const MOST_SLOTS: usize = 64;
 
 impl Renderer {

@@ -245,7 +245,6 @@ impl Renderer {
         })
     }
 
-    /// Writes the blocks of a plan.
     fn write(&mut self, slot: usize, plan: &ViewPlan) -> Result<()> {
         let (view, snapshot) = (&plan.view, &plan.snapshot);
         let motion = self.content.output.planes().has_motion();

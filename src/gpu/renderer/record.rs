@@ -14,7 +14,6 @@ use ash::vk;
 use std::ops::Range;
 use std::time::Instant;
 
-/// Bytes of one indirect draw.
 const DRAW_BYTES: u32 = size_of::<IndexedDraw>() as u32;
 /// Instances that a work group places.
 const PLACES: u32 = GROUP_PIXELS * GROUP_PIXELS;
@@ -116,7 +115,6 @@ impl Renderer {
         unsafe { raw.cmd_pipeline_barrier(cmd, stage, stage, none, &barrier, &[], &[]) };
     }
 
-    /// The slot of a frame, and its bindings.
     pub(super) fn frame(&self, frame: &PreparedFrame) -> Result<(&FrameSlot, &BoundPlan)> {
         let slot = self.slots.get(frame.slot).filter(|slot| {
             (frame.renderer, frame.serial) == (self.content.objects.renderer, slot.serial)

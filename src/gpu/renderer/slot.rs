@@ -22,7 +22,6 @@ use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A buffer of a slot.
 #[derive(Clone, Copy)]
 pub(crate) enum SlotBuffer {
     Frame,
@@ -62,7 +61,6 @@ const LEAST_SPARE: u64 = 1 << 12;
 pub(crate) struct FrameSlot {
     pub frame_set: vk::DescriptorSet,
     pub target_set: vk::DescriptorSet,
-    /// One per [`SlotBuffer`].
     buffers: Vec<Buffer>,
     /// The plan and bindings to record; `None` before the slot is prepared.
     pub bound: Option<BoundPlan>,
@@ -89,7 +87,6 @@ pub(crate) struct FrameSlot {
 /// A plan with all objects that its commands bind.
 pub(crate) struct BoundPlan {
     pub plan: Arc<ViewPlan>,
-    /// One per step.
     pub steps: Vec<BoundStep>,
     /// Pipelines that would be faster than those of the steps, or that are missing altogether.
     pub faster: Vec<(Variant, Kind)>,
@@ -106,11 +103,8 @@ impl BoundPlan {
     }
 }
 
-/// The bindings of a step.
 pub(crate) struct BoundStep {
-    /// `None` if it is not compiled yet.
     pub pipeline: Option<vk::Pipeline>,
-    /// True if it compares depths of a compute target.
     pub compares_depths: bool,
     pub textures: Arc<TextureSet>,
     /// Dynamic offsets of a step with one object, in bytes: begin of its tables, begin of its
@@ -226,7 +220,6 @@ impl FrameSlot {
         mark.barrier(cmd, Usage::TransferWrite, Usage::HostRead);
     }
 
-    /// Bytes of all buffers of the slot.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(|buffer| buffer.bytes).sum()
     }
@@ -237,7 +230,6 @@ impl FrameSlot {
         steps.into_iter().any(|step| step.compares_depths)
     }
 
-    /// Writes a block `at` bytes into a buffer.
     pub fn write<T: bytemuck::Pod>(
         &mut self,
         buffer: SlotBuffer,

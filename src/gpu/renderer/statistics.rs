@@ -29,7 +29,6 @@ pub struct FrameStatistics {
 }
 
 impl FrameSlot {
-    /// The number of commands and bytes of the slot's frame.
     pub fn statistics(&self) -> FrameStatistics {
         let Some(bound) = &self.bound else {
             return FrameStatistics::default();

@@ -12,7 +12,6 @@ use range_alloc::RangeAllocator;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, Weak};
 
-/// Solids and buffers.
 pub(crate) struct Geometry {
     pub solids: SolidCache,
     buffers: TableBuffers,
@@ -21,7 +20,6 @@ pub(crate) struct Geometry {
     /// Every slot is as long as so many vectors, or a multiple of it, and so begins where a window
     /// of a uniform buffer may.
     unit: u32,
-    /// The number of frusta that have indices.
     frusta: u32,
     device: Arc<Shared>,
 }
@@ -33,7 +31,6 @@ pub(crate) struct TableBuffers {
     pub indices: Arc<Buffer>,
 }
 
-/// Units of new tables.
 const FIRST_UNITS: u32 = 1024;
 
 impl Geometry {
@@ -82,7 +79,6 @@ impl Geometry {
         Ok(self.buffers.clone())
     }
 
-    /// Bytes of the shared buffers.
     pub fn bytes(&self) -> u64 {
         self.buffers.tables.bytes + self.buffers.indices.bytes
     }

@@ -74,7 +74,6 @@ impl MapKey {
     }
 }
 
-/// A shape map on the device.
 pub(crate) struct ShapeTexture {
     // Kept because its address is the key of its textures.
     _profile: Arc<Profile>,

@@ -69,7 +69,6 @@ pub(crate) struct ObjectImages {
     pub color: Option<HostImage>,
     /// Slopes, or the heights that they are differences of.
     pub relief: Option<HostImage>,
-    /// True if `relief` holds heights.
     pub heights: bool,
 }
 
@@ -257,7 +256,6 @@ impl Textures {
     }
 }
 
-/// The address by which a texture is known.
 fn address<T>(of: &Arc<T>) -> usize {
     Arc::as_ptr(of) as usize
 }
@@ -322,7 +320,6 @@ struct Sets {
     free: Vec<vk::DescriptorSet>,
 }
 
-/// Number of sets in one pool.
 const SETS: u32 = 64;
 
 impl SetPool {

@@ -7,7 +7,6 @@ use crate::shader::generated::MAX_SHADOW_MAPS;
 use ash::vk;
 use vk::{DescriptorType as Kind, ShaderStageFlags as Stages};
 
-/// One binding of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Binding {
     pub kind: Kind,
@@ -38,7 +37,6 @@ pub(crate) const TEXTURE_SET: usize = 1;
 /// Set 2: tiles, and the target of a compute pass.
 pub(crate) const TARGET_SET: usize = 2;
 
-/// The bindings of every set, by their numbers.
 pub(crate) const SETS: [&[Binding]; 3] = [
     &[
         one(Kind::UNIFORM_BUFFER, EVERY),         // the frame
@@ -86,7 +84,6 @@ pub(crate) fn count(kinds: &[Kind], stages: Stages) -> u32 {
     all.filter(counts).map(|of| of.count).sum()
 }
 
-/// The layout of a set with these bindings.
 pub(crate) fn layout(raw: &ash::Device, bindings: &[Binding]) -> Result<vk::DescriptorSetLayout> {
     let bindings: Vec<_> = (0u32..)
         .zip(bindings)
@@ -143,11 +140,8 @@ pub(crate) fn allocate(
 /// A resource that a binding points to.
 #[derive(Clone, Copy)]
 pub(crate) enum Resource {
-    /// A buffer and the number of bytes to bind.
     Buffer(vk::Buffer, u64),
-    /// Vectors of a buffer.
     Texels(vk::BufferView),
-    /// A storage image.
     Image(vk::ImageView),
 }
 

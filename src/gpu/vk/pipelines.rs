@@ -54,9 +54,7 @@ impl DeviceConstants {
 /// Set layouts, the pipeline layout, and the pipelines made so far. Members are all inputs of a
 /// compilation that a device has.
 pub(crate) struct Pipelines {
-    /// The layouts of [`descriptors::SETS`].
     pub set_layouts: [vk::DescriptorSetLayout; 3],
-    /// The layout of [`descriptors::HOST_TEXTURES`].
     host_textures: vk::DescriptorSetLayout,
     pub layout: vk::PipelineLayout,
     /// Shared while pipelines are compiled, exclusive while another cache is merged into it.
@@ -64,13 +62,10 @@ pub(crate) struct Pipelines {
     /// True if this value made `cache` and destroys it.
     owns_cache: bool,
     made: Made,
-    /// The number of pipelines that were compiled.
     pub compiled: AtomicU64,
     owners: AtomicU64,
     pub flags: vk::PipelineCreateFlags,
-    /// The device's constants, the same for every pipeline.
     constants: DeviceConstants,
-    /// The set of specialities that frames may use.
     pub specialities: u32,
     /// The source of modules that replace the embedded ones.
     #[cfg(feature = "other-shaders")]
@@ -84,7 +79,6 @@ pub(crate) struct Pipelines {
 pub type ShaderSource =
     Box<dyn Fn(&str, &[(&str, &str)]) -> Result<Option<Vec<u32>>> + Send + Sync>;
 
-/// The pipelines that are compiled.
 type Made = Arc<Mutex<HashMap<Key, vk::Pipeline>>>;
 
 /// The renderer that pipelines are for: its output, and the host's shading in them. The pipelines
@@ -111,7 +105,6 @@ impl Drop for Owner {
     }
 }
 
-/// A host's shading with the layout of its pipelines.
 pub(crate) struct BoundShading {
     pub shading: Arc<Shading>,
     pub layout: vk::PipelineLayout,

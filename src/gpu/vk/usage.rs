@@ -3,20 +3,17 @@
 
 use ash::vk;
 
-/// A use of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Usage {
     /// Sampled, or copied into, by earlier commands; contents no longer matter.
     Discarded,
     /// Copied or cleared into.
     TransferWrite,
-    /// Sampled by any shader.
     Sampled,
     /// Written, and perhaps read, by compute shaders.
     ComputeWrite,
     /// Read by compute shaders and as the groups of an indirect dispatch.
     TileRead,
-    /// Read by any shader.
     ShaderRead,
     /// Read by the host, after the commands have run.
     HostRead,
@@ -58,7 +55,6 @@ impl Usage {
     }
 }
 
-/// Records barriers between two uses of resources.
 pub(crate) fn wait(
     raw: &ash::Device,
     cmd: vk::CommandBuffer,

@@ -19,7 +19,6 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// First and last value of its parameter.
     pub(super) fn range(&self) -> [f64; 2] {
         match *self {
             Self::Line { .. } => [0.0, 1.0],
@@ -27,7 +26,6 @@ impl Curve {
         }
     }
 
-    /// Its point at a parameter.
     pub(super) fn point(&self, beta: f64, x: f64) -> DVec2 {
         match *self {
             Self::Line { a, b } => a.lerp(b, x),

@@ -15,7 +15,6 @@ const MARK: [u8; 8] = *b"revmapPC";
 const HEADER: usize = 16 + vk::UUID_SIZE;
 
 impl Pipelines {
-    /// The bytes of the cache.
     pub fn cache_bytes(&self) -> Result<Vec<u8>> {
         let cache = self.cache.read().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the cache is live.
