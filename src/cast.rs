@@ -16,9 +16,9 @@
 //! ```
 
 use crate::error::Result;
-use crate::scene::{Cluster, GrownProfiles, Object, Placement};
+use crate::scene::{Cluster, GrownProfiles, Object, Placement, ends};
 use crate::surface::{
-    ContourSource, FitOptions, QuadricPatch, ROWS, extents, fit_patches, touched,
+    ContourSource, FitOptions, QuadricPatch, ROWS, extent, extents, fit_patches, touched,
 };
 use glam::{DVec2, DVec3};
 use std::f64::consts::SQRT_2;
@@ -128,10 +128,7 @@ impl RayCaster {
     /// solid is left.
     #[must_use]
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
-        let [radius, low, high] = self.patches.iter().fold(none, |m, p| {
-            [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-        });
+        let [radius, low, high] = extent(&self.patches);
         let side = self.object.profile.radius;
         if self.object.repeat != [1; 3] {
             let whole = [[-side, side], [-side, side], [0.0, 1.0]];
@@ -144,18 +141,18 @@ impl RayCaster {
     }
 
     /// The world's box around a box of object space, of all copies.
-    fn box_around(&self, ends: [[f64; 2]; 3]) -> [DVec3; 2] {
-        let low = DVec3::from(ends.map(|e| e[0]));
-        let high = DVec3::from(ends.map(|e| e[1]));
+    fn box_around(&self, sides: [[f64; 2]; 3]) -> [DVec3; 2] {
+        let low = DVec3::from(sides.map(|e| e[0]));
+        let high = DVec3::from(sides.map(|e| e[1]));
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        self.object.placements().iter().fold(none, |all, p| {
+        let (low, high) = ends(self.object.placements().iter().flat_map(|p| {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (p.rotation * axis).abs());
             let size = half * p.scale;
             let reach = axes[0] * size.x + axes[1] * size.y + axes[2] * size.z;
             let centre = p.position + p.rotation * (middle * p.scale);
-            [all[0].min(centre - reach), all[1].max(centre + reach)]
-        })
+            [centre - reach, centre + reach]
+        }));
+        [low, high]
     }
 
     fn cast_copy(

@@ -2,7 +2,7 @@
 
 use super::nearest::for_each_texel;
 use super::{MAX_SIDE, round_down};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, content};
 use crate::host_memory;
 use crate::profile::{Bounds, Profile, Segment};
 use glam::DVec2;
@@ -120,30 +120,28 @@ impl ShapeMap {
             rows,
             reach,
         } = *options;
-        let fault = |message: String| Error::new(ErrorKind::Content, message);
+        let wrong = |message: String| content("map_rows", message);
         if !(2..=MAX_SIDE).contains(&rows) {
-            return Err(fault(format!("{rows} rows; give 2 to {MAX_SIDE}")).at_key("map_rows"));
+            return wrong(format!("{rows} rows; give 2 to {MAX_SIDE}"));
         }
         if !reach.is_finite() {
             let message = format!("the map cannot reach to {reach}; give a finite radius");
-            return Err(fault(message));
+            return Err(Error::new(ErrorKind::Content, message));
         }
         // Slightly less, so that a radius of columns / rows is not rounded up to one more column.
         let wanted = (reach.max(profile.radius) * f64::from(rows) - 1e-6)
             .ceil()
             .max(2.0);
         if wanted > f64::from(MAX_SIDE) {
-            let message = format!(
+            return wrong(format!(
                 "the map would have {wanted} columns, {MAX_SIDE} is the most; take fewer rows or a narrower shape"
-            );
-            return Err(fault(message).at_key("map_rows"));
+            ));
         }
         let columns = wanted as u32;
         let (distance, Some(bounds)) = (source.measure)(profile, columns, rows)? else {
-            let message = format!(
+            return wrong(format!(
                 "at {rows} rows the shape covers no texel; take more rows or a thicker shape"
-            );
-            return Err(fault(message).at_key("map_rows"));
+            ));
         };
         let form = distance.iter().map(|&d| d <= 0.0);
         let form = host_memory::collected(form, "the form of a map")?;

@@ -8,7 +8,7 @@ use crate::scene::{Cluster, Object, Placement};
 use crate::settings::Tolerance;
 use crate::shader::InstanceBlock;
 use crate::surface::FitOptions;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::f64::consts::SQRT_2;
 
 /// The coarsest level: patches within a 36th of the height.
@@ -87,8 +87,7 @@ pub(crate) fn coarsest(tolerance: Tolerance, pixels: f64) -> u8 {
 /// if a copy may reach the eye. `height`: height of the box in units of the profile's. `all`:
 /// includes copies outside of the picture, whose shadows may be in it.
 pub(crate) fn pixels_per_unit(object: &Object, height: f64, view: &View, all: bool) -> f64 {
-    let nearest = CopyDepths::new(object, view, all).least();
-    stretch(view) / (pixel_of(view) * height * nearest)
+    stretch(view) / (pixel_of(view) * height * least_depth(object, view, all))
 }
 
 /// The pixels that a length across the ray covers, over those that it covers in the middle of the
@@ -108,66 +107,40 @@ fn pixel_of(view: &View) -> f64 {
     view.dir_x.length().min(view.dir_y.length())
 }
 
-/// Depths of an object's copies, each over the copy's largest scale; infinite for copies that do not
-/// show. An object unit covers the most pixels on the copy with the least one.
-struct CopyDepths<'a> {
-    object: &'a Object,
-    view: &'a View,
-    /// Selects the copies that may be in the picture; none if all count.
-    projector: Option<Projector>,
-    shape: Cylinder,
-}
-
-impl<'a> CopyDepths<'a> {
-    fn new(object: &'a Object, view: &'a View, all: bool) -> Self {
-        Self {
-            object,
-            view,
-            // No ray leaves its pixel.
-            projector: (!all && !view.parallel).then(|| Projector::new(view, 1.0, 0.0)),
-            shape: Cylinder {
-                axis: DVec2::ZERO,
-                radius: object.profile.radius * SQRT_2,
-                low: 0.0,
-                high: 1.0,
-            },
-        }
-    }
-
-    fn over_scale(&self, scale: DVec3, [nearest, farthest]: [f64; 2]) -> f64 {
+/// The least depth of an object's copies at their boxes' nearest points, each over the copy's largest
+/// scale; infinite if none shows. An object unit covers the most pixels on that copy. `all`: as in
+/// [`pixels_per_unit`].
+fn least_depth(object: &Object, view: &View, all: bool) -> f64 {
+    let radius = object.profile.radius;
+    let shape = Cylinder::centred(radius * SQRT_2, 0.0, 1.0);
+    // No ray leaves its pixel.
+    let projector = (!all && !view.parallel).then(|| Projector::new(view, 1.0, 0.0));
+    let over_scale = |scale: DVec3, [nearest, farthest]: [f64; 2]| {
         let depth = if farthest <= 0.0 {
             f64::INFINITY
-        } else if self.view.parallel {
+        } else if view.parallel {
             1.0
         } else {
             // A copy that the near plane cuts is nearest at that plane.
-            nearest.max(self.view.near)
+            nearest.max(view.near)
         };
         depth / scale.max_element()
-    }
-
-    fn of_cluster(&self, cluster: &Cluster) -> f64 {
-        let around = cluster.around(self.view.eye, [self.shape.radius, 1.0]);
-        self.over_scale(cluster.most_scale, around.along(self.view.forward)) * (1.0 - 1e-6)
-    }
-
-    /// The least of all copies, at their boxes' nearest points.
-    fn least(&self) -> f64 {
-        let radius = self.object.profile.radius;
-        let of_copy = |copy: &Placement| {
-            let seen = |projector: &Projector| projector.bounds(copy, &self.shape).is_some();
-            if !self.projector.as_ref().is_none_or(seen) {
-                return f64::INFINITY;
-            }
-            let forward = copy.rotation.conjugate() * self.view.forward * copy.scale;
-            let middle = copy.position - self.view.eye;
-            let middle = middle.dot(self.view.forward) + 0.5 * forward.z;
-            let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
-            self.over_scale(copy.scale, [middle - reach, middle + reach])
-        };
-        self.object
-            .least_of_copies(|cluster| self.of_cluster(cluster), of_copy)
-    }
+    };
+    let of_cluster = |cluster: &Cluster| {
+        let around = cluster.around(view.eye, [shape.radius, 1.0]);
+        over_scale(cluster.most_scale, around.along(view.forward)) * (1.0 - 1e-6)
+    };
+    let of_copy = |copy: &Placement| {
+        let seen = |projector: &Projector| projector.bounds(copy, &shape).is_some();
+        if !projector.as_ref().is_none_or(seen) {
+            return f64::INFINITY;
+        }
+        let forward = copy.rotation.conjugate() * view.forward * copy.scale;
+        let middle = (copy.position - view.eye).dot(view.forward) + 0.5 * forward.z;
+        let reach = forward.abs().dot(DVec3::new(radius, radius, 0.5));
+        over_scale(copy.scale, [middle - reach, middle + reach])
+    };
+    object.least_of_copies(of_cluster, of_copy)
 }
 
 #[cfg(test)]

@@ -268,12 +268,7 @@ pub(crate) fn shape_of(object: &Object, bounds: [f64; 4]) -> Cylinder {
             high,
         }
     } else {
-        Cylinder {
-            axis: DVec2::ZERO,
-            radius: side * SQRT_2,
-            low: 0.0,
-            high: 1.0,
-        }
+        Cylinder::centred(side * SQRT_2, 0.0, 1.0)
     }
 }
 

@@ -234,15 +234,6 @@ mod tests {
     use crate::scene::Camera;
     use glam::{DMat4, DQuat, DVec4};
 
-    fn disc(radius: f64, low: f64, high: f64) -> Cylinder {
-        Cylinder {
-            axis: DVec2::ZERO,
-            radius,
-            low,
-            high,
-        }
-    }
-
     fn at(position: [f64; 3]) -> Placement {
         Placement {
             position: position.into(),
@@ -278,8 +269,8 @@ mod tests {
     #[test]
     fn copies_lag_behind_those_that_they_share_faces_with() {
         let of = |x, solid| (at([x, 0.0, 0.0]), solid);
-        let table = of(0.0, disc(5.0, 0.0, 1.0));
-        let inlay = |x| of(x, disc(0.5, 0.9, 1.0));
+        let table = of(0.0, Cylinder::centred(5.0, 0.0, 1.0));
+        let inlay = |x| of(x, Cylinder::centred(0.5, 0.9, 1.0));
         assert_eq!(
             tiers(&[table, inlay(0.0), inlay(2.0), inlay(2.3)]),
             [0, 1, 1, 2]
@@ -295,7 +286,7 @@ mod tests {
     /// Copies beside each other, on top of each other, and crossed ones that are apart.
     #[test]
     fn copies_that_only_touch_do_not_lag() {
-        let solid = disc(0.5, 0.0, 0.3);
+        let solid = Cylinder::centred(0.5, 0.0, 0.3);
         let pair = |b: Placement| tiers(&[(at([0.0; 3]), solid), (b, solid)]);
         assert_eq!(pair(at([0.6, 0.8, 0.0])), [0, 0]);
         assert_eq!(pair(at([0.59, 0.8, 0.0])), [0, 1]);
@@ -316,8 +307,8 @@ mod tests {
     /// Flats in one plane and axes that meet count; flats of other heights or slopes do not.
     #[test]
     fn copies_that_overlap_may_share_no_face() {
-        let table = (at([0.0; 3]), disc(5.0, 0.0, 1.0));
-        let pair = |b: Placement| tiers(&[table, (b, disc(0.5, 0.5, 1.0))]);
+        let table = (at([0.0; 3]), Cylinder::centred(5.0, 0.0, 1.0));
+        let pair = |b: Placement| tiers(&[table, (b, Cylinder::centred(0.5, 0.5, 1.0))]);
         assert_eq!(pair(at([2.0, 0.0, 0.0])), [0, 1]);
         assert_eq!(pair(at([2.0, 0.0, 1e-5])), [0, 1]);
         assert_eq!(pair(at([2.0, 0.0, 1e-3])), [0, 0]);
@@ -359,7 +350,7 @@ mod tests {
 
     #[test]
     fn tiers_and_copies_are_limited() {
-        let solid = disc(0.5, 0.0, 1.0);
+        let solid = Cylinder::centred(0.5, 0.0, 1.0);
         let row = |count: u32| (0..count).map(|n| (at([0.3 * f64::from(n), 0.0, 0.0]), solid));
         let found = tiers(&row(40).collect::<Vec<_>>());
         let wanted: Vec<u8> = (0..40).map(|n| n.min(HIGHEST_TIER)).collect();
@@ -397,7 +388,7 @@ mod tests {
             host(0.01, 0.0, DVec4::W, DepthOrder::Normal),
             host(-0.01, 1.0, DVec4::W, DepthOrder::Reversed),
         ];
-        let body = |n| Body::new(n, &at([0.0; 3]), &disc(0.5, 0.0, 1.0), &None);
+        let body = |n| Body::new(n, &at([0.0; 3]), &Cylinder::centred(0.5, 0.0, 1.0), &None);
         let all = Precedence::new(2, || vec![body(0), body(1)]);
         for view in views {
             let copy = InstanceBlock {

@@ -15,6 +15,18 @@ pub(crate) struct Cylinder {
     pub high: f64,
 }
 
+impl Cylinder {
+    /// One in the middle of the box.
+    pub const fn centred(radius: f64, low: f64, high: f64) -> Self {
+        Self {
+            axis: DVec2::ZERO,
+            radius,
+            low,
+            high,
+        }
+    }
+}
+
 /// The view as three linear maps. The first two over the third give a point's pixel, and the third
 /// is its depth.
 pub(crate) struct Projector {
@@ -206,12 +218,7 @@ mod tests {
     /// it holds, in front of the eye and around it.
     #[test]
     fn viewports_need_not_begin_at_the_first_pixel() {
-        let shape = Cylinder {
-            axis: DVec2::ZERO,
-            radius: 50.0,
-            low: -50.0,
-            high: 50.0,
-        };
+        let shape = Cylinder::centred(50.0, -50.0, 50.0);
         let eye = DVec3::new(0.0, 0.0, 0.5);
         for [x, y] in [
             [0.0, 0.0],
@@ -268,12 +275,7 @@ mod tests {
         let camera = crate::scene::Camera::new(DVec3::new(-900.0, 3.0, 2.0), DVec3::ZERO);
         let view = View::from_camera(&camera, (64, 48), [1.0, 1e4]).unwrap();
         let projector = Projector::new(&view, 0.0, 0.0);
-        let shape = Cylinder {
-            axis: DVec2::ZERO,
-            radius: 0.4,
-            low: 0.0,
-            high: 1.0,
-        };
+        let shape = Cylinder::centred(0.4, 0.0, 1.0);
         let mut seen = [0; 2];
         for n in 0..500 {
             let part = f64::from(n) / 500.0;

@@ -10,12 +10,6 @@ use std::ops::Range;
 /// Least distance of an eye from a shell, and of a shell from the near plane, in object units.
 const CLEARANCE: f64 = 1e-3;
 
-/// True if the box shows no more than the boundary's patches: it cuts nothing of the solid and
-/// holds no replicas.
-pub(crate) fn is_whole(object: &Object, surface: &OffsetSurface) -> bool {
-    object.repeat == [1; 3] && surface.extent()[0] <= uncut_radius(object, surface)
-}
-
 /// The radius up to which the box's sides cut nothing that is seen.
 fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
     let [x, y] = object.axis_offset();
@@ -26,26 +20,21 @@ fn uncut_radius(object: &Object, surface: &OffsetSurface) -> f64 {
 /// True if rays to all of an object's copies begin outside of the solid, and the box cuts nothing
 /// of it.
 pub(crate) fn is_seen_from_outside(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
-    is_whole(object, surface) && is_apart_from_all(object, surface, view)
+    let is_whole = object.repeat == [1; 3] && surface.extent()[0] <= uncut_radius(object, surface);
+    is_whole && is_apart_from_all(object, surface, view)
 }
 
 /// True if rays to all of an object's copies begin outside of the solid, as it is before its box cuts
 /// it.
 pub(crate) fn is_apart_from_all(object: &Object, surface: &OffsetSurface, view: &View) -> bool {
-    let reach = view.farthest_start();
+    let [r_max, z_min, z_max] = surface.extent();
     let apart = |copy: &Placement| {
-        let eye = seen_from(object, copy, view).0;
-        is_apart(surface, eye, reach / copy.scale.min_element())
+        // A ball about the eye, in which rays begin, is clear of the solid's bounding cylinder.
+        let far = CLEARANCE + view.farthest_start() / copy.scale.min_element();
+        let eye = flat(seen_from(object, copy, view).0);
+        eye.x > r_max + far || eye.y < z_min - far || eye.y > z_max + far
     };
     !view.parallel && object.placements().iter().all(apart)
-}
-
-/// True if a ball about a point of object space, relative to the axis, is clear of the solid's
-/// bounding cylinder. `reach`: the ball's radius.
-pub(crate) fn is_apart(surface: &OffsetSurface, point: DVec3, reach: f64) -> bool {
-    let [r_max, z_min, z_max] = surface.extent();
-    let (point, far) = (flat(point), CLEARANCE + reach);
-    point.x > r_max + far || point.y < z_min - far || point.y > z_max + far
 }
 
 /// The eye, relative to the axis, and the direction of sight, both in object space. The depth of a
@@ -57,14 +46,9 @@ fn seen_from(object: &Object, placement: &Placement, view: &View) -> (DVec3, DVe
     (eye, turn * view.forward * placement.scale)
 }
 
-/// True if a solid fills its box, so that the box is drawn: most rays enter the box within the
-/// solid, and most of the cells would be outside of the box.
-pub(crate) fn fills_box(object: &Object, surface: &OffsetSurface) -> bool {
-    surface.extent()[0] > Object::WIDEST * object.profile.radius
-}
-
 /// True if cells may pay for an object in a view: it covers enough pixels, and does not fill its
-/// box.
+/// box, where most rays enter the box within the solid, and most of the cells would be outside of
+/// the box.
 pub(crate) fn may_pay(
     object: &Object,
     surface: &OffsetSurface,
@@ -72,7 +56,8 @@ pub(crate) fn may_pay(
     least_pixels: u32,
 ) -> bool {
     let least = u64::from(least_pixels) * object.placements().len() as u64;
-    covered_pixels(object, view) >= least && !fills_box(object, surface)
+    let fills_box = surface.extent()[0] > Object::WIDEST * object.profile.radius;
+    covered_pixels(object, view) >= least && !fills_box
 }
 
 /// The frusta of `object`'s cells: of those that the box's sides cut, and of those that are whole.

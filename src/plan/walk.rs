@@ -7,7 +7,7 @@
 
 use super::projector::Cylinder;
 use super::{Conditions, PlanObject};
-use crate::scene::Placement;
+use crate::scene::{Placement, ends};
 use crate::shader::WalkNode;
 use crate::shader::generated::INNER_NODE;
 use glam::{DMat3, DVec3};
@@ -92,10 +92,7 @@ impl Leaf {
 
 impl Grid {
     fn around(leaves: impl Iterator<Item = Leaf>) -> Self {
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = leaves.fold(none, |(low, high), leaf| {
-            (low.min(leaf.low), high.max(leaf.high))
-        });
+        let (low, high) = ends(leaves.flat_map(|leaf| [leaf.low, leaf.high]));
         // Steps far below those of other axes have no digits in 32 bits, where the eye counts them.
         let size = high - low;
         let size = size.max(DVec3::splat(FLATTEST * size.max_element()));
@@ -142,10 +139,7 @@ fn fill(leaves: &mut [Leaf], level: &mut [WalkNode], grid: &Grid) {
         level[0] = node;
         return;
     }
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = leaves.iter().fold(none, |(low, high), leaf| {
-        (low.min(leaf.middle()), high.max(leaf.middle()))
-    });
+    let (low, high) = ends(leaves.iter().map(Leaf::middle));
     let axis = (high - low).max_position();
     leaves.select_nth_unstable_by(half, |a, b| {
         let by_place = a.middle()[axis].total_cmp(&b.middle()[axis]);
@@ -299,7 +293,7 @@ mod tests {
         }
     }
 
-    fn ends(bounds: [u32; 3]) -> [[u32; 3]; 2] {
+    fn steps(bounds: [u32; 3]) -> [[u32; 3]; 2] {
         [bounds.map(|b| b & 0xffff), bounds.map(|b| b >> 16)]
     }
 
@@ -338,7 +332,7 @@ mod tests {
                 }
                 seen[node.index as usize] += 1;
                 let copy = leaf(node.index);
-                let [low, high] = ends(node.bounds)
+                let [low, high] = steps(node.bounds)
                     .map(|end| grid.low + grid.unit * DVec3::from(end.map(f64::from)));
                 // One copy of 97 is large; these are in a half of their own.
                 let is_large = node.index.is_multiple_of(97) && count >= MANY.start;
@@ -356,7 +350,7 @@ mod tests {
                 );
                 let mut above = k / 2;
                 while above > 0 {
-                    let ([a, b], [c, d]) = (ends(heap[above].bounds), ends(node.bounds));
+                    let ([a, b], [c, d]) = (steps(heap[above].bounds), steps(node.bounds));
                     let holds = |axis: usize| a[axis] <= c[axis] && d[axis] <= b[axis];
                     assert!(
                         (0..3).all(holds) && heap[above].index == INNER_NODE,

@@ -1,18 +1,15 @@
 //! Profiles from a list of `[r, z]` points.
 
 use super::{AXIS_SLACK, FillRule, Outline, Profile};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Result, content};
 use glam::DVec2;
 
 /// See [`Profile::polygon`].
 pub(super) fn profile(points: &[[f64; 2]], radius: f64) -> Result<Profile> {
-    let fault = |message: String| Err(Error::new(ErrorKind::Content, message).at_key("polygon"));
+    let fault = |message: String| content("polygon", message);
     if !(radius.is_finite() && radius > 0.0) {
-        return Err(Error::new(
-            ErrorKind::Content,
-            format!("{radius} is no radius; give a positive number"),
-        )
-        .at_key("radius"));
+        let message = format!("{radius} is no radius; give a positive number");
+        return content("radius", message);
     }
     if points.len() < 3 {
         return fault(format!(

@@ -126,7 +126,8 @@ impl Around {
     }
 }
 
-fn ends(all: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+/// The corners of the box around points.
+pub(crate) fn ends(all: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     all.fold(none, |(low, high), p| (low.min(p), high.max(p)))
 }

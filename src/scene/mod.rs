@@ -33,7 +33,7 @@ mod object;
 
 pub use crate::surface::Offset;
 pub use camera::CameraFrame;
-pub(crate) use clusters::Cluster;
+pub(crate) use clusters::{Cluster, ends};
 pub use copies::Copies;
 #[doc(hidden)]
 pub use growth::{GrownObject, GrownProfiles, Growth, MOST_GROWTH};

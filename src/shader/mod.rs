@@ -32,8 +32,6 @@ pub use technique::{Demands, HostLook, ShadowCasters, Technique};
 pub use textures::{with_constant_textures, with_varying_textures};
 #[cfg(feature = "other-shaders")]
 pub(crate) use variant::Outside;
-#[cfg(feature = "other-shaders")]
-pub(crate) use variant::SPECIALITIES;
 pub use variant::{Drawn, Kind, Lights, Speciality, Variant};
 
 /// Hashes, specialisation ids and values; names as in the GLSL.

@@ -127,7 +127,8 @@ fn reachable_variants_have_modules() {
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            let has = |k: &Kind| patches || (k.walks() && *k != Kind::Walk);
+            let maps = [Kind::Boxes, Kind::WalkTiles, Kind::WalkPixels];
+            let has = |k: &Kind| patches || maps.contains(k);
             for kind in kinds.into_iter().filter(has) {
                 let variant = Variant::general(any(solver, planes));
                 assert!(words(&variant.module(kind)).is_some(), "{variant:?}");

@@ -87,12 +87,6 @@ impl Kind {
             Self::WalkTiles | Self::WalkPixels => Entry::WalkTiles,
         }
     }
-
-    /// True if its invocations walk the tree of patches, or search a map.
-    #[cfg(test)]
-    pub const fn walks(self) -> bool {
-        self.entry().searches()
-    }
 }
 
 /// Upper limit of lights: the value of `LIGHTS`.
@@ -151,11 +145,6 @@ pub struct Speciality {
     pub single: bool,
 }
 
-/// The names of the members of [`Speciality`], in order.
-#[cfg(feature = "other-shaders")]
-pub(crate) const SPECIALITIES: [&str; 5] =
-    ["lights", "one-object", "outside", "depths", "single-cells"];
-
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
 
@@ -163,7 +152,7 @@ impl Speciality {
     /// The members of a set, with bits in the order of the members; the others promise nothing.
     fn only(self, set: u32) -> Self {
         let mut only = Self::GENERAL;
-        for (bit, member) in Self::MEMBERS.iter().enumerate() {
+        for (bit, (_, member)) in Self::MEMBERS.iter().enumerate() {
             if set >> bit & 1 != 0 {
                 member(&mut only, self);
             }
@@ -171,13 +160,13 @@ impl Speciality {
         only
     }
 
-    /// Copies each member from another value, in order.
-    const MEMBERS: [fn(&mut Self, Self); 5] = [
-        |to, from| to.lights = from.lights,
-        |to, from| to.drawn = from.drawn,
-        |to, from| to.outside = from.outside,
-        |to, from| to.depths = from.depths,
-        |to, from| to.single = from.single,
+    /// The name of each member, and a function that copies it from another value, in order.
+    pub(crate) const MEMBERS: [(&'static str, fn(&mut Self, Self)); 5] = [
+        ("lights", |to, from| to.lights = from.lights),
+        ("one-object", |to, from| to.drawn = from.drawn),
+        ("outside", |to, from| to.outside = from.outside),
+        ("depths", |to, from| to.depths = from.depths),
+        ("single-cells", |to, from| to.single = from.single),
     ];
 
     pub const GENERAL: Self = Self {

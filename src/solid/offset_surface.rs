@@ -6,7 +6,7 @@ use crate::search::{Reads, Search, SearchTable};
 use crate::solid::contour::OffsetContour;
 use crate::solid::proxy_hull::GpuProxyHull;
 use crate::solid::tables;
-use crate::surface::{FitOptions, QuadricPatch, fit_patches};
+use crate::surface::{FitOptions, QuadricPatch, extent, fit_patches};
 use range_alloc::RangeAllocator;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -105,10 +105,7 @@ impl OffsetSurface {
             Ok(match self.recipe {
                 Recipe::Patches { tolerance, .. } => {
                     let patches = fit_patches(contour, &FitOptions { tolerance });
-                    let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
-                    let extent = patches.iter().fold(none, |m, p| {
-                        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-                    });
+                    let extent = extent(&patches);
                     Made::Patches(patches, extent)
                 }
                 Recipe::Table { search, rows } => Made::Table(match search.reads {

@@ -71,16 +71,10 @@ impl ContourSource {
             return Err(Error::new(ErrorKind::TooLarge, message));
         }
         if !segments.iter().all(|s| s.a.is_finite() && s.b.is_finite()) {
-            return Err(Error::new(
-                ErrorKind::Content,
-                "a point of the outline is not finite; give numbers",
-            ));
+            return fault("a point of the outline is not finite; give numbers");
         }
         if segments.is_empty() {
-            return Err(Error::new(
-                ErrorKind::Content,
-                "the profile has no surface; give one with a solid part off the axis",
-            ));
+            return fault("the profile has no surface; give one with a solid part off the axis");
         }
         let tree = Tree::new(&segments);
         Ok(Self {
@@ -117,12 +111,12 @@ impl ContourSource {
                 }))
             })
         };
-        found.map(|chains| Contour { chains }).ok_or_else(|| {
-            Error::new(
-                ErrorKind::Content,
+        match found {
+            Some(chains) => Ok(Contour { chains }),
+            None => fault(
                 "the contour does not close; give loops that do not cross, and finite offsets",
-            )
-        })
+            ),
+        }
     }
 
     fn plain(&self) -> Segments {
@@ -161,6 +155,10 @@ impl ContourSource {
         layer(e + b, -b, 1.0 - c, 1.0);
         parts
     }
+}
+
+fn fault<T>(message: &str) -> Result<T> {
+    Err(Error::new(ErrorKind::Content, message))
 }
 
 fn close(mut parts: Segments) -> Option<Vec<Chain>> {

@@ -112,6 +112,14 @@ pub struct QuadricPatch {
     pub next: Option<u32>,
 }
 
+/// Largest radius, least and largest `z` of patches.
+pub(crate) fn extent(patches: &[QuadricPatch]) -> [f64; 3] {
+    let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
+    patches.iter().fold(none, |m, p| {
+        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
+    })
+}
+
 impl QuadricPatch {
     /// `r^2` on the quadric at height `z`; NaN for a plane, which has none.
     pub fn square_at(&self, z: f64) -> f64 {

@@ -194,11 +194,6 @@ mod tests {
     /// those modules.
     #[test]
     fn descriptors_are_those_of_the_shaders() {
-        const VARIABLE: u32 = 59;
-        const POINTER: u32 = 32;
-        const SAMPLED: u32 = 27;
-        const IMAGE: u32 = 25;
-        const ARRAY: u32 = 28;
         let mut seen = BTreeMap::new();
         for module in modules() {
             let words = words(&module).unwrap();
@@ -225,21 +220,24 @@ mod tests {
                     .find(|(code, w)| is_type(*code) && w[0] == id)
                     .unwrap()
             };
-            for (_, w) in all.iter().filter(|(code, _)| *code == VARIABLE) {
-                let (Some(set), Some(binding)) = (decorated(w[1], 34), decorated(w[1], 33)) else {
+            for (_, w) in all.iter().filter(|(code, _)| *code == op::VARIABLE) {
+                let (Some(set), Some(binding)) = (
+                    decorated(w[1], op::DESCRIPTOR_SET),
+                    decorated(w[1], op::BINDING),
+                ) else {
                     continue;
                 };
                 let (code, pointer) = defined(w[0]);
-                assert_eq!(*code, POINTER);
+                assert_eq!(*code, op::TYPE_POINTER);
                 let mut of = defined(pointer[2]);
-                if of.0 == ARRAY {
+                if of.0 == op::TYPE_ARRAY {
                     of = defined(of.1[1]);
                 }
                 use ash::vk::DescriptorType as T;
                 let wanted: &[T] = match (w[2], of.0) {
-                    (_, IMAGE) if is_view(of) => &[T::UNIFORM_TEXEL_BUFFER],
-                    (_, SAMPLED) => &[T::COMBINED_IMAGE_SAMPLER],
-                    (_, IMAGE) => &[T::STORAGE_IMAGE],
+                    (_, op::TYPE_IMAGE) if is_view(of) => &[T::UNIFORM_TEXEL_BUFFER],
+                    (_, op::TYPE_SAMPLED_IMAGE) => &[T::COMBINED_IMAGE_SAMPLER],
+                    (_, op::TYPE_IMAGE) => &[T::STORAGE_IMAGE],
                     (2, _) => &[T::UNIFORM_BUFFER, T::UNIFORM_BUFFER_DYNAMIC],
                     _ => &[T::STORAGE_BUFFER],
                 };
@@ -266,8 +264,7 @@ mod tests {
         image[2] == BUFFER
     }
 
-    /// True if an opcode defines a type.
     fn is_type(code: u32) -> bool {
-        (19..=39).contains(&code)
+        (op::TYPE_VOID..=op::TYPE_LAST).contains(&code)
     }
 }

@@ -12,7 +12,7 @@ use crate::gpu::vk::descriptors;
 use crate::gpu::vk::output::{HostShading, Output, PassFormats, PassKind};
 use crate::shader::Pushed;
 #[cfg(feature = "other-shaders")]
-use crate::shader::SPECIALITIES;
+use crate::shader::Speciality;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID, TEXELS_ID};
 use crate::shader::{Kind, Variant};
 use crate::shading::Shading;
@@ -249,13 +249,14 @@ fn specialities() -> Result<u32> {
     let Ok(names) = std::env::var(VARIABLE) else {
         return Ok(u32::MAX);
     };
-    let names = names.split(',').filter(|name| !name.is_empty());
-    names.into_iter().try_fold(0, |set, name| {
-        let bit = SPECIALITIES.iter().position(|known| *known == name);
+    let known = Speciality::MEMBERS.map(|(name, _)| name);
+    let mut names = names.split(',').filter(|name| !name.is_empty());
+    names.try_fold(0, |set, name| {
+        let bit = known.iter().position(|known| *known == name);
         bit.map(|bit| set | 1 << bit).ok_or_else(|| {
             let message = format!(
                 "there is no speciality {name}; there are {}",
-                SPECIALITIES.join(", ")
+                known.join(", ")
             );
             Error::new(ErrorKind::Usage, message).at_key(VARIABLE)
         })
