@@ -35,13 +35,18 @@ impl ColorMap {
             [r, g, b, alpha]
         };
         let light = collected(texels.iter().map(premultiplied), "the light of a texture")?;
-        let light = mips::chain(width, height, light)?;
         // The full size is stored unchanged, including the colours of transparent texels.
         let full = Level {
             width,
             height,
             texels,
         };
+        Self::with_smaller(full, light)
+    }
+
+    /// Levels of a full size with this light.
+    fn with_smaller(full: Level<[u8; 4]>, light: Vec<[f32; 4]>) -> Result<Self> {
+        let light = mips::chain(full.width, full.height, light)?;
         let smaller = light[1..].iter().map(|level| level.map(from_light));
         let levels: Result<_> = std::iter::once(Ok(full)).chain(smaller).collect();
         Ok(Self { levels: levels? })
@@ -68,13 +73,11 @@ impl ColorMap {
             let [below_r, below_g, below_b] = color;
             [light(r, below_r), light(g, below_g), light(b, below_b), 1.0]
         };
-        let full = self.levels.first().map(|level| level.map(opaque));
-        let light = full.transpose()?;
-        let light = light.map(|full| mips::chain(full.width, full.height, full.texels));
-        let light = light.transpose()?;
-        let levels = light.iter().flatten().map(|level| level.map(from_light));
-        let levels: Result<_> = levels.collect();
-        Ok(Self { levels: levels? })
+        let Some(full) = self.levels.first() else {
+            return Ok(self.clone());
+        };
+        let light = full.map(opaque)?;
+        Self::with_smaller(light.map(from_light)?, light.texels)
     }
 
     /// Texels across and down of the full size.

@@ -49,24 +49,30 @@ fn port([x, y, width, height]: [f64; 4]) -> Viewport {
     }
 }
 
-/// The view from 6 units away, of 90 degrees in perspective. `up`: 1 if `y` points downwards.
-fn view_of(viewport: Viewport, parallel: bool, order: DepthOrder) -> Result<View> {
-    let up = viewport.height.signum();
-    let look = DMat4::from_translation(DVec3::new(6.0, 0.0, -0.5));
-    let deep = 1000.0 / 999.9;
-    let (z, w, last) = match (parallel, order) {
-        (false, DepthOrder::Normal) => (deep, -0.1 * deep, DVec4::X),
-        (false, DepthOrder::Reversed) => (0.0, 0.1, DVec4::X),
-        (true, DepthOrder::Normal) => (1e-3, 0.0, DVec4::W),
-        (true, DepthOrder::Reversed) => (-1e-3, 1.0, DVec4::W),
-    };
-    let lens = DMat4::from_cols(
+/// A projection along x with this row of depths, and with the row of perspective or of parallel rays.
+/// `up`: 1 if `y` points downwards.
+fn lens(up: f64, [z, w]: [f64; 2], parallel: bool) -> DMat4 {
+    DMat4::from_cols(
         DVec4::new(0.0, -1.0, 0.0, 0.0),
         DVec4::new(0.0, 0.0, -up, 0.0),
         DVec4::new(z, 0.0, 0.0, w),
-        last,
-    );
-    View::from_matrices(look, lens.transpose(), viewport, order)
+        if parallel { DVec4::W } else { DVec4::X },
+    )
+    .transpose()
+}
+
+/// The view from 6 units away, of 90 degrees in perspective.
+fn view_of(viewport: Viewport, parallel: bool, order: DepthOrder) -> Result<View> {
+    let look = DMat4::from_translation(DVec3::new(6.0, 0.0, -0.5));
+    let deep = 1000.0 / 999.9;
+    let depths = match (parallel, order) {
+        (false, DepthOrder::Normal) => [deep, -0.1 * deep],
+        (false, DepthOrder::Reversed) => [0.0, 0.1],
+        (true, DepthOrder::Normal) => [1e-3, 0.0],
+        (true, DepthOrder::Reversed) => [-1e-3, 1.0],
+    };
+    let lens = lens(viewport.height.signum(), depths, parallel);
+    View::from_matrices(look, lens, viewport, order)
 }
 
 fn planned(view: &View) -> FramePlan {
@@ -138,20 +144,8 @@ fn check(view: &View) -> u32 {
 }
 
 fn number() -> impl Strategy<Value = f64> {
-    let odd = vec![
-        0.0,
-        -0.0,
-        1e-9,
-        -1e-9,
-        1e-300,
-        1e9,
-        -1e9,
-        1e300,
-        -1e300,
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-    ];
+    let sizes = [0.0, 1e-9, 1e-300, 1e9, 1e300, f64::INFINITY, f64::NAN];
+    let odd: Vec<f64> = sizes.into_iter().flat_map(|size| [size, -size]).collect();
     prop_oneof![
         6 => -900.0..900.0f64,
         2 => (-60i32..60).prop_map(|n| 8.0 * f64::from(n)),
@@ -285,25 +279,21 @@ fn view_of_range(of: Range, parallel: bool, order: DepthOrder) -> Result<View> {
     let (near, [first, last]) = (0.1, of.ends);
     let deep = of.far - near;
     // Depth is (z x + w) / x in perspective, z x + w for parallel rays.
-    let (z, w, bottom) = match (parallel, of.far.is_finite()) {
-        (true, _) => (
-            (last - first) / deep,
-            first - near * (last - first) / deep,
-            DVec4::W,
-        ),
+    let slope = (last - first) / deep;
+    let depths = match (parallel, of.far.is_finite()) {
+        (true, _) => [slope, first - near * slope],
         (_, true) => {
             let z = (of.far * last - near * first) / deep;
-            (z, near * (first - z), DVec4::X)
+            [z, near * (first - z)]
         }
-        (_, false) => (last, near * (first - last), DVec4::X),
+        (_, false) => [last, near * (first - last)],
     };
-    let lens = DMat4::from_cols(
-        DVec4::new(0.0, -1.0, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, -1.0, 0.0),
-        DVec4::new(z, 0.0, 0.0, w),
-        bottom,
-    );
-    View::from_matrices(DMat4::IDENTITY, lens.transpose(), port(WHOLE), order)
+    View::from_matrices(
+        DMat4::IDENTITY,
+        lens(1.0, depths, parallel),
+        port(WHOLE),
+        order,
+    )
 }
 
 /// A projection whose depth runs against the order of the pass is refused, whatever its rays, its far

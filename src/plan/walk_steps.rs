@@ -198,6 +198,7 @@ impl FramePlan {
                 instance: of.first_instance,
                 ..Pushed::default()
             };
+            let beginning = |first| Pushed { first, ..pushed };
             let step = |phase, kind, call| Step {
                 phase,
                 variant: shown.variant.of_kind(kind),
@@ -208,15 +209,10 @@ impl FramePlan {
             if let Some(open) = open {
                 let from = self.open_pixels.len() as u32;
                 open.add_within(shown.pixels, &mut self.open_pixels);
-                for first in chunks(
-                    from..self.open_pixels.len() as u32,
-                    MOST_GROUPS * TILE_PIXELS,
-                ) {
-                    let pushed = Pushed {
-                        first: first.start,
-                        ..pushed
-                    };
-                    let call = Call::Groups(first.len() as u32 / TILE_PIXELS, pushed);
+                let all = from..self.open_pixels.len() as u32;
+                for pixels in chunks(all, MOST_GROUPS * TILE_PIXELS) {
+                    let groups = pixels.len() as u32 / TILE_PIXELS;
+                    let call = Call::Groups(groups, beginning(pixels.start));
                     draws.push(step(phase, Kind::WalkPixels, call));
                 }
                 continue;
@@ -227,11 +223,7 @@ impl FramePlan {
                     _ => Kind::WalkTiles,
                 };
                 for tiles in chunks(0..across * down, MOST_GROUPS) {
-                    let pushed = Pushed {
-                        first: tiles.start,
-                        ..pushed
-                    };
-                    let call = Call::Groups(tiles.len() as u32, pushed);
+                    let call = Call::Groups(tiles.len() as u32, beginning(tiles.start));
                     draws.push(step(phase, kind, call));
                 }
                 continue;
@@ -243,11 +235,10 @@ impl FramePlan {
             for blocks in chunks(0..shown.blocks(), MOST_BLOCKS) {
                 let room = blocks.len() as u32 * TILE_PIXELS;
                 let lists = Pushed {
-                    first: blocks.start,
                     heads: head,
                     tiles: self.bin_vectors,
                     room,
-                    ..pushed
+                    ..beginning(blocks.start)
                 };
                 let call = Call::Groups(blocks.len() as u32, lists);
                 self.steps.push(step(0, makes, call));

@@ -111,9 +111,13 @@ impl Outline {
     /// The point of the solid's surface nearest to `p`; `None` when there is no surface.
     #[must_use]
     pub fn nearest(&self, p: DVec2) -> Option<DVec2> {
-        self.surface_segments()
-            .map(|s| s.nearest(p).0)
-            .min_by(|x, y| x.distance_squared(p).total_cmp(&y.distance_squared(p)))
+        self.nearest_segment(p).map(|(_, nearest)| nearest)
+    }
+
+    /// The segment of the surface nearest to `p`, with its nearest point.
+    fn nearest_segment(&self, p: DVec2) -> Option<(Segment, DVec2)> {
+        let all = self.surface_segments().map(|s| (s, s.nearest(p).0));
+        all.min_by(|(_, x), (_, y)| x.distance_squared(p).total_cmp(&y.distance_squared(p)))
     }
 
     /// Exact signed Euclidean distance of `p = (r, z)`, `r >= 0`, to the surface, object units,
@@ -134,14 +138,10 @@ impl Outline {
     /// that segment. `(0, 0)` when there is no surface.
     #[must_use]
     pub fn gradient(&self, p: DVec2) -> DVec2 {
-        let nearest = self.surface_segments().min_by(|x, y| {
-            let distance = |s: &Segment| s.nearest(p).0.distance_squared(p);
-            distance(x).total_cmp(&distance(y))
-        });
-        let Some(segment) = nearest else {
+        let Some((segment, nearest)) = self.nearest_segment(p) else {
             return DVec2::ZERO;
         };
-        let away = p - segment.nearest(p).0;
+        let away = p - nearest;
         // The direction of a shorter difference is rounding noise.
         if away.length_squared() < 1e-24 {
             return -(segment.b - segment.a).perp().normalize_or_zero();

@@ -175,7 +175,8 @@ impl Technique {
         };
         let mut all = vec![self];
         match self.external {
-            _ if self.reads_tables() => {}
+            Some(one) if one.reads_table() => {}
+            None if self.search == SearchCode::Quadric => {}
             None => all.push(twin(None)),
             Some(one) => all.extend(one.by_bevel(beveled).map(|one| twin(Some(one)))),
         }
@@ -187,19 +188,9 @@ impl Technique {
         !self.replicas && self.shadow == g::SHADOW_OFF
     }
 
-    /// True if its search walks tables.
-    pub fn reads_tables(&self) -> bool {
-        self.search == SearchCode::Quadric || self.external.is_some_and(External::reads_table)
-    }
-
     /// True if the number of lights makes another pipeline.
     pub const fn is_lit(&self) -> bool {
-        self.is_shaded() && self.shadow == g::SHADOW_OFF
-    }
-
-    /// True if colours are stored, not only depths.
-    pub const fn is_shaded(&self) -> bool {
-        !matches!(self.output, Stored::Depth)
+        !matches!(self.output, Stored::Depth) && self.shadow == g::SHADOW_OFF
     }
 }
 

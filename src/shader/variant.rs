@@ -60,19 +60,6 @@ impl Kind {
         )
     }
 
-    /// Patches that each pixel tests; the longest list for other kinds.
-    const fn list_length(self) -> u32 {
-        match self {
-            Self::TilePatches(length) => length,
-            _ => g::LONGEST_LIST,
-        }
-    }
-
-    /// True if it makes what other kinds draw from.
-    pub const fn makes_lists(self) -> bool {
-        self.entry().makes_lists()
-    }
-
     /// The entry file of its fragments, or of its compute invocations.
     const fn entry(self) -> Entry {
         match self {
@@ -208,7 +195,7 @@ impl Variant {
     pub fn of_kind(self, kind: Kind) -> Self {
         let technique = self.technique;
         let mut speciality = self.speciality;
-        let lists = kind.makes_lists();
+        let lists = kind.entry().makes_lists();
         if lists || !technique.is_lit() {
             speciality.lights = Lights::Any;
         }
@@ -259,21 +246,18 @@ impl Variant {
         Some(Module::plain(entry))
     }
 
-    const fn repeats_patches(&self) -> bool {
-        self.technique.replicas && matches!(self.technique.search, SearchCode::Quadric)
-    }
-
     /// The module of its fragments, or of its compute invocations.
     pub const fn module(&self, kind: Kind) -> Module {
+        let (search, output) = (self.technique.search, self.technique.output);
+        let repeats_patches = self.technique.replicas && matches!(search, SearchCode::Quadric);
         let entry = match kind.entry() {
             // Without the code of replicas walks take 64 registers in place of 72 on RDNA2.
-            Entry::WalkTiles if self.repeats_patches() => Entry::WalkReplicas,
+            Entry::WalkTiles if repeats_patches => Entry::WalkReplicas,
             entry => entry,
         };
         if entry.makes_lists() {
             return Module::plain(entry);
         }
-        let (search, output) = (self.technique.search, self.technique.output);
         // Fragments write their colour as the only plane of a list.
         let listed = matches!(output, Stored::Color) && !matches!(search, SearchCode::External);
         Module {
@@ -291,6 +275,10 @@ impl Variant {
     pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
+        let list_length = match kind {
+            Kind::TilePatches(length) => length,
+            _ => g::LONGEST_LIST,
+        };
         [
             (g::REPLICAS_ID, technique.replicas.into()),
             (g::SHADOW_ID, technique.shadow),
@@ -305,7 +293,7 @@ impl Variant {
             (g::ORTHO_ID, technique.parallel.into()),
             (g::DEPTHS_ID, speciality.depths.into()),
             (g::LIGHTS_ID, speciality.lights as u32),
-            (g::LIST_LENGTH_ID, kind.list_length()),
+            (g::LIST_LENGTH_ID, list_length),
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
             (g::OPEN_PIXELS_ID, u32::from(kind == Kind::WalkPixels)),
             (g::OUTSIDE_ID, speciality.outside as u32),

@@ -146,19 +146,18 @@ impl Shading {
 
     /// `(set, binding)` of all descriptors that its compiled modules read.
     pub(crate) fn bindings(&self) -> BTreeSet<(u32, u32)> {
-        let compiled = self.modules.iter().filter_map(|(_, words)| words.get());
-        let words = compiled.filter_map(|words| words.as_deref().ok());
-        words.flat_map(bindings).collect()
+        self.compiled().flat_map(bindings).collect()
     }
 
     /// The largest number of textures of a set that one of its compiled modules reads.
     pub(crate) fn textures(&self, set: u32) -> u32 {
+        let counts = self.compiled().map(|words| textures(words, set));
+        counts.max().unwrap_or_default()
+    }
+
+    fn compiled(&self) -> impl Iterator<Item = &[u32]> {
         let compiled = self.modules.iter().filter_map(|(_, words)| words.get());
-        let words = compiled.filter_map(|words| words.as_deref().ok());
-        words
-            .map(|words| textures(words, set))
-            .max()
-            .unwrap_or_default()
+        compiled.filter_map(|words| words.as_deref().ok())
     }
 
     fn empty(stage: DrawStage) -> Self {

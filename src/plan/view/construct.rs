@@ -113,14 +113,13 @@ impl View {
             return Err(wrong("the matrices are not finite; give finite numbers"));
         }
         let inverse = clip_from_world.inverse();
-        let w_row = clip_from_world.transpose().w_axis;
-        if w_row.truncate().length() < 1e-12 * w_row.w.abs() {
+        let rows = clip_from_world.transpose();
+        let (z_row, forward) = (rows.z_axis, rows.w_axis.truncate());
+        if forward.length() < 1e-12 * rows.w_axis.w.abs() {
             return Self::parallel(clip_from_world, viewport, order);
         }
         let eye = view.inverse().w_axis;
         let eye = eye.truncate() / eye.w;
-        let rows = clip_from_world.transpose();
-        let (z_row, forward) = (rows.z_axis, rows.w_axis.truncate());
         if forward.length() < 1e-12 || !inverse.is_finite() || !eye.is_finite() {
             return Err(wrong(
                 "the projection is not of perspective; give one whose last row looks along the view",
