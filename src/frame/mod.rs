@@ -301,20 +301,15 @@ mod tests {
         (searched.steps[0], searched.distance[6]) = (1.0, 2.0);
         let found = base.first_difference(&searched).unwrap().to_string();
         assert!(found.starts_with("Z at pixel (2, 1)"), "{found}");
+        // Beyond the end there are no pixels.
+        let beyond = base.pixels();
+        other.clone_from(&base);
+        other.set_pixel(beyond, [1.0; 17]);
+        assert_eq!((other.pixel(beyond), &other), ([0.0; 17], &base));
         let wide = Frame::new(5, 3, [0.0; 4]).unwrap();
         assert_eq!(
             base.first_difference(&wide).unwrap().to_string(),
             "sizes differ: 4x3 and 5x3"
         );
-    }
-
-    #[test]
-    fn set_and_get_agree() {
-        let mut frame = Frame::new(2, 2, [0.0; 4]).unwrap();
-        let value: [f32; 17] = std::array::from_fn(|i| i as f32 + 0.5);
-        frame.set_pixel(3, value);
-        assert_eq!(frame.pixel(3), value);
-        frame.set_pixel(4, value);
-        assert_eq!(frame.pixel(4), [0.0; 17]);
     }
 }

@@ -153,18 +153,17 @@ impl Entry {
         }
     }
 
-    /// The object that will be drawn, with earlier placements; before its boundary is made, the
-    /// object as set.
-    pub fn shape(&self) -> &Object {
+    /// The object that will be drawn, with earlier placements, and the growth of its box; before its
+    /// boundary is made, the object as set.
+    pub fn shape(&self) -> (&Object, Growth) {
         let grown = self.boundary.as_ref().and_then(|b| b.grown.as_ref());
-        grown.map_or(&self.set.object, |grown| &grown.object)
+        shape(grown, &self.set.object)
     }
+}
 
-    /// The growth of the box with the offset.
-    pub fn growth(&self) -> Growth {
-        let grown = self.boundary.as_ref().and_then(|b| b.grown.as_ref());
-        grown.map(|grown| grown.growth).unwrap_or_default()
-    }
+/// The object that is drawn in place of another, and the growth of its box.
+pub(super) fn shape<'a>(grown: Option<&'a GrownObject>, own: &'a Object) -> (&'a Object, Growth) {
+    grown.map_or((own, Growth::default()), |g| (&g.object, g.growth))
 }
 
 impl Deref for PreparedObject {
@@ -201,12 +200,12 @@ impl PreparedObject {
 
     /// The object in a box that cuts nothing.
     pub fn drawn(&self) -> &Object {
-        self.grown.as_ref().map_or(&self.object, |g| &g.object)
+        shape(self.grown.as_ref(), &self.object).0
     }
 
     /// The growth of the box with the offset.
     pub fn growth(&self) -> Growth {
-        self.grown.as_ref().map(|g| g.growth).unwrap_or_default()
+        shape(self.grown.as_ref(), &self.object).1
     }
 
     /// The coarsest level that a view needed; `None` before the first view.

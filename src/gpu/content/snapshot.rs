@@ -2,7 +2,7 @@
 //! contours, maps, textures and techniques. An object's resources follow from the object and from
 //! [`SceneFacts`]. They are made anew for changed objects, and for all objects if those facts change.
 
-use super::entry::{Boundary, Derived, Entry, PreparedObject, Stale};
+use super::entry::{Boundary, Derived, Entry, PreparedObject, Stale, shape};
 use super::objects::{Objects, named};
 use crate::error::{Error, Result, content, lock};
 use crate::gpu::resources::geometry::Geometry;
@@ -119,10 +119,7 @@ pub(in crate::gpu) fn find_boundaries(
     let (mut contours, mut tables) = (Vec::new(), Vec::new());
     for entry in objects.entries_mut().filter(|e| e.boundary.is_none()) {
         let grown = geometry.solids.grown.grown(&entry.set.object);
-        let growth = grown.as_ref().map(|grown| grown.growth).unwrap_or_default();
-        let object = grown
-            .as_ref()
-            .map_or(&entry.set.object, |grown| &grown.object);
+        let (object, growth) = shape(grown.as_ref(), &entry.set.object);
         let solid = geometry.solids.get(&object.profile);
         let (mut contour, mut table) = (None, None);
         if solver.follows_tolerance() {
@@ -225,8 +222,8 @@ fn find_map(
     {
         return Ok(None);
     }
-    let object = entry.shape();
-    let key = MapKey::new(object, &entry.growth(), settings);
+    let (object, growth) = entry.shape();
+    let key = MapKey::new(object, &growth, settings);
     textures.shape(&object.profile, key).map(Some)
 }
 
@@ -253,11 +250,11 @@ impl Maker<'_> {
             self.note_fallback(position, &entry.set.object.name, error);
         }
         let settings = self.demands.settings;
-        let object = entry.shape();
+        let (object, growth) = entry.shape();
         let solver = self.facts.solver_of(boundary, settings.solver);
         check_format(&entry.set.object, solver, settings)?;
         let map_facts = map.as_ref().map_or_else(
-            || MapKey::new(object, &entry.growth(), settings).unbaked(&object.profile),
+            || MapKey::new(object, &growth, settings).unbaked(&object.profile),
             |map| map.facts,
         );
         let arc = if object.texturing.projection == Projection::Arc {

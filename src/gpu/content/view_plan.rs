@@ -9,7 +9,7 @@ use crate::plan::precedence::{Body, Precedence, flats};
 use crate::plan::walk::Walks;
 use crate::plan::{Conditions, FramePlan, OpenPixels, PlanObject, View, shape_of};
 use crate::settings::Tolerance;
-use crate::shader::{InstanceBlock, Technique};
+use crate::shader::Technique;
 use crate::solid::offset_surface::{OffsetSurface, Part};
 use std::ops::Range;
 use std::sync::Arc;
@@ -46,11 +46,6 @@ impl PlannedObject {
         stored
             .reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
             .unwrap_or_default()
-    }
-
-    /// The number of a copy's surface among all.
-    pub fn surface_of(&self, copy: &InstanceBlock) -> usize {
-        (self.levels.as_ref()).map_or(0, |levels| levels.of_block(copy))
     }
 
     /// The object in the form that a plan reads. `look_copies`: number of copies of its look.

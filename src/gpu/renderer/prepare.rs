@@ -291,7 +291,8 @@ impl Renderer {
                 to.write_instances(first, count, |copy| {
                     let mut block = instance_block(drawn, &placements[copy], number, view);
                     block.lag = plan.precedence.lag(first + copy as u32, &block, view);
-                    let starts = starts.get(planned.surface_of(&block));
+                    let levels = planned.levels.as_ref();
+                    let starts = starts.get(levels.map_or(0, |levels| levels.of_block(&block)));
                     [block.listed, block.table] = *starts.unwrap_or(&[0; 2]);
                     block
                 })?;

@@ -4,17 +4,13 @@
 mod cache;
 mod compile;
 
-#[cfg(feature = "other-shaders")]
-use crate::error::{Error, ErrorKind};
-use crate::error::{Result, lock};
+use crate::error::{Result, lock, usage};
 use crate::gpu::vk::call::Call;
 use crate::gpu::vk::descriptors;
 use crate::gpu::vk::output::{HostShading, Output, PassFormats, PassKind};
 use crate::shader::Pushed;
-#[cfg(feature = "other-shaders")]
-use crate::shader::Speciality;
 use crate::shader::generated::{FETCHED_CELLS_ID, LARGE_POINTS_ID, OWN_VECTORS_ID, TEXELS_ID};
-use crate::shader::{Kind, Variant};
+use crate::shader::{Kind, Speciality, Variant};
 use crate::shading::Shading;
 use ash::vk;
 use std::collections::HashMap;
@@ -236,30 +232,22 @@ impl Pipelines {
     }
 }
 
-/// The specialities that frames may use: all, or those that the environment names.
-#[cfg(not(feature = "other-shaders"))]
-const fn specialities() -> Result<u32> {
-    Ok(u32::MAX)
-}
-
-/// The specialities that frames may use: all, or those that the environment names.
-#[cfg(feature = "other-shaders")]
+/// The specialities that frames may use: all, or those that the environment names for measurements.
 fn specialities() -> Result<u32> {
     const VARIABLE: &str = "REVMAP_SPECIALITIES";
-    let Ok(names) = std::env::var(VARIABLE) else {
+    let set = std::env::var(VARIABLE).ok();
+    let Some(names) = set.filter(|_| cfg!(feature = "other-shaders")) else {
         return Ok(u32::MAX);
     };
     let known = Speciality::MEMBERS.map(|(name, _)| name);
     let mut names = names.split(',').filter(|name| !name.is_empty());
     names.try_fold(0, |set, name| {
-        let bit = known.iter().position(|known| *known == name);
-        bit.map(|bit| set | 1 << bit).ok_or_else(|| {
-            let message = format!(
-                "there is no speciality {name}; there are {}",
-                known.join(", ")
-            );
-            Error::new(ErrorKind::Usage, message).at_key(VARIABLE)
-        })
+        let Some(bit) = known.iter().position(|known| *known == name) else {
+            let known = known.join(", ");
+            let message = format!("there is no speciality {name}; there are {known}");
+            return usage(VARIABLE, message);
+        };
+        Ok(set | 1 << bit)
     })
 }
 
