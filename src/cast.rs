@@ -128,7 +128,7 @@ impl RayCaster {
     /// solid is left.
     #[must_use]
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let [radius, low, high] = extent(&self.patches);
+        let [[_, radius], [low, high]] = extent(&self.patches);
         let side = self.object.profile.radius;
         if self.object.repeat != [1; 3] {
             let whole = [[-side, side], [-side, side], [0.0, 1.0]];

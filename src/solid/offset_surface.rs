@@ -105,8 +105,8 @@ impl OffsetSurface {
             Ok(match self.recipe {
                 Recipe::Patches { tolerance, .. } => {
                     let patches = fit_patches(contour, &FitOptions { tolerance });
-                    let extent = extent(&patches);
-                    Made::Patches(patches, extent)
+                    let [[_, widest], [low, high]] = extent(&patches);
+                    Made::Patches(patches, [widest, low, high])
                 }
                 Recipe::Table { search, rows } => Made::Table(match search.reads {
                     Reads::Table(make) => make(contour, rows)?,

@@ -18,7 +18,7 @@
 //! that height is wholly outside the projection, or around it. The bounds are linear in `z`, so it
 //! is enough to test a cell's ends.
 
-use super::QuadricPatch;
+use super::{QuadricPatch, extent};
 use glam::DVec2;
 use std::ops::Range;
 
@@ -132,15 +132,6 @@ impl Place {
         let around = self.r[0] - MARGIN > bounds[0][1].max(bounds[1][1]);
         beyond || around
     }
-}
-
-/// Least and largest `r`, then `z`.
-fn extent(patches: &[QuadricPatch]) -> [[f64; 2]; 2] {
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let join = |[low, high]: [f64; 2], with: [f64; 2]| [low.min(with[0]), high.max(with[1])];
-    patches
-        .iter()
-        .fold([none; 2], |[r, z], p| [join(r, p.r), join(z, p.z)])
 }
 
 /// The lining that begins at patch `at`; empty if none begins there.

@@ -112,12 +112,13 @@ pub struct QuadricPatch {
     pub next: Option<u32>,
 }
 
-/// Largest radius, least and largest `z` of patches.
-pub(crate) fn extent(patches: &[QuadricPatch]) -> [f64; 3] {
-    let none = [0.0f64, f64::INFINITY, f64::NEG_INFINITY];
-    patches.iter().fold(none, |m, p| {
-        [m[0].max(p.r[1]), m[1].min(p.z[0]), m[2].max(p.z[1])]
-    })
+/// Least and largest `r`, then `z`, of patches.
+pub(crate) fn extent(patches: &[QuadricPatch]) -> [[f64; 2]; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let join = |[low, high]: [f64; 2], with: [f64; 2]| [low.min(with[0]), high.max(with[1])];
+    patches
+        .iter()
+        .fold([none; 2], |[r, z], p| [join(r, p.r), join(z, p.z)])
 }
 
 impl QuadricPatch {
