@@ -69,14 +69,8 @@ impl std::fmt::Display for Difference {
                 channel,
                 x,
                 y,
-                values,
-            } => {
-                write!(
-                    f,
-                    "{channel} at pixel ({x}, {y}): {:?} and {:?}",
-                    values[0], values[1]
-                )
-            }
+                values: [a, b],
+            } => write!(f, "{channel} at pixel ({x}, {y}): {a:?} and {b:?}"),
         }
     }
 }
@@ -199,15 +193,13 @@ pub fn pixel_count(width: u32, height: u32) -> Result<usize> {
         let message = format!("a picture of {width}x{height} has no pixels; give at least 1x1");
         return Err(Error::new(ErrorKind::Usage, message));
     }
-    match usize::try_from(pixels) {
-        Ok(count) if pixels <= MAX_PIXELS => Ok(count),
-        _ => Err(Error::new(
-            ErrorKind::TooLarge,
-            format!(
-                "a picture of {width}x{height} is too large; at most {MAX_PIXELS} pixels (16384x8192) can be drawn"
-            ),
-        )),
+    if pixels > MAX_PIXELS {
+        let message = format!(
+            "a picture of {width}x{height} is too large; at most {MAX_PIXELS} pixels (16384x8192) can be drawn"
+        );
+        return Err(Error::new(ErrorKind::TooLarge, message));
     }
+    Ok(pixels as usize)
 }
 
 /// The sRGB code value in `[0, 1]` of a linear one (IEC 61966-2-1).

@@ -266,34 +266,28 @@ fn depths_are_in_the_range_of_the_viewport() {
     }
 }
 
-/// Depths in clip space at the near and the far plane of a projection, and the distance of the far
-/// plane.
-#[derive(Clone, Copy, Debug)]
-struct Range {
-    ends: [f64; 2],
+/// A view along x through a projection whose near and far plane, which is `far` away, have these depths
+/// in clip space.
+fn view_of_range(
+    [first, last]: [f64; 2],
     far: f64,
-}
-
-/// A view along x through a projection of this range.
-fn view_of_range(of: Range, parallel: bool, order: DepthOrder) -> Result<View> {
-    let (near, [first, last]) = (0.1, of.ends);
-    let deep = of.far - near;
+    parallel: bool,
+    order: DepthOrder,
+) -> Result<View> {
+    let near = 0.1;
+    let deep = far - near;
     // Depth is (z x + w) / x in perspective, z x + w for parallel rays.
     let slope = (last - first) / deep;
-    let depths = match (parallel, of.far.is_finite()) {
+    let depths = match (parallel, far.is_finite()) {
         (true, _) => [slope, first - near * slope],
         (_, true) => {
-            let z = (of.far * last - near * first) / deep;
+            let z = (far * last - near * first) / deep;
             [z, near * (first - z)]
         }
         (_, false) => [last, near * (first - last)],
     };
-    View::from_matrices(
-        DMat4::IDENTITY,
-        lens(1.0, depths, parallel),
-        port(WHOLE),
-        order,
-    )
+    let lens = lens(1.0, depths, parallel);
+    View::from_matrices(DMat4::IDENTITY, lens, port(WHOLE), order)
 }
 
 /// A projection whose depth runs against the order of the pass is refused, whatever its rays, its far
@@ -313,10 +307,10 @@ fn projections_of_the_other_depth_order_are_refused() {
                     ([a, b], DepthOrder::Normal, DepthOrder::Reversed),
                     ([b, a], DepthOrder::Reversed, DepthOrder::Normal),
                 ] {
-                    let of = Range { ends, far };
-                    let view = view_of_range(of, parallel, order);
+                    let of = (ends, far);
+                    let view = view_of_range(ends, far, parallel, order);
                     assert!(view.is_ok(), "{parallel} {of:?} {order:?}: {view:?}");
-                    let error = view_of_range(of, parallel, other).unwrap_err();
+                    let error = view_of_range(ends, far, parallel, other).unwrap_err();
                     assert_eq!(error.kind, ErrorKind::Content);
                     assert_eq!(error.key.as_deref(), Some("view"));
                     let remedy = "give a projection for this depth order";

@@ -132,6 +132,9 @@ pub struct Speciality {
     pub single: bool,
 }
 
+/// The name of a member, and a function that copies it from another value.
+type Member = (&'static str, fn(&mut Speciality, Speciality));
+
 /// The bit of [`Speciality::lights`] in a set.
 const LIGHTS_BIT: u32 = 1;
 
@@ -147,8 +150,8 @@ impl Speciality {
         only
     }
 
-    /// The name of each member, and a function that copies it from another value, in order.
-    pub(crate) const MEMBERS: [(&'static str, fn(&mut Self, Self)); 5] = [
+    /// In order.
+    pub(crate) const MEMBERS: [Member; 5] = [
         ("lights", |to, from| to.lights = from.lights),
         ("one-object", |to, from| to.drawn = from.drawn),
         ("outside", |to, from| to.outside = from.outside),

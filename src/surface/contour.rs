@@ -212,14 +212,10 @@ fn clipped(s: &Segment) -> Option<[DVec2; 2]> {
         let r = s.a.x + (s.b.x - s.a.x) * ((z - s.a.y) / (s.b.y - s.a.y));
         DVec2::new(r, z)
     };
-    let end = |p: DVec2| {
-        if p.y < 0.0 {
-            at(0.0)
-        } else if p.y > 1.0 {
-            at(1.0)
-        } else {
-            p
-        }
+    let end = |p: DVec2| match p.y {
+        ..0.0 => at(0.0),
+        y if y > 1.0 => at(1.0),
+        _ => p,
     };
     Some([end(s.a), end(s.b)])
 }

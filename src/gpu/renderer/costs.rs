@@ -69,11 +69,8 @@ impl Renderer {
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let slots: u64 = self.slots.iter().map(|slot| slot.bytes()).sum();
-        let shared = self
-            .content
-            .geometry
-            .lock()
-            .map_or(0, |geometry| geometry.bytes());
+        let geometry = self.content.geometry.lock();
+        let shared = geometry.map_or(0, |geometry| geometry.bytes());
         self.map_bytes().iter().sum::<u64>() + shared + slots
     }
 }

@@ -180,13 +180,8 @@ impl Renderer {
     #[must_use]
     pub fn map_bytes(&self) -> [u64; 2] {
         let mut images = Vec::new();
-        for derived in self
-            .content
-            .snapshot
-            .objects
-            .iter()
-            .map(|object| &object.derived)
-        {
+        for object in &self.content.snapshot.objects {
+            let derived = &object.derived;
             images.extend(derived.map.as_ref().map(|map| map.texture.clone()));
             images.extend(derived.arc.as_ref().map(|arc| arc.texture.clone()));
         }

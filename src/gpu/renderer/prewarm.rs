@@ -112,9 +112,7 @@ impl Renderer {
         let raw = &self.device.raw;
         // No set of an object: nothing keeps those alive until the commands have run.
         let blank = &self.content.textures.blank_set;
-        let textures = blank
-            .as_ref()
-            .map_or_else(Default::default, |blank| blank.set);
+        let textures = blank.as_ref().map(|blank| blank.set).unwrap_or_default();
         let (compute, point) = match self.content.is_compute() {
             true => (true, vk::PipelineBindPoint::COMPUTE),
             false => (false, vk::PipelineBindPoint::GRAPHICS),

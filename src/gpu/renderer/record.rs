@@ -20,6 +20,14 @@ const PLACES: u32 = GROUP_PIXELS * GROUP_PIXELS;
 /// Bytes of the head of a bin, as of its tiles.
 const HEAD_BYTES: u64 = size_of::<BinTile>() as u64;
 
+/// A frame and the commands that it is recorded into.
+#[derive(Clone, Copy)]
+struct Recording<'a> {
+    cmd: vk::CommandBuffer,
+    slot: &'a FrameSlot,
+    bound: &'a BoundPlan,
+}
+
 impl Renderer {
     /// Records the draws of a prepared frame, within a pass of the output's formats.
     ///
@@ -45,9 +53,10 @@ impl Renderer {
             let indices = bound.buffers.indices.raw;
             (self.device.raw).cmd_bind_index_buffer(cmd, indices, 0, vk::IndexType::UINT32);
         }
+        let to = Recording { cmd, slot, bound };
         for (step, own) in bound.plan.frame.steps.iter().zip(&bound.steps) {
             // SAFETY: as the caller promised.
-            unsafe { self.step(cmd, slot, bound, step, own)? };
+            unsafe { self.step(to, step, own)? };
         }
         frame.end_recording(start);
         Ok(())
@@ -75,6 +84,7 @@ impl Renderer {
     ) -> Result<()> {
         let start = Instant::now();
         let (slot, bound) = self.frame(frame)?;
+        let to = Recording { cmd, slot, bound };
         let plan = &bound.plan.frame;
         let bins = slot.buffer(SlotBuffer::Bins);
         if plan.bin_heads > 0 {
@@ -96,7 +106,7 @@ impl Renderer {
                 phase = step.phase;
             }
             // SAFETY: as the caller promised.
-            unsafe { self.step(cmd, slot, bound, step, own)? };
+            unsafe { self.step(to, step, own)? };
         }
         frame.end_recording(start);
         Ok(())
@@ -135,19 +145,13 @@ impl Renderer {
     ///
     /// # Safety
     /// As for [`Renderer::record`] or [`Renderer::record_compute`], whichever takes the call.
-    unsafe fn call(
-        &self,
-        cmd: vk::CommandBuffer,
-        slot: &FrameSlot,
-        bound: &BoundPlan,
-        step: &Step,
-    ) {
-        let raw = &self.device.raw;
-        let bins = slot.buffer(SlotBuffer::Bins).raw;
+    unsafe fn call(&self, to: Recording, step: &Step) {
+        let (raw, cmd) = (&self.device.raw, to.cmd);
+        let bins = to.slot.buffer(SlotBuffer::Bins).raw;
         // SAFETY: as the caller promised; draws and heads are within their buffers.
         unsafe {
             match &step.call {
-                Call::Draws(range) => self.draw(cmd, slot, bound, range.clone()),
+                Call::Draws(range) => self.draw(to, range.clone()),
                 Call::Walk(points, root) => {
                     let large_points = self.device.chosen.constants().large_points;
                     // Without large points two triangles cover the picture.
@@ -200,24 +204,18 @@ impl Renderer {
     }
 
     /// Records draws of a plan, many by one indirect command if the device supports that.
-    unsafe fn draw(
-        &self,
-        cmd: vk::CommandBuffer,
-        slot: &FrameSlot,
-        bound: &BoundPlan,
-        range: Range<u32>,
-    ) {
-        let raw = &self.device.raw;
+    unsafe fn draw(&self, to: Recording, range: Range<u32>) {
+        let (raw, cmd) = (&self.device.raw, to.cmd);
         let most = self.device.chosen.most_draws();
         if most == 0 {
-            let draws = &bound.plan.frame.draws[range.start as usize..range.end as usize];
+            let draws = &to.bound.plan.frame.draws[range.start as usize..range.end as usize];
             for &[indices, instances, first, _, instance] in draws {
                 // SAFETY: as the caller promised.
                 unsafe { raw.cmd_draw_indexed(cmd, indices, instances, first, 0, instance) };
             }
             return;
         }
-        let draws = slot.buffer(SlotBuffer::Draws).raw;
+        let draws = to.slot.buffer(SlotBuffer::Draws).raw;
         for start in range.clone().step_by(most as usize) {
             let count = most.min(range.end - start);
             let at = u64::from(start * DRAW_BYTES);
@@ -240,14 +238,8 @@ impl Renderer {
     ///
     /// # Safety
     /// As for [`Renderer::record`] or [`Renderer::record_compute`].
-    unsafe fn step(
-        &self,
-        cmd: vk::CommandBuffer,
-        slot: &FrameSlot,
-        bound: &BoundPlan,
-        step: &Step,
-        own: &BoundStep,
-    ) -> Result<()> {
+    unsafe fn step(&self, to: Recording, step: &Step, own: &BoundStep) -> Result<()> {
+        let (cmd, textures) = (to.cmd, own.textures.set);
         let Some(pipeline) = own.pipeline else {
             return Ok(());
         };
@@ -256,9 +248,9 @@ impl Renderer {
             None => vk::PipelineBindPoint::COMPUTE,
         };
         self.device.labelled(cmd, step.kind.label(), || {
-            self.bind_sets(cmd, point, slot, pipeline, own.textures.set, &own.offsets)?;
+            self.bind_sets(cmd, point, to.slot, pipeline, textures, &own.offsets)?;
             // SAFETY: as the caller promised.
-            unsafe { self.call(cmd, slot, bound, step) };
+            unsafe { self.call(to, step) };
             Ok(())
         })
     }

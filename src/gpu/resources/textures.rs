@@ -54,10 +54,6 @@ impl HostImage {
         Arc::strong_count(&self.0) > 1
     }
 
-    fn address(&self) -> usize {
-        address(&self.0)
-    }
-
     fn info(&self) -> vk::DescriptorImageInfo {
         sampled(self.0.0, self.0.1)
     }
@@ -172,7 +168,7 @@ impl Textures {
         let color_map = look.color_map.as_ref().filter(|_| images.color.is_none());
         let slope_map = look.displacement_map.as_ref();
         let slope_map = slope_map.filter(|_| images.relief.is_none());
-        let image = |of: &Option<HostImage>| of.as_ref().map(HostImage::address);
+        let image = |of: &Option<HostImage>| of.as_ref().map(|image| address(&image.0));
         let around = look.clamps();
         let addresses = [
             shape.as_ref().map(address),
