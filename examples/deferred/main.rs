@@ -69,9 +69,8 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
             }
         }
         let picture = engine.passes.read()?;
-        let path = format!("{folder}/deferred-{name}.png");
-        host::write_png(&path, &OPTIONS, &srgb(&picture))?;
-        println!("{path}");
+        let (name, pixels) = (format!("deferred-{name}"), srgb(&picture));
+        host::write_png(folder, &name, &OPTIONS, &pixels)?;
         pictures.push(picture);
     }
     let [with, without, truth] = pictures.try_into().map_err(|_| "three pictures")?;
@@ -83,7 +82,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[f32; 2]> {
         height: parts[0].len() as u32,
         ..OPTIONS
     };
-    host::write_png(&format!("{folder}/deferred.png"), &all, &srgb(&rows))?;
+    host::write_png(folder, "deferred", &all, &srgb(&rows))?;
     lend::check(&host)?;
     Ok([flip(&truth, &with)?, flip(&truth, &without)?])
 }
@@ -173,18 +172,10 @@ impl<'a> Engine<'a> {
         let seen = seen.with_jitter(jitter.to_array());
         let (last, last_clip) = self.last.unwrap_or((seen, projection * view));
         let now = jittered * view;
-        let renderer = std::cell::RefCell::new(&mut self.renderer);
         self.passes.frame(
             now,
             &self.meshes,
-            |cmd| {
-                let mut renderer = renderer.borrow_mut();
-                // SAFETY: the passes have waited for the last frame; `cmd` is recording outside of
-                // one.
-                Ok(unsafe { renderer.prepare(cmd, 0, &seen.with_last(&last)) }?)
-            },
-            // SAFETY: the frame was prepared, and the pass is of the output's formats.
-            |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
+            (&mut self.renderer, &seen.with_last(&last)),
             &passes::Lights {
                 world_from_clip: now.inverse().as_mat4(),
                 eye: eye.as_vec3(),

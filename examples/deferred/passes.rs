@@ -7,6 +7,7 @@ use super::host::{
 };
 use ash::vk;
 use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
+use revmap::gpu::{Renderer, View};
 use revmap::settings::Plane;
 
 /// The planes of the G-buffer, and their formats.
@@ -84,7 +85,7 @@ pub struct Passes<'a> {
 impl<'a> Passes<'a> {
     pub fn new(host: &'a Host, options: Options) -> Fallible<Self> {
         use vk::ImageUsageFlags as U;
-        let stored = || HostImage::new(host, &options, PICTURE, U::STORAGE);
+        let stored = || HostImage::new(host, &options, PICTURE, 1, U::STORAGE);
         let formats = PLANES.map(|(_, format)| format);
         let bytes = 16 * (options.width * options.height) as usize;
         let null = vk::Pipeline::null();
@@ -104,13 +105,8 @@ impl<'a> Passes<'a> {
                 let named = vk::DescriptorImageInfo::default().image_view(image.view);
                 (kind, named.sampler(sampler).image_layout(layout))
             };
-            let read = |i| {
-                of(
-                    T::COMBINED_IMAGE_SAMPLER,
-                    i,
-                    Layout::SHADER_READ_ONLY_OPTIMAL,
-                )
-            };
+            let sampled = Layout::SHADER_READ_ONLY_OPTIMAL;
+            let read = |image| of(T::COMBINED_IMAGE_SAMPLER, image, sampled);
             let written = [&lit, &pictures[turn], &pictures[1 - turn]];
             let written = written.map(|image| of(T::STORAGE_IMAGE, image, Layout::GENERAL));
             let images: Vec<_> = drawn.images().map(read).chain(written).collect();
@@ -166,24 +162,18 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Draws a frame and waits for it. `before` records outside of the pass; `within` draws into the
-    /// G-buffer what `before` returned.
-    pub fn frame<T>(
+    /// Draws a frame and waits for it: meshes, and what a renderer for the G-buffer sees.
+    pub fn frame(
         &mut self,
         clip_from_world: DMat4,
         meshes: &[Mesh<'_>],
-        before: impl FnOnce(vk::CommandBuffer) -> Fallible<T>,
-        within: impl FnOnce(vk::CommandBuffer, &T) -> Fallible<()>,
+        (renderer, view): (&mut Renderer, &View),
         lights: &Lights,
         resolve: &Resolve,
     ) -> Fallible<()> {
         let (raw, turn) = (&self.host.device, self.frames % 2);
         self.frames += 1;
-        let Blend {
-            weight,
-            follows,
-            clips,
-        } = resolve.blend;
+        let blend = resolve.blend;
         let number = |yes: bool| f32::from(u8::from(yes));
         let lit = Pushed {
             matrix: lights.world_from_clip.to_cols_array_2d(),
@@ -193,15 +183,16 @@ impl<'a> Passes<'a> {
         let [x, y] = resolve.jitter.to_array();
         let blended = Pushed {
             matrix: resolve.last_from_clip.to_cols_array_2d(),
-            first: [x, y, weight, number(follows)],
-            second: [number(clips), 0.0, 0.0, 0.0],
+            first: [x, y, blend.weight, number(blend.follows)],
+            second: [number(blend.clips), 0.0, 0.0, 0.0],
         };
-        // SAFETY: the last frame was waited for; everything named lives as long as `self`.
+        // SAFETY: the last frame was waited for; everything named lives as long as `self`; the
+        // G-buffer has the formats of the renderer.
         commands(self.host, true, |cmd| unsafe {
-            let prepared = before(cmd)?;
+            let prepared = renderer.prepare(cmd, 0, view)?;
             self.drawn.draw(cmd, &self.drawn.clears(), false, || {
                 self.mesh.draw(cmd, clip_from_world, Vec3::Z, meshes);
-                within(cmd, &prepared)
+                renderer.record(cmd, &prepared)
             })?;
             let drawn = self.drawn.images();
             let read = drawn.map(|i| i.barrier(i.drawn(), Layout::SHADER_READ_ONLY_OPTIMAL));
@@ -209,10 +200,9 @@ impl<'a> Passes<'a> {
             barriers.push(self.lit.barrier(Layout::UNDEFINED, Layout::GENERAL));
             let (last, now) = (&self.pictures[turn], &self.pictures[1 - turn]);
             // The first frame gives the last picture no weight.
-            let known = if self.frames == 1 {
-                Layout::UNDEFINED
-            } else {
-                Layout::GENERAL
+            let known = match self.frames {
+                1 => Layout::UNDEFINED,
+                _ => Layout::GENERAL,
             };
             barriers.push(last.barrier(known, Layout::GENERAL));
             barriers.push(now.barrier(Layout::UNDEFINED, Layout::GENERAL));
@@ -221,29 +211,16 @@ impl<'a> Passes<'a> {
             self.sets[turn].bind(cmd, point, self.layout, 0);
             for (pipeline, pushed) in [(self.light, &lit), (self.resolve, &blended)] {
                 raw.cmd_bind_pipeline(cmd, point, pipeline);
-                self.push(cmd, pushed);
-                let groups = |pixels: u32| pixels.div_ceil(8);
-                raw.cmd_dispatch(
-                    cmd,
-                    groups(self.options.width),
-                    groups(self.options.height),
-                    1,
-                );
+                let bytes = bytemuck::bytes_of(pushed);
+                let stage = vk::ShaderStageFlags::COMPUTE;
+                raw.cmd_push_constants(cmd, self.layout, stage, 0, bytes);
+                let size = [self.options.width, self.options.height];
+                let [x, y] = size.map(|pixels| pixels.div_ceil(8));
+                raw.cmd_dispatch(cmd, x, y, 1);
                 barrier(self.host, cmd, &[]);
             }
             Ok(())
         })?
-    }
-
-    unsafe fn push(&self, cmd: vk::CommandBuffer, pushed: &Pushed) {
-        let stages = vk::ShaderStageFlags::COMPUTE;
-        let bytes = bytemuck::bytes_of(pushed);
-        // SAFETY: `cmd` is recording; the range is the layout's.
-        unsafe {
-            self.host
-                .device
-                .cmd_push_constants(cmd, self.layout, stages, 0, bytes)
-        };
     }
 
     /// The last picture, linear.

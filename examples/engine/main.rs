@@ -88,9 +88,7 @@ fn main() -> Fallible<()> {
         lend::frame(&mut stage, &mut renderer, &seen, lit, &meshes)?;
         if [0, COUNT / 2, COUNT - 1].contains(&frame) {
             let (pixels, _) = stage.read()?;
-            let path = format!("{folder}/engine-{frame:03}.png");
-            host::write_png(&path, &options, &pixels)?;
-            println!("{path}");
+            host::write_png(&folder, &format!("engine-{frame:03}"), &options, &pixels)?;
         }
     }
     println!(

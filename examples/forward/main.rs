@@ -19,7 +19,6 @@ use revmap::gpu::{Device, Renderer};
 use revmap::scene::{Material, Object, Placement};
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
-use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The bytes of `shade.glsl`, which belong to one version of the library.
@@ -62,9 +61,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[usize; 2]> {
             meshes.push(ball);
         }
         let pixels = picture(&host, &mut renderer, &meshes, &lights)?;
-        let path = format!("{folder}/{name}.png");
-        host::write_png(&path, &OPTIONS, &pixels)?;
-        println!("{path}");
+        host::write_png(folder, name, &OPTIONS, &pixels)?;
         pictures.push(pixels);
     }
     lend::check(&host)?;
@@ -145,24 +142,20 @@ fn picture(
     let mut stage = Stage::with_shaders(host, OPTIONS, &shaders)?;
     let [view, projection] = host::view_and_projection(EYE, DVec3::new(0.0, 0.0, 0.35), &OPTIONS);
     let seen = lend::view([view, projection], &OPTIONS)?;
-    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
-    let renderer = RefCell::new(renderer);
-    stage.frame(
-        projection * view,
-        Vec3::Z,
-        meshes,
-        // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its
-        // pass; the layout of meshes has the set at 0.
-        |cmd, slot| unsafe {
-            lights.bind(cmd, point, of_meshes, 0);
-            Ok(renderer.borrow_mut().prepare(cmd, slot, &seen)?)
-        },
-        // SAFETY: the frame was prepared, and the pass is of the output's formats; the renderer's
-        // layout has the set at 3.
-        |cmd, frame| unsafe {
-            lights.bind(cmd, point, renderer.borrow().pipeline_layout()?, 3);
-            Ok(renderer.borrow().record(cmd, frame)?)
-        },
-    )?;
+    let point = vk::PipelineBindPoint::GRAPHICS;
+    let (cmd, slot) = stage.begin()?;
+    // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its pass;
+    // the layout of meshes has the set at 0.
+    let frame = unsafe {
+        lights.bind(cmd, point, stage.meshes.layout, 0);
+        renderer.prepare(cmd, slot, &seen)?
+    };
+    // SAFETY: the frame was prepared, and the pass is of the output's formats; the renderer's layout
+    // has the set at 3.
+    let solids = || unsafe {
+        lights.bind(cmd, point, renderer.pipeline_layout()?, 3);
+        Ok(renderer.record(cmd, &frame)?)
+    };
+    stage.draw(slot, (projection * view, Vec3::Z), meshes, solids)?;
     Ok(stage.read()?.0)
 }

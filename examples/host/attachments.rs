@@ -48,7 +48,7 @@ impl<'a> Attachments<'a> {
             };
             Ok(Attachment {
                 format,
-                image: HostImage::of(host, &options, format, samples, more)?,
+                image: HostImage::new(host, &options, format, samples, more)?,
                 read: HostBuffer::new(
                     host,
                     bytes_of(format) * pixels,

@@ -10,7 +10,6 @@ use revmap::gpu::{
 };
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
-use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The arguments of an example: the folder of its pictures, `out` by default, and whether the
@@ -119,20 +118,15 @@ pub fn frame(
     stage: &mut Stage,
     renderer: &mut Renderer,
     view: &View,
-    (clip_from_world, towards_light): (DMat4, Vec3),
+    lit: (DMat4, Vec3),
     meshes: &[Mesh],
 ) -> Fallible<()> {
-    let renderer = RefCell::new(renderer);
-    stage.frame(
-        clip_from_world,
-        towards_light,
-        meshes,
-        // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its
-        // pass.
-        |cmd, slot| Ok(unsafe { renderer.borrow_mut().prepare(cmd, slot, view) }?),
-        // SAFETY: the frame was prepared, and the pass is of the output's formats.
-        |cmd, frame| Ok(unsafe { renderer.borrow().record(cmd, frame) }?),
-    )
+    let (cmd, slot) = stage.begin()?;
+    // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its pass.
+    let frame = unsafe { renderer.prepare(cmd, slot, view) }?;
+    // SAFETY: the frame was prepared, and the pass is of the output's formats.
+    let solids = || Ok(unsafe { renderer.record(cmd, &frame) }?);
+    stage.draw(slot, lit, meshes, solids)
 }
 
 /// Fails with the first message of the validation layers.

@@ -91,18 +91,8 @@ pub struct HostImage<'a> {
 }
 
 impl<'a> HostImage<'a> {
-    /// An image of one sample, used in `more` ways than by a pass and for reading back.
+    /// An image, used in `more` ways than by a pass and, of one sample, for reading back.
     pub fn new(
-        host: &'a Host,
-        options: &Options,
-        format: vk::Format,
-        more: vk::ImageUsageFlags,
-    ) -> Fallible<Self> {
-        Self::of(host, options, format, 1, more)
-    }
-
-    /// An image of so many samples.
-    pub fn of(
         host: &'a Host,
         options: &Options,
         format: vk::Format,

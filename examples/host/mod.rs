@@ -13,6 +13,8 @@ mod stage;
 
 pub use attachments::Attachments;
 pub use commands::{Commands, commands};
+/// From the world to a view along -z from an eye to a target: `look(eye, target, up)`.
+pub use glam::dcamera::rh::view::look_at_mat4 as look;
 pub use mesh::{Mesh, MeshPipeline, MeshShaders, module};
 pub use stage::Stage;
 
@@ -216,15 +218,6 @@ impl Drop for Host {
     }
 }
 
-/// From the world to a view along -z from `eye` to `target`.
-pub fn look(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
-    let forward = (target - eye).normalize();
-    let right = forward.cross(up).normalize();
-    let up = right.cross(forward);
-    let row = |axis: DVec3| axis.extend(-axis.dot(eye));
-    DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
-}
-
 /// A lens of parallel rays or of rays from the eye, clip space with Vulkan's y downwards. `scales`:
 /// of x and y. Reversed depth may reach to infinity.
 pub fn lens([x, y]: [f64; 2], parallel: bool, reversed: bool, [near, far]: [f64; 2]) -> DMat4 {
@@ -263,13 +256,15 @@ pub fn view_and_projection(eye: DVec3, target: DVec3, options: &Options) -> [DMa
     [look(eye, target, DVec3::Z), lens]
 }
 
-/// Writes sRGB bytes as a PNG.
-pub fn write_png(path: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
+/// Writes sRGB bytes as the PNG file of a name in a folder, and prints where it is.
+pub fn write_png(folder: &str, name: &str, options: &Options, pixels: &[u8]) -> Fallible<()> {
     let picture = revmap_files::Picture {
         width: options.width,
         height: options.height,
         rgba: pixels.as_chunks().0.to_vec(),
     };
+    let path = format!("{folder}/{name}.png");
+    println!("{path}");
     Ok(picture.write_png(path)?)
 }
 

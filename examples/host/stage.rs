@@ -1,12 +1,9 @@
 //! A picture that is drawn with two frames in flight.
 
 use super::mesh::{Mesh, MeshPipeline, MeshShaders};
-use super::{Attachments, COLOR, Commands, FRAMES, Fallible, Host, Options};
+use super::{Attachments, COLOR, Commands, FRAMES, Fallible, Host, Options, commands};
 use ash::vk;
 use glam::{DMat4, Vec3};
-
-/// The commands of a frame in flight, and what tells that they have run.
-type InFlight = (vk::CommandBuffer, vk::Fence);
 
 /// The colour behind everything, linear.
 const BACKGROUND: vk::ClearColorValue = vk::ClearColorValue {
@@ -19,7 +16,8 @@ pub struct Stage<'a> {
     pub into: Attachments<'a>,
     pub meshes: MeshPipeline<'a>,
     commands: Commands<'a>,
-    frames: Vec<InFlight>,
+    /// The fence of each frame in flight tells that its commands have run.
+    fences: Vec<vk::Fence>,
     next: usize,
     host: &'a Host,
 }
@@ -40,57 +38,55 @@ impl<'a> Stage<'a> {
         unsafe {
             let commands = Commands::new(host, vk::CommandBufferLevel::PRIMARY, FRAMES)?;
             let signaled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
-            let mut frames = Vec::new();
-            for cmd in &commands.raw {
-                frames.push((*cmd, device.create_fence(&signaled, None)?));
-            }
+            let fences = (0..FRAMES).map(|_| device.create_fence(&signaled, None));
+            let fences = fences.collect::<Result<_, _>>()?;
             Ok(Self {
                 meshes: MeshPipeline::new(host, shaders, &options, into.pass, &[COLOR])?,
                 options,
                 into,
                 commands,
-                frames,
+                fences,
                 next: 0,
                 host,
             })
         }
     }
 
-    /// Draws one frame: `before` records outside of the pass, `within` after the host's meshes, with
-    /// what `before` returned. Waits only for the frame before the last.
-    pub fn frame<T>(
-        &mut self,
-        clip_from_world: DMat4,
-        towards_light: Vec3,
-        meshes: &[Mesh<'_>],
-        before: impl FnOnce(vk::CommandBuffer, usize) -> Fallible<T>,
-        within: impl FnOnce(vk::CommandBuffer, &T) -> Fallible<()>,
-    ) -> Fallible<()> {
+    /// Begins a frame: its commands, which are recording outside of the pass, and its slot. Waits
+    /// only for the frame before the last.
+    pub fn begin(&mut self) -> Fallible<(vk::CommandBuffer, usize)> {
         let device = &self.host.device;
         let slot = self.next;
         self.next = (slot + 1) % FRAMES;
-        let (cmd, fence) = self.frames[slot];
-        // SAFETY: the fence tells that the commands have run; the rest is plain recording.
+        let (cmd, fence) = (self.commands.raw[slot], self.fences[slot]);
+        // SAFETY: the fence tells that the commands have run.
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
             device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
-            let prepared = before(cmd, slot)?;
+        }
+        Ok((cmd, slot))
+    }
+
+    /// Draws the frame of a slot that was begun, and submits it: meshes, then what `within` records
+    /// in the pass.
+    pub fn draw(
+        &self,
+        slot: usize,
+        (clip_from_world, towards_light): (DMat4, Vec3),
+        meshes: &[Mesh<'_>],
+        within: impl FnOnce() -> Fallible<()>,
+    ) -> Fallible<()> {
+        let device = &self.host.device;
+        let (cmd, fence) = (self.commands.raw[slot], self.fences[slot]);
+        let buffers = [cmd];
+        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        // SAFETY: the commands are recording; the attachments live until they have run.
+        unsafe {
             self.into.draw(cmd, &[BACKGROUND], false, || {
                 self.meshes
                     .draw(cmd, clip_from_world, towards_light, meshes);
-                within(cmd, &prepared)
+                within()
             })?;
-            self.submit((cmd, fence))
-        }
-    }
-
-    /// Ends commands and submits them.
-    unsafe fn submit(&self, (cmd, fence): InFlight) -> Fallible<()> {
-        let device = &self.host.device;
-        let buffers = [cmd];
-        let submits = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        // SAFETY: the commands are recording, outside of a pass.
-        unsafe {
             device.end_command_buffer(cmd)?;
             device.reset_fences(&[fence])?;
             device.queue_submit(self.host.queue, &submits, fence)?;
@@ -100,16 +96,9 @@ impl<'a> Stage<'a> {
 
     /// Waits for all frames and reads the last: sRGB bytes, and depths of one sample.
     pub fn read(&self) -> Fallible<(Vec<u8>, Vec<f32>)> {
-        let (cmd, fence) = self.frames[self.next];
         self.wait()?;
-        let device = &self.host.device;
-        // SAFETY: all frames are waited for; the copies are waited for, too.
-        unsafe {
-            device.begin_command_buffer(cmd, &vk::CommandBufferBeginInfo::default())?;
-            self.into.copy(cmd);
-            self.submit((cmd, fence))?;
-        }
-        self.wait()?;
+        // SAFETY: all frames are waited for, and so are the copies.
+        commands(self.host, true, |cmd| unsafe { self.into.copy(cmd) })?;
         Ok((
             self.into.colors().next().unwrap_or_default(),
             self.into.depths(),
@@ -129,7 +118,7 @@ impl Drop for Stage<'_> {
         // SAFETY: the device is waited for.
         unsafe {
             let _ = device.device_wait_idle();
-            for (_, fence) in &self.frames {
+            for fence in &self.fences {
                 device.destroy_fence(*fence, None);
             }
         }

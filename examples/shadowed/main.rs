@@ -23,7 +23,6 @@ use revmap::gpu::{Device, ObjectId, PreparedFrame, Renderer, View};
 use revmap::scene::Object;
 use revmap::settings::{Planes, SearchSettings};
 use revmap::shading::Shading;
-use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The bytes of `shade.glsl`, which belong to one version of the library.
@@ -75,9 +74,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[Vec<u8>; 4]> {
         let pixels = picture(&host, &device, case)?;
         let mut opaque = pixels.clone();
         opaque.chunks_mut(4).for_each(|pixel| pixel[3] = u8::MAX);
-        let path = format!("{folder}/{name}.png");
-        host::write_png(&path, &OPTIONS, &opaque)?;
-        println!("{path}");
+        host::write_png(folder, name, &OPTIONS, &opaque)?;
         pictures.push(pixels);
     }
     lend::check(&host)?;
@@ -86,7 +83,7 @@ pub fn run(folder: &str, validate: bool) -> Fallible<[Vec<u8>; 4]> {
 
 /// A renderer of solids for one of the passes, and the row that moves.
 struct Solids {
-    renderer: RefCell<Renderer>,
+    renderer: Renderer,
     row: ObjectId,
 }
 
@@ -95,7 +92,7 @@ impl Solids {
         let ids: Vec<_> = (objects.iter().cloned())
             .map(|object| renderer.add(object))
             .collect::<revmap::Result<_>>()?;
-        let (renderer, row) = (RefCell::new(renderer), ids[0]);
+        let row = ids[0];
         Ok(Self { renderer, row })
     }
 
@@ -104,15 +101,14 @@ impl Solids {
     /// # Safety
     /// Same as for [`Renderer::prepare`].
     unsafe fn prepare(
-        &self,
+        &mut self,
         cmd: vk::CommandBuffer,
         (frame, slot): (u32, usize),
         view: &View,
     ) -> revmap::Result<PreparedFrame> {
-        let mut renderer = self.renderer.borrow_mut();
-        renderer.set_instances(self.row, scene::row(frame))?;
+        self.renderer.set_instances(self.row, scene::row(frame))?;
         // SAFETY: as the caller promised.
-        unsafe { renderer.prepare(cmd, slot, view) }
+        unsafe { self.renderer.prepare(cmd, slot, view) }
     }
 }
 
@@ -160,7 +156,7 @@ pub fn view_and_projection() -> [DMat4; 2] {
 fn picture(host: &Host, device: &Device, case: Case) -> Fallible<Vec<u8>> {
     let map = SunMap::new(host, scene::towards_sun())?;
     let set = UniformSet::with_images(host, &sun(&map), &[map.described()?])?;
-    let [casting, seen] = renderers(device, &set, case)?;
+    let [mut casting, mut seen] = renderers(device, &set, case)?;
     let meshes = scene::meshes(host, case == Case::MeshBall)?;
     let shaders = MeshShaders {
         vertex: include_bytes!("../forward/mesh.vert.spv"),
@@ -171,38 +167,33 @@ fn picture(host: &Host, device: &Device, case: Case) -> Fallible<Vec<u8>> {
     let [view, projection] = view_and_projection();
     let from_eye = lend::view([view, projection], &OPTIONS)?;
     let from_sun = map.view()?;
-    let (point, of_meshes) = (vk::PipelineBindPoint::GRAPHICS, stage.meshes.layout);
+    let point = vk::PipelineBindPoint::GRAPHICS;
+    let casters = if case == Case::EmptyMap {
+        &[]
+    } else {
+        &*meshes
+    };
     for frame in 0..COUNT {
-        stage.frame(
-            projection * view,
-            Vec3::Z,
-            &meshes,
-            // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of
-            // its pass; the map's pass has the formats of its renderer; the layout of meshes has
-            // the set at 0.
-            |cmd, slot| unsafe {
-                let cast = casting.prepare(cmd, (frame, slot), &from_sun)?;
-                let prepared = seen.prepare(cmd, (frame, slot), &from_eye)?;
-                let casters = if case == Case::EmptyMap {
-                    &[]
-                } else {
-                    &*meshes
-                };
-                map.draw(cmd, casters, || match case {
-                    Case::EmptyMap => Ok(()),
-                    _ => Ok(casting.renderer.borrow().record(cmd, &cast)?),
-                })?;
-                set.bind(cmd, point, of_meshes, 0);
-                Ok(prepared)
-            },
-            // SAFETY: the frame was prepared, and the pass is of the output's formats; the
-            // renderer's layout has the set at 3.
-            |cmd, prepared| unsafe {
-                let renderer = seen.renderer.borrow();
-                set.bind(cmd, point, renderer.pipeline_layout()?, 3);
-                Ok(renderer.record(cmd, prepared)?)
-            },
-        )?;
+        let (cmd, slot) = stage.begin()?;
+        // SAFETY: the stage has waited for the slot's last frame; `cmd` is recording outside of its
+        // pass; the map's pass has the formats of its renderer; the layout of meshes has the set at 0.
+        let prepared = unsafe {
+            let cast = casting.prepare(cmd, (frame, slot), &from_sun)?;
+            let prepared = seen.prepare(cmd, (frame, slot), &from_eye)?;
+            map.draw(cmd, casters, || match case {
+                Case::EmptyMap => Ok(()),
+                _ => Ok(casting.renderer.record(cmd, &cast)?),
+            })?;
+            set.bind(cmd, point, stage.meshes.layout, 0);
+            prepared
+        };
+        // SAFETY: the frame was prepared, and the pass is of the output's formats; the renderer's
+        // layout has the set at 3.
+        let solids = || unsafe {
+            set.bind(cmd, point, seen.renderer.pipeline_layout()?, 3);
+            Ok(seen.renderer.record(cmd, &prepared)?)
+        };
+        stage.draw(slot, (projection * view, Vec3::Z), &meshes, solids)?;
     }
     Ok(stage.read()?.0)
 }

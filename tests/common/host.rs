@@ -189,7 +189,7 @@ impl<'a> Texture<'a> {
         let size = Options::new(side, side);
         type Usage = vk::ImageUsageFlags;
         let usage = Usage::SAMPLED | Usage::TRANSFER_DST;
-        let memory = HostImage::new(host, &size, format, usage).unwrap();
+        let memory = HostImage::new(host, &size, format, 1, usage).unwrap();
         let from = HostBuffer::of(host, texels, vk::BufferUsageFlags::TRANSFER_SRC).unwrap();
         let to = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         let read = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
