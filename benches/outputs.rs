@@ -43,26 +43,22 @@ fn main() {
     let device = borrow(&host);
     let (scene, view) = bishop();
     use Plane as P;
-    let mut lists: Vec<&[Plane]> = vec![&[P::Color]];
-    lists.extend(
-        [
-            [P::BaseColor],
-            [P::OctahedralNormal],
-            [P::Motion],
-            [P::Identity],
-        ]
-        .each_ref()
-        .map(|l| &l[..]),
-    );
-    let buffer = [
+    const BUFFER: [P; 5] = [
         P::BaseColor,
         P::OctahedralNormal,
         P::Material,
         P::Motion,
         P::Identity,
     ];
-    lists.push(&buffer);
-    let lists = lists.iter().map(|list| PlaneList::new(list).unwrap());
+    let alone = [
+        P::Color,
+        P::BaseColor,
+        P::OctahedralNormal,
+        P::Motion,
+        P::Identity,
+    ];
+    let lists = alone.chunks(1).chain([&BUFFER[..]]);
+    let lists = lists.map(|list| PlaneList::new(list).unwrap());
     let depth = Planes::Depth { parallel: false };
     let none = SlopeBias::default();
     let mut passes = vec![(Planes::Color, none)];

@@ -3,31 +3,35 @@
 //! come and go. `cargo bench --bench prepare`.
 #![allow(unsafe_code, clippy::unwrap_used)]
 
+#[path = "../tests/common/host.rs"]
+#[allow(unused_imports)]
+mod host;
+
 use ash::vk;
 use divan::Bencher;
 use glam::DVec3;
-use revmap::gpu::{Device, ObjectId, Output, PassFormats, PassKind, Renderer, View};
+use host::{Commands, Host, borrow, color_pass, open_unchecked};
+use revmap::gpu::{ObjectId, Output, Renderer, View};
 use revmap::maps::ColorMap;
 use revmap::profile::Profile;
 use revmap::scene::{Camera, Object, Offset, Placement};
-use revmap::settings::{Planes, SearchSettings};
-use std::sync::Arc;
+use revmap::settings::SearchSettings;
+use std::sync::{Arc, LazyLock};
 
 const COUNT: usize = 1000;
+static HOST: LazyLock<Host> = LazyLock::new(open_unchecked);
 
 fn main() {
     divan::main();
 }
 
-/// A crowd of spindles and vases on a device, and commands that are recorded and never submitted.
+/// A crowd of spindles and vases, and commands that are recorded and never submitted.
 struct Crowd {
     renderer: Renderer,
     ids: Vec<ObjectId>,
     camera: Camera,
     frame: usize,
-    cmd: vk::CommandBuffer,
-    pool: vk::CommandPool,
-    device: Device,
+    commands: Commands<'static>,
 }
 
 fn place(n: usize, frame: usize) -> Placement {
@@ -41,15 +45,8 @@ fn place(n: usize, frame: usize) -> Placement {
 
 impl Crowd {
     fn new() -> Self {
-        let device = Device::open(None).unwrap();
-        let begun = PassKind::Dynamic {
-            color: vec![vk::Format::R8G8B8A8_SRGB],
-            depth: vk::Format::D32_SFLOAT,
-            stencil: vk::Format::UNDEFINED,
-        };
-        let output = Output::Pass(PassFormats::new(begun, Planes::Color));
-        let search = SearchSettings::exact();
-        let mut renderer = Renderer::new(&device, output, &search, 2).unwrap();
+        let (output, search) = (Output::Pass(color_pass()), SearchSettings::exact());
+        let mut renderer = Renderer::new(&borrow(&HOST), output, &search, 2).unwrap();
         let profiles = [
             &[[0.0, 0.0], [0.35, 0.2], [0.1, 0.5], [0.35, 0.8], [0.0, 1.0]][..],
             &[
@@ -69,31 +66,33 @@ impl Crowd {
                 renderer.add(object).unwrap()
             })
             .collect();
-        let raw = device.raw();
-        // SAFETY: plain creations, destroyed in Drop.
-        let (pool, cmd) = unsafe {
-            let flags = vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER;
-            let info = vk::CommandPoolCreateInfo::default().flags(flags);
-            let pool = raw.create_command_pool(&info, None).unwrap();
-            let info = vk::CommandBufferAllocateInfo::default()
-                .command_pool(pool)
-                .command_buffer_count(1);
-            (pool, raw.allocate_command_buffers(&info).unwrap()[0])
-        };
+        let commands = Commands::new(&HOST, vk::CommandBufferLevel::PRIMARY, 1).unwrap();
         let mut crowd = Self {
             renderer,
             ids,
             camera: Camera::new(DVec3::new(30.0, 5.0, 20.0), DVec3::ZERO),
             frame: 0,
-            cmd,
-            pool,
-            device,
+            commands,
         };
-        for _ in 0..4 {
-            crowd.begin();
-            crowd.prepare();
+        crowd.settle();
+        crowd
+    }
+
+    /// The first object alone.
+    fn of_one() -> Self {
+        let mut crowd = Self::new();
+        for id in crowd.ids.split_off(1) {
+            crowd.renderer.remove(id).unwrap();
         }
         crowd
+    }
+
+    /// Prepares frames until all slots hold what they draw.
+    fn settle(&mut self) {
+        for _ in 0..4 {
+            self.begin();
+            self.prepare();
+        }
     }
 
     /// Begins another frame's commands.
@@ -101,25 +100,18 @@ impl Crowd {
         self.frame += 1;
         let info = vk::CommandBufferBeginInfo::default();
         // SAFETY: the commands are never submitted.
-        unsafe { self.device.raw().begin_command_buffer(self.cmd, &info) }.unwrap();
+        unsafe { (HOST.device).begin_command_buffer(self.commands.raw[0], &info) }.unwrap();
     }
 
     fn prepare(&mut self) {
         let view = View::from_camera(&self.camera, (1280, 720), [0.1, 200.0]).unwrap();
+        let cmd = self.commands.raw[0];
         // SAFETY: `cmd` is recording; no frame was ever submitted.
-        let _ = unsafe { self.renderer.prepare(self.cmd, self.frame % 2, &view) }.unwrap();
+        let _ = unsafe { self.renderer.prepare(cmd, self.frame % 2, &view) }.unwrap();
     }
 }
 
-impl Drop for Crowd {
-    fn drop(&mut self) {
-        // SAFETY: the commands were never submitted.
-        unsafe { self.device.raw().destroy_command_pool(self.pool, None) };
-    }
-}
-
-fn frames(bencher: Bencher, mut change: impl FnMut(&mut Crowd)) {
-    let mut crowd = Crowd::new();
+fn frames(bencher: Bencher, mut crowd: Crowd, mut change: impl FnMut(&mut Crowd)) {
     bencher.bench_local(|| {
         crowd.begin();
         change(&mut crowd);
@@ -129,12 +121,12 @@ fn frames(bencher: Bencher, mut change: impl FnMut(&mut Crowd)) {
 
 #[divan::bench]
 fn still(bencher: Bencher) {
-    frames(bencher, |_| {});
+    frames(bencher, Crowd::new(), |_| {});
 }
 
 #[divan::bench]
 fn all_move(bencher: Bencher) {
-    frames(bencher, |crowd| {
+    frames(bencher, Crowd::new(), |crowd| {
         for (n, id) in crowd.ids.iter().enumerate() {
             let moved = crowd.renderer.set_placement(*id, place(n, crowd.frame));
             moved.unwrap();
@@ -144,16 +136,13 @@ fn all_move(bencher: Bencher) {
 
 #[divan::bench]
 fn the_camera_moves(bencher: Bencher) {
-    frames(bencher, |crowd| crowd.camera.eye.x += 1e-3);
+    frames(bencher, Crowd::new(), |crowd| crowd.camera.eye.x += 1e-3);
 }
 
 /// One of many objects moves, each with a colour map of its own. Frames take linear time.
 #[divan::bench(args = [500, 2000, 8000])]
 fn one_of_many_looks_moves(bencher: Bencher, count: usize) {
-    let mut crowd = Crowd::new();
-    for id in crowd.ids.split_off(1) {
-        crowd.renderer.remove(id).unwrap();
-    }
+    let mut crowd = Crowd::of_one();
     let profile = Profile::polygon(&[[0.0, 0.0], [0.4, 0.5], [0.0, 1.0]], 0.5).unwrap();
     let profile = Arc::new(profile);
     for n in 0..count {
@@ -164,11 +153,9 @@ fn one_of_many_looks_moves(bencher: Bencher, count: usize) {
         object.placement = place(n, 0);
         crowd.renderer.add(object).unwrap();
     }
-    bencher.bench_local(|| {
-        crowd.begin();
+    frames(bencher, crowd, |crowd| {
         let moved = place(0, crowd.frame);
         crowd.renderer.set_placement(crowd.ids[0], moved).unwrap();
-        crowd.prepare();
     });
 }
 
@@ -189,15 +176,9 @@ fn field(count: usize, frame: usize) -> Vec<Placement> {
 impl Crowd {
     /// Copies of one object.
     fn of_copies(copies: Vec<Placement>) -> Self {
-        let mut crowd = Self::new();
-        for id in crowd.ids.split_off(1) {
-            crowd.renderer.remove(id).unwrap();
-        }
+        let mut crowd = Self::of_one();
         crowd.place(copies);
-        for _ in 0..4 {
-            crowd.begin();
-            crowd.prepare();
-        }
+        crowd.settle();
         crowd
     }
 
@@ -224,12 +205,8 @@ fn copies(bencher: Bencher, of: impl Fn(usize) -> Vec<Placement>) {
 
 #[divan::bench(args = [64, 10_000, 100_000, 1_000_000])]
 fn the_camera_moves_over_copies(bencher: Bencher, count: usize) {
-    let mut crowd = Crowd::of_copies(field(count, 0));
-    bencher.bench_local(|| {
-        crowd.begin();
-        crowd.camera.eye.x += 1e-3;
-        crowd.prepare();
-    });
+    let crowd = Crowd::of_copies(field(count, 0));
+    frames(bencher, crowd, |crowd| crowd.camera.eye.x += 1e-3);
 }
 
 #[divan::bench(args = [10_000, 100_000, 1_000_000], sample_count = 10)]
@@ -245,7 +222,7 @@ fn copies_come_and_go(bencher: Bencher, count: usize) {
 
 #[divan::bench(sample_count = 20)]
 fn all_offsets_change(bencher: Bencher) {
-    frames(bencher, |crowd| {
+    frames(bencher, Crowd::new(), |crowd| {
         for (n, id) in crowd.ids.iter().enumerate() {
             let extend = 0.02 + 0.02 * (0.05 * crowd.frame as f64 + n as f64).sin();
             let offset = Offset {
