@@ -123,41 +123,33 @@ impl Modules<'_> {
         &self,
         make: impl Fn(&Module, &[u32]) -> Result<T, String> + Sync,
     ) -> Fallible<Vec<T>> {
-        use std::sync::Mutex;
         use std::sync::atomic::{AtomicUsize, Ordering};
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let next = AtomicUsize::new(0);
-        let done = Mutex::new(Vec::new());
-        std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(|| {
-                    // One compiler keeps what it has read of the language.
-                    let compiler = crate::Compiler::new().map_err(|e| e.to_string());
-                    while let Some((n, module)) = {
-                        let n = next.fetch_add(1, Ordering::Relaxed);
-                        self.all.get(n).map(|m| (n, m))
-                    } {
-                        let compiler = compiler.as_ref().map_err(String::clone);
-                        let made = compiler
-                            .and_then(|c| self.words(c, module).map_err(|e| e.to_string()))
-                            .and_then(|words| make(module, &words))
-                            .map_err(|e| format!("{}: {e}", module.name));
-                        if let Ok(mut done) = done.lock() {
-                            done.push((n, made));
-                        }
-                    }
-                });
+        let work = || {
+            // One compiler keeps what it has read of the language.
+            let compiler = crate::Compiler::new().map_err(|e| e.to_string())?;
+            let numbers = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+            let modules = numbers.map_while(|n| Some((n, self.all.get(n)?)));
+            let made = modules.map(|(n, module)| {
+                let words = self.words(&compiler, module).map_err(|e| e.to_string());
+                let made = words.and_then(|words| make(module, &words));
+                (n, made.map_err(|e| format!("{}: {e}", module.name)))
+            });
+            Ok::<Vec<_>, String>(made.collect())
+        };
+        let mut done = std::thread::scope(|scope| -> Fallible<Vec<_>> {
+            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(&work)).collect();
+            let mut done = Vec::new();
+            for thread in threads {
+                let made = thread.join().map_err(|_| "a thread of the compiler died")?;
+                done.extend(made?);
             }
-        });
-        let mut done = done.into_inner().map_err(|e| e.to_string())?;
+            Ok(done)
+        })?;
         done.sort_by_key(|(n, _)| *n);
-        if done.len() != self.all.len() {
-            return Err("a thread of the compiler died".into());
-        }
-        Ok(done
-            .into_iter()
-            .map(|(_, made)| made)
-            .collect::<Result<_, _>>()?)
+        let in_order = done.into_iter().map(|(_, made)| made);
+        Ok(in_order.collect::<Result<_, _>>()?)
     }
 
     #[cfg(feature = "shaderc")]
@@ -282,9 +274,7 @@ fn compiler() -> Fallible<u64> {
     let level = crate::OptimizationLevel::Zero;
     let none = |wanted: &str| Err(format!("{wanted}: the probe includes nothing"));
     let made = crate::spirv(&compiler, ("probe", PROBE), &[], level, none)?;
-    let mut hash = Fnv::default();
-    hash.add(made.as_binary_u8());
-    Ok(hash.0)
+    Ok(Fnv::of([made.as_binary_u8()]))
 }
 
 /// FNV-1a, a hash of 64 bits.
