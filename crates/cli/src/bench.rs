@@ -369,12 +369,13 @@ impl Session<'_> {
                 }
             }
         }
-        // What the device or the scene excludes is in the report alone.
+        // What the device or a scene excludes is in the report alone, unless nothing else is left.
         let mut failed = Vec::new();
         for (case, reason) in &measured.left_out {
             let method = case.settings.method;
-            if method.solver().and_then(of_folder).is_some() && !failed.contains(&(method, reason))
-            {
+            let is_of_folder = method.solver().and_then(of_folder).is_some();
+            let is_missing = || measured.rows.iter().all(|r| r.settings.method != method);
+            if !failed.contains(&(method, reason)) && (is_of_folder || is_missing()) {
                 failed.push((method, reason));
                 output::warn(&format!("{method} was left out: {reason}"));
             }

@@ -200,15 +200,28 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Assignments to keys of the scene: those of these options, then `sets`.
-    pub fn sets(&self, file: &SceneFile, sets: &[String]) -> Vec<String> {
+    /// Assignments to keys of the scene: those of these options, then `sets`. Refuses a key that an
+    /// option replaces.
+    pub fn sets(&self, file: &SceneFile, sets: &[String]) -> Result<Vec<String>> {
+        for set in sets {
+            let key = set.split('=').next().unwrap_or_default().trim();
+            let root = key.split('.').next().unwrap_or_default();
+            let of_studio = ["light", "shadow", "ambient", "environment", "background"];
+            let option = match (root, &self.background) {
+                ("background", Some(_)) => "--background",
+                _ if self.studio && of_studio.contains(&root) => "--studio",
+                _ => continue,
+            };
+            let message = format!("is replaced by {option}; leave one of the two out");
+            return Err(usage(key, message));
+        }
         let color = self.color.into_iter().flat_map(|color| {
             let set = move |n| format!("object.{n}.color={color:?}");
             (0..file.objects()).map(set)
         });
         let background = self.background.map(|color| format!("background={color:?}"));
         let own = color.chain(background);
-        own.chain(sets.iter().cloned()).collect()
+        Ok(own.chain(sets.iter().cloned()).collect())
     }
 
     /// The studio, if the options ask for one.
@@ -231,7 +244,7 @@ impl Surroundings {
         aspect: f64,
     ) -> Result<(Scene, Option<Studio>)> {
         let mut studio = self.studio()?;
-        let sets = self.sets(file, sets);
+        let sets = self.sets(file, sets)?;
         let mut scene = file.scene(&sets)?;
         if let Some(studio) = studio.as_mut().filter(|_| file.chooses_camera(&sets)) {
             studio.frame(&[(scene.clone(), 0.0)], aspect);

@@ -139,7 +139,7 @@ impl Modules<'_> {
             Ok::<Vec<_>, String>(made.collect())
         };
         let mut done = std::thread::scope(|scope| -> Fallible<Vec<_>> {
-            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(&work)).collect();
+            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
             let mut done = Vec::new();
             for thread in threads {
                 let made = thread.join().map_err(|_| "a thread of the compiler died")?;

@@ -10,10 +10,11 @@ pub(super) const SET_AXIS: &str = "set profile_axis = ";
 /// How the refusal of a drawing without dark paint begins.
 pub(super) const EMPTY: &str = "the drawing is empty: ";
 /// Advice for it.
-pub(super) const PAINT_DARK: &str = "; paint it dark if it is solid";
+pub(super) const PAINT_DARK: &str =
+    "; paint it dark if it is solid, or set profile_read = \"auto\"";
 
 /// Another way to read a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Way {
     /// Where the axis is.
     pub axis: ProfileAxis,

@@ -96,11 +96,15 @@ fn read(bytes: &[u8], options: &ProfileOptions) -> Result<(Profile, ProfileAxis)
             Ok((by_way(Way { axis, pale }, options.read)?, axis))
         }
         ProfileRead::Auto => {
-            let read = |way| match way == Way::default() {
+            let first = Way {
+                axis: options.axis,
+                pale: false,
+            };
+            let read = |way| match way == first {
                 true => by_way(way, ProfileRead::Auto),
                 false => by_way(way, ProfileRead::Threshold),
             };
-            followed(&read, Way::default()).map(|(profile, way)| (profile, way.axis))
+            followed(&read, first).map(|(profile, way)| (profile, way.axis))
         }
     }
 }

@@ -77,8 +77,8 @@ impl ProfileRead {
 pub struct ProfileOptions {
     /// The part of the picture that is the half-plane.
     pub axis: ProfileAxis,
-    /// The way in which the solid is found. [`ProfileRead::Auto`] takes no axis, threshold or
-    /// inversion.
+    /// The way in which the solid is found. [`ProfileRead::Auto`] takes no threshold or inversion, and
+    /// of pictures no axis.
     pub read: ProfileRead,
     /// Grey level in `(0, 1)` below which a pixel is solid, 0 black and 1 white, in the picture's
     /// own (sRGB) values. For pictures only.
@@ -119,6 +119,8 @@ impl ProfileOptions {
     /// Keys that [`ProfileRead::Threshold`] alone takes.
     pub(crate) const OF_THRESHOLD: [&'static str; 3] =
         ["profile_axis", "profile_threshold", "profile_invert"];
+    const NOT_AUTO: &str =
+        "counts for profile_read = \"threshold\" alone; leave one of the two out";
     /// The largest standard deviation of the blur, pixels.
     pub const MOST_SMOOTH: f64 = 100.0;
 
@@ -139,8 +141,7 @@ impl ProfileOptions {
             return wrong("profile_threshold", message);
         }
         if self.read == ProfileRead::Auto {
-            let message = "counts for profile_read = \"threshold\" alone; leave one of the two out";
-            self.refuse(&Self::OF_THRESHOLD, message)?;
+            self.refuse(&Self::OF_THRESHOLD[1..], Self::NOT_AUTO)?;
         }
         if let Smooth::Pixels(pixels) = self.smooth
             && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
@@ -173,7 +174,11 @@ impl ProfileOptions {
     /// Refuses options that apply only to drawings.
     pub(super) fn for_picture(&self) -> Result<()> {
         let message = "counts for drawings alone; leave it out for a picture";
-        self.refuse(&["profile_min_stroke"], message)
+        self.refuse(&["profile_min_stroke"], message)?;
+        match self.read {
+            ProfileRead::Auto => self.refuse(&["profile_axis"], Self::NOT_AUTO),
+            ProfileRead::Threshold => Ok(()),
+        }
     }
 
     /// Refuses every option: a polygon has no file.

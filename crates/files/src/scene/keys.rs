@@ -322,7 +322,7 @@ fn unknown(stranger: &str, known: &[&str]) -> String {
 }
 
 /// The name closest to `word`, if it is close enough to be a spelling of it.
-fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
+pub(super) fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
     let word = word.to_lowercase().replace('-', "_");
     let allowed = (word.chars().count() / 3).clamp(1, 3);
     names

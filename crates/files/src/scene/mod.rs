@@ -19,7 +19,7 @@ pub use warnings::{blank, warnings};
 
 use crate::pixels::foreign;
 use crate::profile::is_profile;
-use crate::{Picture, ProfileOptions, ending, file_fault, read_bytes};
+use crate::{Picture, ProfileAxis, ProfileOptions, ending, file_fault, read_bytes};
 use glam::DVec3;
 use reader::Reader;
 use revmap::error::{Error, ErrorKind, Result};
@@ -185,15 +185,22 @@ impl SceneFile {
     }
 
     /// The file's tables with `sets`. A profile in place of a scene is read by its own way, unless a
-    /// key of another is set.
+    /// key of another is set: of a picture any of [`ProfileOptions::OF_THRESHOLD`], of a drawing the
+    /// usual axis.
     fn applied(&self, sets: &[String]) -> Result<Table> {
         let mut root = overrides::applied(&self.root, sets)?;
         let objects = root.get_mut("object").and_then(Value::as_array_mut);
         if let Some(Value::Table(object)) = objects.and_then(|o| o.first_mut())
             && self.reader.stands_for_scene()
-            && ProfileOptions::OF_THRESHOLD
-                .iter()
-                .any(|key| object.contains_key(*key))
+            && match self.reader.stands_for_picture() {
+                true => ProfileOptions::OF_THRESHOLD
+                    .iter()
+                    .any(|key| object.contains_key(*key)),
+                false => {
+                    let axis = object.get("profile_axis").and_then(Value::as_str);
+                    axis.is_some_and(|axis| axis.parse() == Ok(ProfileAxis::Center))
+                }
+            }
             && !sets.iter().any(|set| set.contains("profile_read"))
         {
             object.remove("profile_read");

@@ -1,5 +1,6 @@
 //! `key=value`: values put into a scene's tables before they are read.
 
+use super::keys::nearest;
 use revmap::error::{Error, ErrorKind, Result};
 use toml::{Table, Value};
 
@@ -43,7 +44,10 @@ fn put(table: &mut Table, steps: &[&str], value: Value) -> std::result::Result<(
             true => format!(
                 "the scene has no [[{step}]] to change; add one to the file, or set {step}=[{{}}] first"
             ),
-            false => format!("the scene has no `{step}` to change; set the whole list first"),
+            false => match nearest(step, &["light", "object"]) {
+                Some(friend) => format!("is of no list; did you mean `{friend}`?"),
+                None => format!("the scene has no `{step}` to change; set the whole list first"),
+            },
         });
     }
     if below.is_empty() {
@@ -176,6 +180,7 @@ bevel => sets: "bevel" assigns nothing
 object.2.bevel=1 => object.2.bevel: there is no object.2: the scene has 2
 object.bevel=1 => object.bevel: `object` is a list; say which: object.0.bevel
 object.0=1 => object.0: is a table; name a key of it
+objects.0.bevel=1 => did you mean `object`?
 camera.up.2=1 => no `up` to change; set the whole list first
 light.0.radius=1 => no [[light]] to change; add one
 camera.fov_y.x=1 => camera.fov_y.x: `fov_y` is a value

@@ -88,6 +88,12 @@ impl Reader {
         self.kept.is_some()
     }
 
+    /// Returns true if a picture does.
+    pub(super) fn stands_for_picture(&self) -> bool {
+        let kept = self.kept.as_ref();
+        kept.is_some_and(|kept| is_picture(&kept.bytes))
+    }
+
     /// The first profile that is a picture, with its outline.
     pub(super) fn show_outline(&self) -> Result<Option<Picture>> {
         for (named, options, _) in &self.profiles {

@@ -53,6 +53,15 @@ fn a_bare_profile_is_read_with_what_is_set() {
     let empty = center.unwrap_err().to_string();
     assert!(empty.contains("set profile_axis"), "{empty}");
     assert!(!empty.contains("profile_threshold"), "{empty}");
+    let pale = thin.replace("<rect", "<rect fill='#b0b0ff'");
+    std::fs::write(&file, pale).unwrap();
+    let found = [&[][..], &["object.0.profile_axis=left"]].map(|sets| scene(sets).unwrap());
+    let notes = |k: usize| &found[k].objects[0].profile.notes;
+    assert!(
+        notes(0).len() == 2 && notes(0)[0] == notes(1)[0],
+        "{found:?}"
+    );
+    std::fs::write(&file, thin).unwrap();
     let left = "object.0.profile_axis=left";
     let near = scene(&[left]).unwrap();
     let found = scene(&[]).unwrap();

@@ -152,7 +152,7 @@ fn advice_is_followed() {
             assert_eq!(found.notes.is_empty(), words.is_empty());
             words
                 .iter()
-                .for_each(|words| holds(&found.notes.join("\n"), words));
+                .for_each(|words| holds(found.notes.join("\n"), words));
         }
     }
 }

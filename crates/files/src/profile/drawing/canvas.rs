@@ -22,6 +22,9 @@ const MOST_OVERLAPS: f64 = 2e5;
 /// Paint is cut by an edge of the page if it reaches this far to both sides, object units.
 const CUT: f64 = 5e-3;
 
+/// Paint over more than this part of the page is its ground.
+const GROUND: f64 = 0.98;
+
 /// The drawing area: the viewport or its right half, on the integer grid.
 pub(super) struct Canvas {
     pub low: DVec2,
@@ -93,8 +96,9 @@ impl Canvas {
         cut.map(|(edge, ..)| edge).collect()
     }
 
-    /// Names the darkest of the light paint, if it covers much more than `dark`.
-    pub fn pale(&self, nodes: &[Node], dark: f64) -> Option<String> {
+    /// Names the darkest of the light paint, if all paint covers more than `least` times the area of
+    /// the dark, and is no ground.
+    pub fn pale(&self, nodes: &[Node], dark: f64, least: f64) -> Option<String> {
         let (color, kind) = darkest_pale(nodes)?;
         let tinted = Self {
             tinted: true,
@@ -104,7 +108,9 @@ impl Canvas {
         };
         let all = tinted.dark(nodes).ok()?.area();
         let [r, g, b, _] = over_white(color).map(|v| (255.0 * v).round() as u8);
-        (all > 2.0 * dark).then(|| {
+        let page = self.high - self.low;
+        let is_ground = dark > 0.0 && all > GROUND * page.x * page.y;
+        (all > least * dark && !is_ground).then(|| {
             format!(
                 "the darkest {kind} is #{r:02x}{g:02x}{b:02x}, lighter than one half{PAINT_DARK}"
             )

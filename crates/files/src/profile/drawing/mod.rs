@@ -30,6 +30,10 @@ use tile::Tile;
 /// Places of less than this area are small, square object units.
 const SMALL: f64 = 2e-3;
 
+/// All paint over the dark paint's area: pale paint is then the shape, or a part of it.
+const MUCH: f64 = 2.0;
+const SOME: f64 = 1.1;
+
 /// A profile from the text of an SVG drawing (or its gzip-compressed form). Strokes thinner than
 /// `min_stroke`, in heights, are left out.
 pub(super) fn profile(bytes: &[u8], way: Way, min_stroke: f64) -> Result<Profile> {
@@ -83,10 +87,11 @@ pub(super) fn profile(bytes: &[u8], way: Way, min_stroke: f64) -> Result<Profile
         seen.loops.retain(|l| canvas.shows(l));
         cuts = canvas.cut_edges(&seen);
     }
-    let pale = || match way.pale {
+    let paler = |least| match way.pale {
         true => None,
-        false => canvas.pale(&drawing.content, seen.area()),
+        false => canvas.pale(&drawing.content, seen.area(), least),
     };
+    let pale = || paler(MUCH);
     let form = Silhouette::of_outline(&seen, page_at, &place);
     let solid = rest.as_ref().map(|rest| rest.outline(canvas.grid));
     let silhouette = |outline| Silhouette::of_outline(outline, page_at, &place);
@@ -130,6 +135,10 @@ pub(super) fn profile(bytes: &[u8], way: Way, min_stroke: f64) -> Result<Profile
         }
         (false, None) => {
             let mut hints = form.hints(outline, axis, pale);
+            if hints.is_empty() {
+                // Pale lines are a frame or a grid.
+                hints.extend(paler(SOME).filter(|pale| pale.contains(" fill ")));
+            }
             hints.extend(cuts.iter().map(|edge| {
                 format!("the drawing is cut by the {edge} edge of the page; move it into the page, or enlarge the page")
             }));
