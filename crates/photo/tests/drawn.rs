@@ -154,6 +154,24 @@ fn assert_sure(pixels: &[[u8; 4]], least: f64) -> Reading {
     reading
 }
 
+/// A dark rim about the foot in the ground's hue is a shadow; one in the thing's hue is a plinth.
+#[test]
+fn a_contact_shadow_is_no_plinth() {
+    let scene = changed(|s| s.color = [0.1, 0.2, 0.6]);
+    let foot = |rim: Color| {
+        let drawn = |[u, z]: [f64; 2], inside: bool, color: Color| {
+            let is_rim = !inside && (0.0..0.02).contains(&z) && u.abs() < radius(z) + 0.04;
+            if is_rim { rim } else { color }
+        };
+        let reading = read(&photo(&scene.draw(drawn))).unwrap();
+        let last = &reading.radii[reading.radii.len() - 8..];
+        last.iter().copied().fold(0.0, f64::max) / (reading.top - reading.bottom)
+    };
+    let (shadow, plinth) = (foot([0.24, 0.234, 0.222]), foot([0.07, 0.14, 0.42]));
+    assert!(shadow < radius(0.02) + 0.012, "{shadow}");
+    assert!(plinth > radius(0.02) + 0.025, "{plinth}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4, failure_persistence: None, ..ProptestConfig::default() })]
 
