@@ -40,8 +40,9 @@ pub struct Animate {
     /// in the scene; those of --studio stay with the camera
     #[arg(long, value_name = "DEGREES")]
     turn: Option<f64>,
-    /// Turns the scene in place of the camera: all lights stay with the camera
-    #[arg(long, requires = "turn")]
+    /// Turns the scene in place of the camera: all lights stay with the camera. Once around unless
+    /// --turn says otherwise
+    #[arg(long)]
     turntable: bool,
     /// Moves a key of the scene from one value to another, as in object.0.extend=0:0.1; numbers or
     /// lists of numbers; may be given more than once
@@ -104,7 +105,7 @@ impl Animate {
                 "the reference draws no animations; give fragment or compute",
             ));
         };
-        if self.turn.is_some_and(|turn| !turn.is_finite()) {
+        if self.turned().is_some_and(|turn| !turn.is_finite()) {
             return Err(usage("--turn", "is no angle; give degrees"));
         }
         let target = self.destination()?;
@@ -184,7 +185,7 @@ impl Animate {
         if self.samples.rays() != Rays::Each(1) && self.output.is_none() {
             warnings.push("--samples: no pictures are kept, and one ray per pixel is drawn; name a folder with --output".to_owned());
         }
-        let turn = self.turn.unwrap_or(0.0);
+        let turn = self.turned().unwrap_or(0.0);
         if self.frames > 1 && turn == 0.0 && !varied.iter().any(Vary::moves) {
             warnings
                 .push("nothing moves, so all frames are equal; give --turn or --vary".to_owned());
@@ -285,6 +286,11 @@ impl Animate {
         folder.join(format!("frame-{n:0width$}.png"))
     }
 
+    /// Degrees by which the camera turns in all.
+    fn turned(&self) -> Option<f64> {
+        self.turn.or(self.turntable.then_some(360.0))
+    }
+
     /// The studio, if there is one. Its camera sees what a profile becomes in all frames.
     fn studio(&self, file: &mut SceneFile, varied: &[Vary]) -> Result<Option<Studio>> {
         let Some(mut studio) = self.surroundings.studio()? else {
@@ -326,7 +332,7 @@ impl Animate {
             }
             e
         })?;
-        let turn = self.turn.unwrap_or(0.0);
+        let turn = self.turned().unwrap_or(0.0);
         let returns = self.bounce && turn % 360.0 != 0.0;
         let angle = (turn * if returns { part } else { around }).to_radians();
         Ok((scene, angle))
@@ -337,7 +343,7 @@ impl Animate {
         if let Some(studio) = studio {
             studio.place_camera(&mut scene);
         }
-        if self.turn.is_some() {
+        if self.turned().is_some() {
             let about = turn_about_target(&mut scene.camera, angle);
             if self.turntable {
                 let lights = scene.lights.iter_mut();
@@ -379,7 +385,7 @@ impl Animate {
 
     /// What a film shows once, after its length.
     fn round(&self) -> &'static str {
-        match self.turn {
+        match self.turned() {
             Some(turn) if turn.abs() == 360.0 => " a turn",
             _ if self.bounce => " there and back",
             _ => "",

@@ -6,6 +6,7 @@ use super::progress::Progress;
 use super::reading::Input;
 use clap::Args;
 use revmap::error::{Error, Result};
+use revmap::profile::loop_area;
 use revmap::scene::{Object, Scene};
 use revmap_files::{MESH_ENDINGS, SceneFile, mesh_files, stl_rounding, write_meshes};
 use revmap_tessellation::{Triangles, pixel_tolerance};
@@ -172,6 +173,14 @@ fn warnings(scene: &Scene) -> Vec<String> {
     for (number, object) in scene.objects.iter().enumerate() {
         let warnings = object.profile.warnings.iter();
         found.extend(warnings.map(|w| format!("object.{number}: {w}")));
+        let loops = object.profile.outline.loops.iter();
+        let hollows = loops.filter(|points| loop_area(points) < 0.0).count();
+        if hollows > 0 && !found.iter().any(|w| w.contains("closed hollow")) {
+            found.push(format!(
+                "object.{number}: the mesh has {}, which nobody sees and a print keeps; remove the light shapes if none is meant",
+                counted(hollows, "closed hollow", "closed hollows")
+            ));
+        }
         if object.color.iter().any(|v| *v > 1.0) && object.texturing.color_map.is_none() {
             found.push(format!(
                 "object.{number}.color: a mesh has no colours above 1; 1 is written"

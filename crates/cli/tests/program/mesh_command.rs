@@ -108,3 +108,19 @@ fn what_a_material_cannot_hold_is_named() {
     holds(&said, &["object.0.color", "above 1"]);
     holds(&bench.text("a.mtl"), &["Kd 1.00000 0.73536 0.00000"]);
 }
+
+/// A light shape off the axis is a void, of any size.
+#[test]
+fn closed_hollows_are_named() {
+    let bench = Bench::new();
+    let said = |hole: &str| {
+        let shapes = format!("<path d='M30 10H70V90H30z'/>{hole}");
+        let svg =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>{shapes}</svg>");
+        bench.file("a.svg", svg);
+        lines(&bench.done("mesh a.svg -o a.stl")).join("\n")
+    };
+    let hole = said("<path d='M55 40h4v4h-4z' fill='#fff'/>");
+    holds(&hole, &["object.0", "1 closed hollow,"]);
+    assert!(!said("").contains("hollow"));
+}

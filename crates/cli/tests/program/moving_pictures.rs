@@ -112,7 +112,7 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
     let film = "animate --size 64x48 --frames 6 --overwrite --set background=[1,1,1,1]";
     let remedies = ["color_map", "--bounce", "without --turntable"];
     for row in table(
-        "scene.toml --turn 360 --turntable     | color_map | --bounce | without --turntable
+        "scene.toml --turntable                | color_map | --bounce | without --turntable
          a.svg --turn 360 --turntable          | color_map | --bounce | without --turntable
          a.svg --turn 360 --turntable --studio | color_map | --bounce
          a.svg --turn 360 --studio             | color_map | --bounce
