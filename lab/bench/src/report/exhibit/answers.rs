@@ -128,7 +128,7 @@ fn worst<'a>(context: &Context, pairs: &[Pair<'a>]) -> Option<(String, &'a Row)>
         false => "other search",
     };
     let told = format!(
-        "The default search takes at most {time} of the time of the fastest {what}: {} at {} in the {stage} stage, against `{}`",
+        "`exact` takes at most {time} of the time of the fastest {what}: {} at {} in the {stage} stage, against `{}`",
         row.scene,
         row.size(),
         other.settings.method
@@ -335,7 +335,7 @@ mod tests {
             drawn(coarse, DrawStage::Fragment, &[2.5, 2.55, 2.5], 9.0),
         ];
         let told = with_context(&rows, findings).join(" ");
-        let wanted = "Where it loses, if anywhere: The default search takes at most 4 (4 to 4) of the time of the fastest mesh of the picture: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
+        let wanted = "Where it loses, if anywhere: `exact` takes at most 4 (4 to 4) of the time of the fastest mesh of the picture: scene0 at 800x600 in the fragment stage, against `mesh:4px`";
         assert!(told.contains(wanted), "{told}");
         assert!(!told.contains("1 picture"), "{told}");
         // Times that are not resolved still have a fastest mesh.
@@ -365,7 +365,7 @@ mod tests {
             timed(quadric, Fragment, 1, &[5.0, 5.0, 5.0]),
         ];
         let (answers, records) = told("rivals", &rows);
-        let wanted = "The default search takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved.";
+        let wanted = "`exact` takes at most 1.2 (1.2 to 1.2) of the time of the fastest other search: scene0 at 800x600 in the compute stage, against `quadric`. It is faster in 1 of 3 measurements (2 pictures), another search in 1; in 0 no difference is resolved, and 1 are not resolved.";
         assert_eq!(answers, [wanted]);
         // The fragment stage's mean is not resolved, as one picture of two is not.
         let wanted = ["compute", "1.2 (1.2 to 1.2)", "–", "1"];
