@@ -109,7 +109,7 @@ fn a_film_that_stands_still_is_named_with_what_moves() {
         "aside.toml",
         format!("{CAMERA}{CONE}position = [0.2, 0, 0]\n"),
     );
-    let film = "animate --size 64x48 --frames 6 --overwrite --set background=[1,1,1,1]";
+    let film = "animate --size 64x48 --frames 6 --overwrite --background white";
     let remedies = ["color_map", "--bounce", "without --turntable"];
     for row in table(
         "scene.toml --turntable                | color_map | --bounce | without --turntable

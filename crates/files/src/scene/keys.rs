@@ -1,6 +1,7 @@
 //! A table of a scene file: only known keys, each read as its required type. Every message has the
 //! key's full path.
 
+use super::nearest::nearest;
 use super::spelling::unquoted;
 use crate::{content_fault, css_color};
 use glam::DVec3;
@@ -319,16 +320,4 @@ fn unknown(stranger: &str, known: &[&str]) -> String {
         Some(friend) => format!("unknown key; did you mean `{friend}`?"),
         None => format!("unknown key; known here: {}", known.join(", ")),
     }
-}
-
-/// The name closest to `word`, if it is close enough to be a spelling of it.
-pub(super) fn nearest<'k>(word: &str, names: &[&'k str]) -> Option<&'k str> {
-    let word = word.to_lowercase().replace('-', "_");
-    let allowed = (word.chars().count() / 3).clamp(1, 3);
-    names
-        .iter()
-        .map(|name| (strsim::osa_distance(&word, name), *name))
-        .filter(|(distance, _)| *distance <= allowed)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name)
 }

@@ -7,6 +7,7 @@
 mod extent;
 mod instances;
 mod keys;
+mod nearest;
 mod overrides;
 mod polygon;
 mod reader;

@@ -1,6 +1,6 @@
 //! `key=value`: values put into a scene's tables before they are read.
 
-use super::keys::nearest;
+use super::nearest::nearest;
 use revmap::error::{Error, ErrorKind, Result};
 use toml::{Table, Value};
 
