@@ -11,6 +11,10 @@ const PROTRUDES: f64 = 1.0;
 /// Colours farther from the ground's hue are the thing's.
 const HUE: f32 = 0.12;
 
+/// A lip is shadow if more than this share of it has the ground's hue, and less than that of the thing.
+const SHADOW: f64 = 0.7;
+const THING: f64 = 0.2;
+
 /// Lowers the radii of a lip to the side above it, if what protrudes has the hue of the ground and
 /// the thing has not.
 pub(crate) fn cut_shadow(halves: &mut Halves, sampler: &Sampler, backdrop: &Backdrop) {
@@ -58,7 +62,7 @@ pub(crate) fn cut_shadow(halves: &mut Halves, sampler: &Sampler, backdrop: &Back
     let body: Vec<_> = (corner - 2 * low..corner - low)
         .flat_map(|k| [(k, 0.5 * radii[k]), (k, 0.8 * radii[k])])
         .collect();
-    if of_ground(&lip) > 0.7 && of_ground(&body) < 0.2 {
+    if of_ground(&lip) > SHADOW && of_ground(&body) < THING {
         for r in &mut halves.radii[corner..] {
             *r = r.min(limit);
         }
