@@ -323,9 +323,10 @@ impl Animate {
             true => 1.0 - (1.0 - 2.0 * around).abs(),
             false => f64::from(n) / f64::from((self.frames - 1).max(1)),
         };
-        let mut sets = self.surroundings.sets(file, &self.input.set)?;
-        sets.extend(varied.iter().map(|v| v.at(part)));
-        let scene = file.scene(&sets).map_err(|mut e| {
+        let varying = varied.iter().map(|v| v.at(part));
+        let sets: Vec<String> = self.input.set.iter().cloned().chain(varying).collect();
+        let sets = self.surroundings.sets(file, &sets);
+        let scene = sets.and_then(|sets| file.scene(&sets)).map_err(|mut e| {
             let key = e.key.as_deref().filter(|_| e.kind == ErrorKind::Usage);
             if let Some(v) = varied.iter().find(|v| key == Some(&v.key)) {
                 e.key = Some(format!("--vary {}", v.key));

@@ -171,14 +171,14 @@ fn move_to_origin(scene: &mut Scene) {
 fn warnings(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
     for (number, object) in scene.objects.iter().enumerate() {
-        let warnings = object.profile.warnings.iter();
-        found.extend(warnings.map(|w| format!("object.{number}: {w}")));
+        let warnings = &object.profile.warnings;
+        found.extend(warnings.iter().map(|w| format!("object.{number}: {w}")));
         let loops = object.profile.outline.loops.iter();
         let hollows = loops.filter(|points| loop_area(points) < 0.0).count();
-        if hollows > 0 && !found.iter().any(|w| w.contains("closed hollow")) {
+        if hollows > 0 && !warnings.iter().any(|w| w.contains("closed hollow")) {
+            let hollows = counted(hollows, "closed hollow", "closed hollows");
             found.push(format!(
-                "object.{number}: the mesh has {}, which nobody sees and a print keeps; remove the light shapes if none is meant",
-                counted(hollows, "closed hollow", "closed hollows")
+                "object.{number}: the profile has {hollows}, which a print keeps; remove the light shapes if none is meant"
             ));
         }
         if object.color.iter().any(|v| *v > 1.0) && object.texturing.color_map.is_none() {

@@ -200,20 +200,17 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Assignments to keys of the scene: those of these options, then `sets`. Refuses a key that an
-    /// option replaces.
+    /// Assignments to keys of the scene: those of these options, then `sets`, which say more. Refuses
+    /// a key that the studio replaces.
     pub fn sets(&self, file: &SceneFile, sets: &[String]) -> Result<Vec<String>> {
         for set in sets {
             let key = set.split('=').next().unwrap_or_default().trim();
             let root = key.split('.').next().unwrap_or_default();
             let of_studio = ["light", "shadow", "ambient", "environment", "background"];
-            let option = match (root, &self.background) {
-                ("background", Some(_)) => "--background",
-                _ if self.studio && of_studio.contains(&root) => "--studio",
-                _ => continue,
-            };
-            let message = format!("is replaced by {option}; leave one of the two out");
-            return Err(usage(key, message));
+            if self.studio && of_studio.contains(&root) {
+                let message = "is replaced by --studio; leave one of the two out";
+                return Err(usage(key, message));
+            }
         }
         let color = self.color.into_iter().flat_map(|color| {
             let set = move |n| format!("object.{n}.color={color:?}");

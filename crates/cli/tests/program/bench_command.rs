@@ -1,7 +1,7 @@
 //! `revmap bench` and `revmap chart` as they are run: files, columns, exit codes, an interrupt. On
 //! a real device, small and brief.
 
-use crate::run::{Bench, holds, lines};
+use crate::run::{Bench, CAMERA, CONE, holds, lines};
 use revmap_bench::report::columns;
 use revmap_bench::report::table::Table;
 use std::process::{Command, Stdio};
@@ -95,6 +95,19 @@ fn a_brief_chart_has_its_pages() {
     let left_out = load(&bench, "c/excluded.csv").records;
     let summary = bench.path("c/charts/summary-depth-error.svg");
     assert!(summary.exists() || !left_out.is_empty());
+}
+
+/// A mesh draws no colour map, so nothing of it is left.
+#[test]
+fn a_method_that_no_scene_can_have_is_named() {
+    let bench = Bench::new();
+    bench.grey("rings.png", 8, 8, |_, y| 30 * y as u8);
+    let scene = format!("{CAMERA}{CONE}color_map = \"rings.png\"\n");
+    bench.file("rings.toml", scene);
+    let command = "bench rings.toml --quick --size 64x48 --solver exact,mesh:8x8 --out c";
+    let said = lines(&bench.done(command)).join("\n");
+    holds(&said, &["mesh:8x8 was left out", "draws no colour map"]);
+    assert!(!said.contains("exact was left out"));
 }
 
 /// A plan of one's own: one of the program's, changed; and faults in it.

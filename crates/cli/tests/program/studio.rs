@@ -157,7 +157,10 @@ fn colours_are_those_of_css() {
     assert_eq!(teal.get_pixel(0, 0).0, [0, 128, 128, 255]);
     bench.refuses(
         2,
-        "render a.svg -o b.png --color greenish                            | --color | greenish | rgb(
+        "render a.svg -o b.png --studio --set shadow=off                   | --set shadow | --studio
+         render a.svg -o b.png --studio --set background=[0,0,0,1]         | --set background | --studio
+         animate a.svg --frames 2 --studio --vary ambient.0=0:1            | ambient | --studio
+         render a.svg -o b.png --color greenish                            | --color | greenish | rgb(
          render a.svg -o b.png --color transparent                         | --color | transparent
          render a.svg -o b.png --ground red                                | --studio
          render a.svg -o b.png --studio --ground red --background #fff8    | --ground | --background",
