@@ -143,8 +143,9 @@ impl Renderer {
 
 impl Content {
     /// The general form of every pipeline that an object's technique may need, with the form for few
-    /// lights, and the general forms of the technique that replaces it if its contour does
-    /// not close; and what places copies for walks. No view, mask or parameter has an influence, and no number of objects or copies.
+    /// lights; the general forms of the technique that replaces it if its contour does not close; and
+    /// what places copies for walks. View, masks, parameters and numbers of objects and copies do not
+    /// count.
     fn prewarmed_forms(&self) -> Vec<(Variant, Kind)> {
         let (with, solver) = (self.conditions(&self.snapshot), self.settings.solver);
         let mut known = HashSet::new();

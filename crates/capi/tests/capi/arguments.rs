@@ -82,7 +82,9 @@ fn structures_and_devices() {
     let mut needs = sized!(RevmapRequirements);
     let nothing = lent.get_instance_proc_addr;
     fail! {
-        Usage, "get_instance_proc_addr is null": revmap_requirements(nothing, ash::vk::Instance::null(), lent.physical_device, &mut needs);
+        Usage, "get_instance_proc_addr is null": revmap_requirements(
+            nothing, ash::vk::Instance::null(), lent.physical_device, &mut needs
+        );
     }
     assert!(opened.is_null());
 

@@ -109,7 +109,9 @@ fn wrong_shadings_and_images_are_refused() {
     let pass = sized!(RevmapPass);
     fail! {
         Usage, "do not fit": revmap_shading_bytes(shading, room.as_mut_ptr().cast(), &mut count);
-        Usage, "needs compute": revmap_renderer_create_compute_with_shading(device, planes, shading, nothing, null(), 1, &mut renderer);
+        Usage, "needs compute": revmap_renderer_create_compute_with_shading(
+            device, planes, shading, nothing, null(), 1, &mut renderer
+        );
         Handle, "null": revmap_renderer_create_with_shading(device, &pass, null(), nothing, null(), 1, &mut renderer);
         Handle, "host image": revmap_renderer_set_color_image(null_mut(), 1, shading.cast());
     }

@@ -141,7 +141,7 @@ impl ProfileOptions {
             return wrong("profile_threshold", message);
         }
         if self.read == ProfileRead::Auto {
-            self.refuse(&Self::OF_THRESHOLD[1..], Self::NOT_AUTO)?;
+            self.refuse(&["profile_threshold", "profile_invert"], Self::NOT_AUTO)?;
         }
         if let Smooth::Pixels(pixels) = self.smooth
             && !(0.0..=Self::MOST_SMOOTH).contains(&pixels)
