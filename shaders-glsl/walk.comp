@@ -22,14 +22,14 @@ void main()
     uint number = pushed.first + gl_WorkGroupID.x;
     TileWalk tile = FROM_ROOT;
     uvec2 pixel;
-    if (OPEN_PIXELS != 0u) {
+    if (pushed.walks == WALKS_OPEN) {
         uint before = GROUP_PIXELS * GROUP_PIXELS * gl_WorkGroupID.x;
         uint position = open_pixels[pushed.first + before + gl_LocalInvocationIndex];
         pixel = uvec2(position & 0xffffu, position >> 16);
     } else {
         uint across = squares_of_rectangle().x;
         uvec2 corner = square_corner(pushed.corner) + GROUP_PIXELS * uvec2(number % across, number / across);
-        if (pushed.listed != 0u) {
+        if (pushed.walks == WALKS_LISTED) {
             uint at = pushed.tiles + TILE_WALK_VECTORS * gl_WorkGroupID.x;
             uvec4 rest = tile_walks[at + 1u];
             corner = square_corner(rest.w);

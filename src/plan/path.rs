@@ -58,8 +58,6 @@ pub(crate) struct PlanObject<'a> {
 pub(crate) struct Conditions {
     /// True if compute draws; otherwise fragments do.
     pub compute: bool,
-    /// True if compute draws some pixels alone.
-    pub opens: bool,
     /// True if the device passes a cell's components from vertices to fragments.
     pub passes_cells: bool,
     /// True if the device is a CPU, on which triangles are expensive.
@@ -210,7 +208,7 @@ impl Conditions {
     }
 
     /// The kinds of pipelines that may draw a technique, whatever the view, the offsets and the other
-    /// objects are. They depend on the technique, the device, and the members `compute`, `opens`,
+    /// objects are. They depend on the technique, the device, and the members `compute`,
     /// `parallel`, `takes_patches` and `casts`.
     pub fn kinds(&self, technique: &Technique) -> Vec<Kind> {
         let patches = technique.search == SearchCode::Quadric && self.takes_patches;
@@ -226,9 +224,6 @@ impl Conditions {
             return taken.map(|(kind, _)| kind).collect();
         }
         let mut all = vec![Kind::WalkLists, Kind::WalkTiles];
-        if self.opens {
-            all.push(Kind::WalkPixels);
-        }
         if patches && self.lists_patches() {
             all.push(Kind::TileLists);
             all.extend(LIST_LENGTHS.map(Kind::TilePatches));

@@ -13,7 +13,8 @@ use super::projector::{Projector, Rectangle, TILE_PIXELS};
 use super::walk::{Layer, Walks};
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::shader::generated::{
-    CULLED_PIXELS, GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
+    CULLED_PIXELS, GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN, WALKS_LISTED,
+    WALKS_OPEN,
 };
 use crate::shader::{Drawn, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;
@@ -212,8 +213,12 @@ impl FramePlan {
                 let all = from..self.open_pixels.len() as u32;
                 for pixels in chunks(all, MOST_GROUPS * TILE_PIXELS) {
                     let groups = pixels.len() as u32 / TILE_PIXELS;
-                    let call = Call::Groups(groups, beginning(pixels.start));
-                    draws.push(step(phase, Kind::WalkPixels, call));
+                    let pushed = Pushed {
+                        walks: WALKS_OPEN,
+                        ..beginning(pixels.start)
+                    };
+                    let call = Call::Groups(groups, pushed);
+                    draws.push(step(phase, Kind::WalkTiles, call));
                 }
                 continue;
             }
@@ -256,7 +261,7 @@ impl FramePlan {
                 }
                 let pushed = Pushed {
                     tiles: self.bin_vectors,
-                    listed: 1,
+                    walks: WALKS_LISTED,
                     ..pushed
                 };
                 draws.push(step(phase, Kind::WalkTiles, Call::Indirect(head, pushed)));

@@ -122,12 +122,11 @@ fn reachable_variants_have_modules() {
         Kind::WalkLists,
         Kind::Walk,
         Kind::WalkTiles,
-        Kind::WalkPixels,
     ];
     for planes in [Planes::Color, Planes::All] {
         for solver in Solver::ALL {
             let patches = matches!(solver, Solver::Exact);
-            let maps = [Kind::Boxes, Kind::WalkTiles, Kind::WalkPixels];
+            let maps = [Kind::Boxes, Kind::WalkTiles];
             let has = |k: &Kind| patches || maps.contains(k);
             for kind in kinds.into_iter().filter(has) {
                 let variant = Variant::general(any(solver, planes));

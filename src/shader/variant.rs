@@ -30,10 +30,8 @@ pub enum Kind {
     WalkLists,
     /// Tiles of the picture, rasterised; fragments walk a hierarchy of copies.
     Walk,
-    /// Compute: tiles of the picture, which walk a hierarchy of copies.
+    /// Compute: tiles of the picture, or chosen pixels, which walk a hierarchy of copies.
     WalkTiles,
-    /// Compute: pixels of the picture, which walk a hierarchy of copies.
-    WalkPixels,
 }
 
 impl Kind {
@@ -49,14 +47,13 @@ impl Kind {
             Self::WalkLists => c"revmap lists of copies",
             Self::Walk => c"revmap walk",
             Self::WalkTiles => c"revmap walk of tiles",
-            Self::WalkPixels => c"revmap walk of pixels",
         }
     }
 
     pub const fn draws_in_compute(self) -> bool {
         matches!(
             self,
-            Self::TilePatches(_) | Self::CulledTiles | Self::WalkTiles | Self::WalkPixels
+            Self::TilePatches(_) | Self::CulledTiles | Self::WalkTiles
         )
     }
 
@@ -71,7 +68,7 @@ impl Kind {
             Self::Place => Entry::Place,
             Self::WalkLists => Entry::WalkLists,
             Self::Walk => Entry::Walk,
-            Self::WalkTiles | Self::WalkPixels => Entry::WalkTiles,
+            Self::WalkTiles => Entry::WalkTiles,
         }
     }
 }
@@ -275,7 +272,7 @@ impl Variant {
     }
 
     /// `(constant_id, value)` of every specialisation constant.
-    pub fn constants(&self, kind: Kind) -> [(u32, u32); 19] {
+    pub fn constants(&self, kind: Kind) -> [(u32, u32); 18] {
         let (technique, speciality) = (&self.technique, &self.speciality);
         let (form, known_steps) = technique.external.map_or((0, 0), External::constants);
         let list_length = match kind {
@@ -298,7 +295,6 @@ impl Variant {
             (g::LIGHTS_ID, speciality.lights as u32),
             (g::LIST_LENGTH_ID, list_length),
             (g::CUT_CELLS_ID, u32::from(kind == Kind::CutCells)),
-            (g::OPEN_PIXELS_ID, u32::from(kind == Kind::WalkPixels)),
             (g::OUTSIDE_ID, speciality.outside as u32),
             (g::ONE_OBJECT_ID, speciality.drawn as u32),
             (g::SINGLE_CELLS_ID, speciality.single.into()),

@@ -198,7 +198,7 @@ struct Pushed {
     uint heads; // index of the first head of the bins
     uint tiles; // index of the first tile of the bins, or of the bin that is read; of the first vector of walks
     uint room; // lists: number of tiles that a bin holds
-    uint listed; // 1 if walks are of listed tiles, 0 if of all tiles of the rectangle
+    uint walks; // 0 if all tiles of the rectangle walk, or one of WALKS_*
     uint object; // index of the only object
     uint instance; // index of its only copy
 };

@@ -77,7 +77,6 @@ layout(constant_id = 18) const uint FETCHED_CELLS = 0u; // 1: fragments fetch th
 layout(constant_id = 19) const uint SINGLE_CELLS = 0u; // 1: each cell of the draw has one patch
 layout(constant_id = 21) const uint SLOPE_BIAS = 0u; // depth-only passes: bias for a slope of 1 (bits of a float)
 layout(constant_id = 22) const uint SLOPE_BIAS_LIMIT = 0u; // its upper limit, units of the depth buffer (bits of a float)
-layout(constant_id = 17) const uint OPEN_PIXELS = 0u; // 1: each invocation of a walk reads its pixel
 layout(constant_id = 16) const uint BEVELED = 0u; // 1: there may be a bevel
 layout(constant_id = 9) const uint LIST_LENGTH = 8u; // patches per pixel of a listed tile
 
@@ -133,6 +132,8 @@ const uint LONGEST_LIST = 48u;
 const uint MAX_SHADOW_MAPS = 8u; // upper limit on shape maps of a scene with shadows, for searches on maps
 const uint INNER_NODE = 4294967295u; // in place of a copy, in nodes of hierarchies that have none
 const uint PLACED = 4294967295u; // in place of a copy's table: the device places it
+const uint WALKS_LISTED = 1u; // a dispatch of walks has the tiles of a list, not all of a rectangle
+const uint WALKS_OPEN = 2u; // each of its invocations reads its pixel
 const uint TILE_WALK_VECTORS = 2u; // vectors of a tile's walk
 const uint LEVEL_WORDS = 12u; // words of LevelTables
 const uint GROUP_PIXELS = 8u; // side of a tile, and of compute workgroups that cull no patches

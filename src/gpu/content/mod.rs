@@ -181,7 +181,6 @@ impl Content {
         let (limits, chosen) = (self.device.limits(), &self.device.chosen);
         Conditions {
             compute: self.is_compute(),
-            opens: self.open.is_some(),
             passes_cells: limits.max_fragment_input_components
                 >= crate::solid::proxy_hull::COMPONENTS
                 && limits.max_vertex_output_components >= crate::solid::proxy_hull::OUTPUTS,

@@ -174,7 +174,7 @@ impl Content {
                 }
             }
         }
-        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles | Kind::WalkPixels);
+        let walks = |(_, kind): &_| matches!(kind, Kind::Walk | Kind::WalkTiles);
         if all.iter().any(walks) {
             all.push(PLACE);
         }
