@@ -13,8 +13,8 @@ use super::projector::{Projector, Rectangle, TILE_PIXELS};
 use super::walk::{Layer, Walks};
 use super::{Call, Conditions, FramePlan, PlanObject, Step, View, projector, proxy};
 use crate::shader::generated::{
-    CULLED_PIXELS, GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN, WALKS_LISTED,
-    WALKS_OPEN,
+    CULLED_PIXELS, GROUP_PIXELS, MOST_GROUPS, QUAD_BITS, TILE_BINS, TILE_WALK_VECTORS, WALK_BIN,
+    WALKS_LISTED, WALKS_OPEN,
 };
 use crate::shader::{Drawn, Kind, Pushed, Variant};
 use crate::solid::offset_surface::Part;

@@ -103,7 +103,7 @@ impl View {
             Ok(Box::new(shown))
         });
         eframe::run_native("revmap", window, creator).map_err(|e| {
-            let message = format!("no screen ({e}); {}", screen::remedy());
+            let message = screen::refusal(&e.to_string());
             Error::new(ErrorKind::Unsupported, message)
         })?;
         app.end()

@@ -5,12 +5,18 @@ use eframe::EventLoopBuilderHook;
 /// The variable that names the Wayland display.
 const WAYLAND: &str = "WAYLAND_DISPLAY";
 
-/// The remedy if no window can be opened.
-pub fn remedy() -> &'static str {
-    match is_set(WAYLAND) {
+/// Why no window can be opened, and the remedy. Of winit's causes the place in its source is cut.
+pub fn refusal(cause: &str) -> String {
+    let place = cause.split_once(" at ").zip(cause.split_once(".rs:"));
+    let cause = place.map_or(cause.to_owned(), |((fault, _), (_, why))| {
+        let why = why.split_once(": ").map_or(why, |(_, why)| why);
+        format!("{fault}: {why}")
+    });
+    let remedy = match is_set(WAYLAND) {
         true => "unset WAYLAND_DISPLAY, or set it and DISPLAY to screens that are there",
         false => "set DISPLAY or WAYLAND_DISPLAY",
-    }
+    };
+    format!("no screen ({cause}); {remedy}")
 }
 
 /// A choice of X11, if a Wayland display is named that no program serves, and an X11 display too.
